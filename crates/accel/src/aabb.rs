@@ -35,12 +35,12 @@ impl Aabb {
         }
     }
 
-    /// Whether the box has at least one point (a flat box has) and only finite corners.
+    /// True if the box has at least one point (a flat box has) and only finite corners.
     pub fn is_valid(&self) -> bool {
         self.min.is_finite() && self.max.is_finite() && self.min.cmple(self.max).all()
     }
 
-    /// Whether every point of `other` is in this box. True for an empty `other`.
+    /// True if every point of `other` is in this box, and for an empty `other`.
     pub fn contains(&self, other: &Self) -> bool {
         other.min.cmpgt(other.max).any()
             || (self.min.cmple(other.min).all() && self.max.cmpge(other.max).all())

@@ -132,7 +132,7 @@ impl Bvh {
         query.best
     }
 
-    /// Whether there is any hit for which `accept` holds: the same as `closest(..).is_some()`,
+    /// True if there is any hit for which `accept` holds: the same as `closest(..).is_some()`,
     /// but faster.
     #[inline]
     pub fn occluded<F: Fn(&Hit) -> bool>(&self, ray: &Ray, accept: F) -> bool {
@@ -141,7 +141,7 @@ impl Bvh {
         query.found
     }
 
-    /// Whether there is any hit: the same as `occluded(ray, accept_all)`, but faster.
+    /// True if there is any hit: the same as `occluded(ray, accept_all)`, but faster.
     #[inline]
     pub fn is_blocked(&self, ray: &Ray) -> bool {
         let mut query = Anything { found: false };
@@ -150,7 +150,7 @@ impl Bvh {
     }
 
     /// Calls `found` with every hit of the ray, each once and in any order, until it breaks off.
-    /// Tells whether it did.
+    /// Returns whether it did.
     #[inline]
     pub fn each_hit<F: FnMut(&Hit) -> ControlFlow<()>>(
         &self,

@@ -1,10 +1,10 @@
-//! What the slots of a node lead to.
+//! The children in the slots of a node.
 
 use std::ops::Range;
 
 use crate::node::WIDTH;
 
-/// What a node's slot leads to, in 32 bits.
+/// The child in a node's slot, in 32 bits.
 ///
 /// From the top: two bits of kind, then either 30 bits of a node's index, or three bits of a leaf's
 /// length less one and 27 bits of its first element. An instance is a leaf of length one.

@@ -16,7 +16,7 @@ use crate::quadric::{LocalLine, Roots, azimuth, azimuth_limit};
 pub struct Disk {
     /// Any invertible affine map.
     pub local_from_world: Affine3A,
-    /// Where the plane meets the z axis, in local units.
+    /// The z at which the plane meets the z axis, in local units.
     pub height: f32,
     /// Of the rim, in local units.
     pub radius: f32,

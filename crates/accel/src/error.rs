@@ -26,7 +26,7 @@ pub enum BuildError {
     BadInstance {
         /// The first such instance.
         instance: usize,
-        /// What is wrong with it.
+        /// The error of that instance.
         reason: InstanceError,
     },
     /// This machine lacks the instructions.
@@ -36,7 +36,7 @@ pub enum BuildError {
     },
 }
 
-/// What is wrong with an [`Instance`](crate::Instance).
+/// The error of an [`Instance`](crate::Instance).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum InstanceError {
     /// There is no object of this number.

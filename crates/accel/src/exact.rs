@@ -1,7 +1,7 @@
 //! Ray against triangle, decided exactly.
 //!
 //! With `a` and `b` the ends of an edge as seen from the ray's origin and `d` the ray's direction,
-//! the sign of `(a × b)·d` says on which side of the edge the ray's line passes: it is the
+//! the sign of `(a × b)·d` is the side of the edge on which the ray's line passes: it is the
 //! permuted inner product of the two lines' Plücker coordinates.
 //! The line passes the closed triangle if its three edge functions do not differ in sign.
 //!
@@ -18,7 +18,7 @@
 
 use glam::{DVec3, Vec3};
 
-/// Where a ray's line passes a triangle.
+/// The point where a ray's line passes a triangle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Passage {
     pub(crate) t: f32,

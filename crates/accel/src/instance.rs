@@ -53,14 +53,14 @@ pub(crate) struct Placement {
 /// The most that a map may stretch in either direction: directions stay in the range of `f32`.
 const MOST_SCALE: f64 = 1e18;
 
-/// What a sum of two lengths may lose, relative to them: 2⁻⁴⁸, some roundings of an `f64`.
+/// The error of a sum of two lengths, relative to them: 2⁻⁴⁸, some roundings of an `f64`.
 const CANCELLED: f64 = 1.0 / (1u64 << 48) as f64;
 
-// What memory estimates count on.
+// Memory estimates rely on this.
 const _: () = assert!(size_of::<Placement>() <= 128);
 
 impl Placement {
-    /// Places an object with these bounds, and tells the bounds of the place.
+    /// Places an object with these bounds, and returns the bounds of the place.
     ///
     /// None: the map has no inverse, or is so close to having none that the rounding of rays exceeds
     /// the instance, or something overflows.
@@ -105,7 +105,7 @@ impl Placement {
         &self.object_from_world
     }
 
-    /// Where the ray, already cleaned, enters the ball: `t₀`.
+    /// The `t₀` at which the ray, already cleaned, enters the ball.
     #[inline(always)]
     fn entry(&self, ray: &Ray) -> f64 {
         let direction = ray.direction.as_dvec3();
@@ -159,7 +159,7 @@ fn local_error(object_from_world: &DAffine3, local_center: DVec3, radius: f64) -
     f64::from(f32::EPSILON) * (local_center.abs() + rho + 8.0 * rho)
 }
 
-/// What hits in the space of a tree are in the world.
+/// The relation of hits in the space of a tree to hits in the world.
 pub(crate) trait Space {
     /// Limits of local hits that are certainly within the world's.
     fn sure_limits(&self, ray: &Ray) -> [f32; 2];

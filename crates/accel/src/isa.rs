@@ -40,7 +40,7 @@ impl Isa {
             .unwrap_or(Self::Scalar)
     }
 
-    /// Whether this machine has the instructions.
+    /// True if this machine has the instructions.
     #[cfg(target_arch = "x86_64")]
     pub fn is_supported(self) -> bool {
         macro_rules! has {
@@ -55,7 +55,7 @@ impl Isa {
         }
     }
 
-    /// Whether this machine has the instructions.
+    /// True if this machine has the instructions.
     #[cfg(not(target_arch = "x86_64"))]
     pub fn is_supported(self) -> bool {
         self == Self::Scalar

@@ -1,7 +1,7 @@
 //! Watertight ray intersection: an 8-wide BVH over triangles, spheres, disks, cylinders and instances.
 //!
 //! A [`Bvh`] is built once from a slice of [`Primitive`]s and then answers two questions from any
-//! number of threads: [`Bvh::closest`] and [`Bvh::occluded`]; [`Bvh::each_hit`] tells all hits.
+//! number of threads: [`Bvh::closest`] and [`Bvh::occluded`]; [`Bvh::each_hit`] reports all hits.
 //! The two take a filter that decides which hits exist, so that cut-outs (alpha) cost one call per hit
 //! and nothing where they are not used ([`accept_all`]).
 //!
@@ -32,8 +32,8 @@
 //!   passes a triangle is decided *exactly* for the vertices as seen from the ray's origin
 //!   (the `exact` module), and boxes are tested conservatively (the `node` module).
 //! - **The same bits everywhere.** `t`, `u` and `v` are computed by one scalar function in `f64`.
-//!   SIMD code only discards what that function would certainly refuse, and tells that something is in
-//!   the way where it would certainly say so; the instruction set has no influence on an answer.
+//!   SIMD code only discards hits that this function would certainly refuse, and reports a hit without
+//!   it only where it would certainly find one; the instruction set has no influence on an answer.
 //! - **One answer.** Of hits at equal `t` the lowest `(instance, primitive)` wins, whatever the order
 //!   of traversal. The tree does not depend on the number of threads that build it.
 //! - **No allocation per ray**, and a stack whose bound is proved by the builder, for both levels.

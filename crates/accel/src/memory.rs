@@ -1,4 +1,4 @@
-//! Where the arrays of a tree lie.
+//! The memory of a tree's arrays.
 
 /// Arrays below this size do not ask for large pages: they would not fill many.
 const LARGE: usize = 1 << 20;
@@ -32,7 +32,7 @@ pub(crate) fn settled<T: Copy>(mut elements: Vec<T>) -> Vec<T> {
 /// Asks before the memory is touched. A refusal changes nothing.
 #[cfg(target_os = "linux")]
 fn ask_for_large_pages<T>(empty: &mut Vec<T>) {
-    /// Of the smallest pages; what it asks for must begin at a multiple.
+    /// Of the smallest pages; the range of the advice must begin at a multiple.
     const PAGE: usize = 4096;
     let begin: *mut u8 = empty.as_mut_ptr().cast();
     let skipped = begin.align_offset(PAGE);

@@ -5,12 +5,12 @@
 //!
 //! **Rounding.** Let `ε` be half of `f32::EPSILON`. `o·r`, its sum with `e` below and the product `near·r`
 //! lose at most `3ε|o·r|` together, which `e = 4ε|o·r|` makes up for: entries are computed with `o·r + e`,
-//! exits with `o·r - e`. In space that widens a box by `4ε|o|`. What is left is relative to the distance: an
+//! exits with `o·r - e`. In space that widens a box by `4ε|o|`. Other errors are relative to the distance: an
 //! entry is too late by at most `3ε` of it (reciprocal, product, difference), an exit too early by `4ε`;
 //! multiplying the exit by `1 + 16ε` makes up for both [Ize13].
 //!
 //! **Rays parallel to a plane, or nearly.** All that can be hit lies within `s` of the world's center, along
-//! each axis, hence at `t ≤ T = (s + |o|)/max|d|`. Where `|d| < δ/T`, the ray stays within `δ` of its
+//! each axis, hence at `t ≤ T = (s + |o|)/max|d|`. If `|d| < δ/T`, the ray stays within `δ` of its
 //! origin's plane all the while: such a component counts as `±δ/T`, entries are `T` earlier and exits `T`
 //! later. Then a slab that the ray is in stays open until `T`, and one that is `2δ` away is missed. The
 //! code takes `2⁻²³·(s + |o|)` for `δ`.
@@ -30,7 +30,7 @@ use crate::simd::F32x8;
 /// Children of a [`Node`].
 pub(crate) const WIDTH: usize = 8;
 
-/// `1 + 16ε`: what an exit is multiplied by.
+/// `1 + 16ε`: the factor of an exit.
 const WIDENING: f32 = 1.0 + 8.0 * f32::EPSILON;
 
 /// The largest distance at which a box must still be entered to find all hits up to `t_max`. Beyond a
@@ -170,7 +170,7 @@ impl<V: F32x8> BoxRay<V> {
 /// `T/δ`, times the direction's largest component.
 const STEEPEST: f32 = 1.001 * (1 << 23) as f32;
 
-/// What a [`BoxRay`] knows about slabs along one axis.
+/// The numbers of a [`BoxRay`] for slabs along one axis.
 struct AxisRay<V> {
     inverse: V,
     entry_offset: V,

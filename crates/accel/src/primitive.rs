@@ -1,4 +1,4 @@
-//! What a [`Bvh`](crate::Bvh) is built from.
+//! The primitives that a [`Bvh`](crate::Bvh) is built from.
 
 use glam::{DAffine3, DVec3, Vec3};
 

@@ -46,7 +46,7 @@ impl LocalLine {
     }
 }
 
-/// Where a line may pass a quadric: ascending `t`, NaN for none.
+/// The `t` at which a line may pass a quadric: ascending, NaN for none.
 pub(crate) type Roots = [f64; 2];
 
 impl Quadric {
@@ -114,7 +114,7 @@ pub(crate) fn to_f64(map: &glam::Affine3A) -> DAffine3 {
     )
 }
 
-/// The largest azimuth in `f64`; what is 2π up to rounding becomes 2π, lest a seam remain open.
+/// The largest azimuth in `f64`; an angle that is 2π up to rounding becomes 2π, lest a seam remain open.
 pub(crate) fn azimuth_limit(phi_max: f32) -> f64 {
     let phi_max = f64::from(phi_max);
     if phi_max > TAU - 1e-6 { TAU } else { phi_max }

@@ -4,12 +4,12 @@ use std::ops::ControlFlow;
 
 use crate::ray::Hit;
 
-/// What is asked about the hits of a ray.
+/// A question about the hits of a ray.
 pub(crate) trait Query {
-    /// Whether children are visited from near to far.
+    /// True if children are visited from near to far.
     const NEAR_FIRST: bool;
 
-    /// Whether it asks nothing of a hit but that there is one.
+    /// True if any hit answers it.
     const ANYTHING: bool = false;
 
     /// Takes a hit at most as far as the ray's `t_max`, which it may shorten.

@@ -5,7 +5,7 @@ use glam::Vec3;
 /// The points `origin + t·direction` with `t_min ≤ t ≤ t_max`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ray {
-    /// Where `t = 0` is.
+    /// The point at `t = 0`.
     pub origin: Vec3,
     /// Any length between 1e-37 and 1e37, which is the unit of `t`; in the space of an instance too.
     /// Components smaller than the smallest normal `f32` count as zero.
@@ -28,12 +28,12 @@ impl Ray {
     }
 }
 
-/// Where a ray met a primitive. All numbers are finite.
+/// A point where a ray met a primitive. All numbers are finite.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Hit {
     /// Distance from the ray's origin in units of its direction's length.
     pub t: f32,
-    /// What was hit: 0 for the primitives of the [`Bvh`](crate::Bvh) itself, `i + 1` for instance `i`.
+    /// Index of the instance: 0 for the primitives of the [`Bvh`](crate::Bvh) itself, `i + 1` for instance `i`.
     pub instance: u32,
     /// Index of the primitive in the slice that the [`Bvh`](crate::Bvh), or the instance's object,
     /// was built from.

@@ -2,8 +2,8 @@
 //!
 //! Kernels are written once, generic over [`Simd`]: triangles come four at a time ([`F32x4`]), boxes
 //! eight ([`F32x8`]). Implementations may round differently (some fuse a product and a sum), so
-//! kernels do not rely on it: what they compute only ever discards work conservatively, or accepts what
-//! is certain with the same error bound.
+//! kernels do not rely on it: they only ever discard work conservatively, or accept hits that are
+//! certain with the same error bound.
 
 use std::ops::{Add, Mul, Sub};
 
@@ -130,7 +130,7 @@ mod x86 {
     }
 
     declare!(
-        /// What every x86-64 machine has.
+        /// The instructions that every x86-64 machine has.
         Sse2, Sse4<false>, Pair<Sse4<false>>, "sse2"
     );
     declare!(

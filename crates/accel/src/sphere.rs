@@ -87,7 +87,7 @@ impl SphereTest {
     pub(crate) fn parameters(&self, p: DVec3) -> Option<[f64; 2]> {
         // Rounding left the point near the sphere: put it on.
         let p = p * (self.radius / p.length());
-        // What is not cut must not be lost to rounding at the poles.
+        // Points of an uncut pole must not be lost to rounding.
         let above = p.z >= self.z_min || self.z_min <= -self.radius;
         let below = p.z <= self.z_max || self.z_max >= self.radius;
         let phi = azimuth(p);

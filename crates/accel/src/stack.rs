@@ -1,4 +1,4 @@
-//! What a ray still has to visit.
+//! The stack of children that a ray still has to visit.
 
 use std::mem::MaybeUninit;
 

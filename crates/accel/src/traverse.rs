@@ -36,7 +36,7 @@ impl<Q: Query> Kernel for Ask<'_, Q> {
                 space: World,
                 ray,
             };
-            // What breaks off has nothing more to ask.
+            // A query that breaks off has nothing more to ask.
             let _ = walk.run::<S, Q>(query, |_, index, ray, query| {
                 let visit = VisitInstance {
                     bvh,
@@ -51,7 +51,7 @@ impl<Q: Query> Kernel for Ask<'_, Q> {
     }
 }
 
-/// Follows the ray through the object of instance number `index`, and tells its new `t_max`. A kernel
+/// Follows the ray through the object of instance number `index`, and returns its new `t_max`. A kernel
 /// of its own, so that trees without instances do not carry it in their loop.
 struct VisitInstance<'a, Q> {
     bvh: &'a Bvh,
@@ -89,10 +89,10 @@ struct Walk<'a, P> {
 }
 
 impl<P: Space> Walk<'_, P> {
-    /// Visits the tree, which has a root; `instance` is called for the instances on the way, and tells
+    /// Visits the tree, which has a root; `instance` is called for the instances on the way, and returns
     /// the `t_max` after them.
     ///
-    /// Rare leaves get a copy of the ray: what no other function has the address of stays in registers.
+    /// Rare leaves get a copy of the ray: a value whose address no other function has stays in registers.
     #[inline(always)]
     fn run<S: Simd, Q: Query>(
         &mut self,
@@ -204,7 +204,7 @@ trait Leaves: Space {
         ControlFlow::Continue(())
     }
 
-    /// Offers the hits of quadrics, and tells the `t_max` after them.
+    /// Offers the hits of quadrics, and returns the `t_max` after them.
     #[inline(never)]
     fn visit_quadrics<Q: Query>(
         &mut self,

@@ -32,14 +32,14 @@ use crate::simd::F32x4;
 /// Lanes of a [`TriangleBlock`].
 pub(crate) const LANES: usize = 4;
 
-/// What the filter knows of the triangles of a block, as masks of lanes.
+/// The triangles of a block that the filter keeps, as masks of lanes.
 #[derive(Clone, Copy)]
 pub(crate) struct Candidates {
-    /// What the ray may hit.
+    /// Triangles that the ray may hit.
     pub(crate) possible: u32,
-    /// What the ray's line certainly passes: by so much that `f64` needs no help to see it.
+    /// Triangles that the ray's line certainly passes: by so much that `f64` needs no help to see it.
     pub(crate) certain: u32,
-    /// Where `t`, if the line passes, is certainly within the limits.
+    /// Triangles whose `t`, if the line passes, is certainly within the limits.
     pub(crate) within: u32,
 }
 
@@ -156,8 +156,8 @@ impl TriangleBlock {
         }
     }
 
-    /// Where the ray's line passes the triangle in `lane`.
-    /// `certain`: of which lanes that is known.
+    /// The point where the ray's line passes the triangle in `lane`.
+    /// `certain`: the lanes known to be passed.
     #[inline(always)]
     pub(crate) fn pass<V: F32x4>(
         &self,

@@ -66,7 +66,7 @@ fn visit(what: &str, index: usize, visited: &mut [bool]) -> Result<(), String> {
     }
 }
 
-/// What has been reached so far.
+/// The parts of the tree reached so far.
 struct Walk<'a> {
     bvh: &'a Bvh,
     primitives: Vec<bool>,

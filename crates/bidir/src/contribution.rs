@@ -80,7 +80,13 @@ impl Contribution {
 
     #[inline]
     fn arriving(&self, value: Spectrum) -> Spectrum {
-        value.map(|lane| (f64::from(lane) / self.prob) as f32) * self.transmittance
+        // Most terms are traced for certain, and a division is dear.
+        let traced = if self.prob < 1.0 {
+            value.map(|lane| (f64::from(lane) / self.prob) as f32)
+        } else {
+            value
+        };
+        traced * self.transmittance
     }
 }
 

@@ -1,7 +1,7 @@
 //! Four lanes of light.
 //!
 //! Everything that travels along a path is a [`Spectrum`]: four `f32` lanes, multiplied and added
-//! lane by lane. What the lanes mean is decided once per render by a [`ColorModel`]; BSDFs, paths,
+//! lane by lane. A [`ColorModel`] decides the meaning of the lanes once per render; BSDFs, paths,
 //! weights and selection never ask. Only three edges convert, and each takes the sample's
 //! [`Wavelengths`]: emission, texture look-up and film development.
 
@@ -126,7 +126,7 @@ impl Div<f32> for Spectrum {
     }
 }
 
-/// A colour in linear Rec. 709 primaries: what scenes are described in and films are developed to.
+/// A colour in linear Rec. 709 primaries: the colours of scene descriptions and of developed films.
 pub type Rgb = [f32; 3];
 
 /// The luminance Y of a linear Rec. 709 colour.
@@ -142,7 +142,7 @@ pub fn luminance(rgb: Rgb) -> f32 {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Wavelengths([f32; 4]);
 
-/// What the lanes of a [`Spectrum`] mean in this render.
+/// The meaning of the lanes of a [`Spectrum`] in this render.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ColorModel {
     /// Linear Rec. 709 red, green and blue; the fourth lane is zero in all light.

@@ -1,4 +1,4 @@
-//! What the statistical tests share: random numbers, verdicts over many cases, and the χ² test of
+//! Shared parts of the statistical tests: random numbers, verdicts over many cases, and the χ² test of
 //! samples against the density that is claimed for them.
 //!
 //! Every battery keeps the chance of a false alarm at [`LEVEL`] over all of its cases, and shows
@@ -25,7 +25,7 @@ const LEVEL: f64 = 1e-3;
 /// The seed where the environment names none.
 const SEED: u64 = 1;
 
-/// What a bias must be for every case to notice it.
+/// The bias that every case must notice.
 const BIAS: f64 = 0.02;
 
 fn seed() -> u64 {
@@ -105,7 +105,7 @@ struct Case {
 }
 
 impl Case {
-    /// What is wrong with it, as a line. None: nothing.
+    /// The fault of the case, as a line. None: it has none.
     fn failure(&self, level: f64) -> Option<String> {
         let Self { name, p, p_biased } = self;
         if p.is_nan() || *p < level {
@@ -124,8 +124,8 @@ impl Battery {
         }
     }
 
-    /// Adds a χ² test: `draws` against `pdf`, a density over the grid's domain in its measure. What
-    /// the density lacks to 1 is the chance of a draw that is None.
+    /// Adds a χ² test: `draws` against `pdf`, a density over the grid's domain in its measure. The
+    /// deficit of the density to 1 is the chance of a draw that is None.
     #[track_caller]
     pub(crate) fn chi2(
         &mut self,

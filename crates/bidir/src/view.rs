@@ -6,13 +6,13 @@ use crate::film::FilmSettings;
 use crate::math::Vec3;
 use thiserror::Error;
 
-/// Whether textures are averaged over the footprint of a pixel.
+/// The textures that are averaged over the footprint of a pixel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum TextureFiltering {
-    /// Those that ask for it are.
+    /// The textures that ask for it.
     #[default]
     AsAsked,
-    /// None is: a pixel's samples average them.
+    /// No texture: a pixel's samples average them.
     Disabled,
 }
 

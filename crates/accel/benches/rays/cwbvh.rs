@@ -49,7 +49,7 @@ pub(crate) fn columns(scene: &Scene) -> Result<Vec<Column<'static>>, &'static st
 /// A tree with its triangles.
 struct CwBvhScene {
     tree: CwBvh,
-    /// In the order of the tree's leaves; what has been split occurs more than once.
+    /// In the order of the tree's leaves; a triangle that has been split occurs more than once.
     triangles: Vec<RtTriangle>,
     seconds: f64,
 }
@@ -73,7 +73,7 @@ impl CwBvhScene {
         }
     }
 
-    /// Whether the ray hits, after finding where.
+    /// Finds the hit of the ray. True if there is one.
     fn intersect(&self, ray: ObvhsRay) -> bool {
         let mut hit = RayHit::none();
         let distance = |ray: &ObvhsRay, i: usize| self.triangles[i].intersect(ray);
@@ -86,7 +86,7 @@ impl CwBvhScene {
         is_hit
     }
 
-    /// Whether anything is in the way.
+    /// True if anything is in the way.
     fn occluded(&self, ray: ObvhsRay) -> bool {
         let distance = |ray: &ObvhsRay, i: usize| self.triangles[i].intersect(ray);
         !self.tree.ray_traverse_miss(ray, distance)

@@ -1,7 +1,7 @@
-//! What rays cost, here and by others: `cargo bench -p bidir-accel --bench rays [-- ROUNDS [SCENE]]`.
+//! The cost of rays, here and by others: `cargo bench -p bidir-accel --bench rays [-- ROUNDS [SCENE]]`.
 //! Embree takes part where a library of it is found, obvhs with the feature `bench-peers`.
 //!
-//! The same rays for every engine, which take turns in each round, so that what else the machine does
+//! The same rays for every engine, which take turns in each round, so that other load of the machine
 //! slows all of them. Ratios are medians over rounds; see `docs/performance.md`.
 
 #![allow(clippy::print_stdout, reason = "a benchmark tells what it found")]

@@ -14,7 +14,7 @@ pub(crate) trait Engine: Sync {
     /// that there is one.
     fn count_hits(&self, question: Question, rays: &[Ray]) -> usize;
 
-    /// Bytes of memory, where the engine tells.
+    /// Bytes of memory, if the engine reports them.
     fn bytes(&self) -> usize;
 
     /// Seconds that building took.

@@ -13,7 +13,7 @@ pub(crate) struct Batch {
     pub(crate) rays: Vec<Ray>,
 }
 
-/// What a batch is asked for.
+/// The question that the rays of a batch ask.
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) enum Question {
     Closest,
@@ -94,7 +94,7 @@ fn primary(scene: &Scene, random: &mut Random) -> Vec<Ray> {
     (0..SIDE * SIDE).map(pixel).collect()
 }
 
-/// Where a ray hits, and the normal on its side.
+/// The point that a ray hits, and the normal on its side.
 fn surface(scene: &Scene, ours: &Ours, ray: &Ray) -> Option<[Vec3; 2]> {
     let hit = ours.bvh().closest(ray, accept_all)?;
     let [a, b, c] = world_triangle(scene, &hit);

@@ -101,13 +101,13 @@ impl Mesh {
     }
 }
 
-/// What is traced: a mesh in its place, or copies of one.
+/// The scene to be traced: a mesh in its place, or copies of one.
 pub(crate) struct Scene {
     pub(crate) name: &'static str,
     pub(crate) mesh: Mesh,
     /// Objects and their maps. All triangles of the scene, where there are some, are theirs and the mesh's.
     pub(crate) object: Option<(Mesh, Vec<DAffine3>)>,
-    /// Where the camera is, and what it looks at.
+    /// The points that the camera is at and looks at.
     pub(crate) view: [Vec3; 2],
     pub(crate) lights: Vec<Vec3>,
 }

@@ -52,7 +52,7 @@ fn seconds(engine: &dyn Engine, batch: &Batch, pool: &ThreadPool) -> f64 {
     total / threads as f64
 }
 
-/// For how long this thread has had a processor: what others do meanwhile does not count.
+/// Time that this thread has had a processor: the time of others does not count.
 #[cfg(target_os = "linux")]
 fn working_time() -> Duration {
     let mut time = libc::timespec {

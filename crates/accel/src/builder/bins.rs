@@ -13,7 +13,7 @@ use crate::triangle::LANES;
 
 const MAX_BINS: usize = 32;
 
-/// Where to divide a group.
+/// A division of a group.
 pub(super) struct Split {
     /// Expected tests, times the area of the group.
     pub(super) cost: f32,

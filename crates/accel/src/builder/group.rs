@@ -9,7 +9,7 @@ use crate::child::Child;
 use crate::primitive::Primitive;
 use crate::triangle::LANES;
 
-/// What a leaf can hold: primitives of one kind.
+/// The kinds of primitives; a leaf holds one kind.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Kind {
     Triangle,
@@ -17,7 +17,7 @@ pub(super) enum Kind {
     Instance,
 }
 
-/// What the builder knows of a primitive.
+/// A primitive, as the builder sees it.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Reference {
     pub(super) bounds: Aabb,
@@ -108,7 +108,7 @@ impl<'a> Group<'a> {
         self.area
     }
 
-    /// Whether to make a leaf: always if it is one test, never if a leaf has no room for it, and
+    /// True if a leaf is to be made: always if it is one test, never if a leaf has no room for it, and
     /// otherwise if testing all is expected to cost no more than a node and its children.
     /// A node's test counts as much as a block's.
     pub(super) fn is_leaf(&self) -> bool {
@@ -118,7 +118,7 @@ impl<'a> Group<'a> {
         })
     }
 
-    /// Whether to split it where the node that will test the parts is paid for already.
+    /// True if a split pays where the node that will test the parts is paid for already.
     pub(super) fn deserves_split(&self) -> bool {
         self.leaf_lanes().is_none_or(|lanes| {
             lanes > LANES as u32 && self.area * bins::blocks(lanes) > self.split_cost()
@@ -165,7 +165,7 @@ impl<'a> Group<'a> {
 /// depend on how they are cut, in the sign of a zero.
 const PART: usize = 1 << 15;
 
-/// What `look` tells of the references: of all at once, or of parts that are merged in order.
+/// The result of `look` for the references: of all at once, or of parts that are merged in order.
 pub(super) fn summed<T: Send>(
     references: &[Reference],
     look: impl Fn(&[Reference]) -> T + Sync + Send,

@@ -118,7 +118,7 @@ fn no_hit_is_culled_by_the_world_box() {
         let back = [0.0, 1.0][round / 9 % 2] * (linear * offset);
         let world_from_object =
             DAffine3::from_mat3_translation(linear, 10.0 * vector(&mut state) - back);
-        // What local coordinates are rounded to.
+        // The rounding of local coordinates.
         let blur = 1e-7 * (1.0 + offset.length());
         let options = BuildOptions::default();
         let object = Arc::new(Bvh::build(&primitives, &options).expect("finite"));

@@ -74,7 +74,7 @@ impl Kernel for Eight<'_> {
             p.mul_sub(q, zero.0).over(&low),
             r.mul_sub(s, zero.1).over(&low),
         );
-        // What comparisons are for.
+        // The operands that comparisons are defined for.
         let ordered = |x: f32| !x.is_nan() && x.to_bits() != (-0.0_f32).to_bits();
         if lanes.iter().all(|&x| ordered(x)) && ordered(b) && b >= 0.0 {
             check_words(p.min(q).over(&low), r.min(s).over(&low));

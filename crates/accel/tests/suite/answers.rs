@@ -160,7 +160,7 @@ fn filtered_primitives_do_not_exist() {
     let (bvh, single) = (build(&primitives), Single::new(&primitives));
     for _ in 0..4000 {
         let ray = random.ray();
-        // What is refused: some primitives, or parts of all.
+        // Filters refuse some primitives, or parts of all.
         let rejected = random.below(3) as u32;
         let by_primitive = |hit: &bidir_accel::Hit| hit.primitive % 3 != rejected;
         let by_place = |hit: &bidir_accel::Hit| hit.u + hit.v > 0.3;

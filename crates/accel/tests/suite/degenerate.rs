@@ -109,7 +109,7 @@ fn wild_float() -> impl Strategy<Value = f32> {
         -2.0f32..2.0,
         Just(0.0f32),
         Just(-0.0f32),
-        // Areas shall be finite; a filter would reject too many.
+        // Areas must be finite; a filter would reject too many.
         prop::num::f32::NORMAL.prop_map(|x| if x.abs() < 1e30 { x } else { 1.0 / x }),
         prop::num::f32::SUBNORMAL,
     ]

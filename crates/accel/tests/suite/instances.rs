@@ -166,7 +166,7 @@ fn closed_objects_do_not_leak() {
                 let local = a.lerp(b, [0.0, 0.5, random.unit()][i % 3]);
                 let target = map.transform_point3(local.as_dvec3()).as_vec3();
                 let ray = Ray::new(origin, target - origin);
-                // At 10⁵ the world's numbers no longer tell the inside from the outside of small ones.
+                // At 10⁵ the world's numbers no longer separate the inside of small ones from the outside.
                 assert!(trees.is_hit(&ray), "{ray:?} {map:?}");
             }
         }

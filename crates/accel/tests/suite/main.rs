@@ -1,4 +1,4 @@
-//! What the crate promises, seen from outside.
+//! Tests of the crate's promises, from outside.
 
 #![allow(
     clippy::disallowed_methods,

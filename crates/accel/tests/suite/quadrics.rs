@@ -104,7 +104,7 @@ fn roots(
     finite.map(|t| (t, is_kept(t))).collect()
 }
 
-/// Whether a surface point moves in or out of the kept part with a change of `1e-4`.
+/// True if a surface point moves in or out of the kept part with a change of `1e-4`.
 fn is_near_a_cut(primitive: &Primitive, o: DVec3, d: DVec3) -> bool {
     let shifts = [
         DVec3::X,

@@ -39,7 +39,7 @@ impl Trees {
         expected
     }
 
-    /// Whether there is any hit, by one tree and one question, other ones with every `turn`.
+    /// True if there is any hit, by one tree and one question, other ones with every `turn`.
     pub(crate) fn is_hit_in_turn(&self, turn: usize, ray: &Ray) -> bool {
         let bvh = &self.0[turn % self.0.len()];
         match turn / self.0.len() % 3 {
@@ -49,7 +49,7 @@ impl Trees {
         }
     }
 
-    /// Whether there is any hit, without a filter.
+    /// True if there is any hit, without a filter.
     #[track_caller]
     pub(crate) fn is_blocked(&self, ray: &Ray) -> bool {
         let expected = self.0[0].is_blocked(ray);
@@ -59,7 +59,7 @@ impl Trees {
         expected
     }
 
-    /// Whether anything is in the way, as all questions must say.
+    /// True if anything is in the way, by all questions, which must agree.
     #[track_caller]
     pub(crate) fn is_hit(&self, ray: &Ray) -> bool {
         let expected = self.closest(ray, accept_all).is_some();

@@ -9,7 +9,7 @@
 //! M is what the metal reflects more than once, between whiles thrown back by the interface. It is
 //! E(wo) E(wi) / (π Ē) · Σ_k m_k F̄^k, k ≥ 2, as if it had forgotten where it came from
 //! \[Kulla17\]; E, what white metal so reflects, and m_k, the share of k reflections, are tabulated by a
-//! walk ([`Reflections`]). Where both surfaces are smooth there is one mirrored
+//! walk ([`Reflections`]). If both surfaces are smooth, there is one mirrored
 //! direction, and the sum over all reflections is exact.
 //!
 //! Light that the layer scatters (ϖ > 0) goes on as if it had not been.
@@ -106,8 +106,8 @@ impl CoatedConductor {
         self.facets.is_smooth()
     }
 
-    /// What leaves along the mirrored direction where all is smooth: F + T² a F_m / (1 - F a F_m), a
-    /// what the layer leaves of one trip.
+    /// The reflectance along the mirrored direction, if all is smooth: F + T² a F_m / (1 - F a F_m),
+    /// with a the part that the layer leaves after one trip.
     #[inline]
     fn mirror_reflectance(&self, wo: Vec3) -> Spectrum {
         let reflected = self.coat.reflectance(wo);

@@ -25,13 +25,13 @@ pub struct CoatedDiffuse {
     thrown: Spectrum,
     /// e.
     shape: Curve<SHAPES>,
-    /// ∫ T cosθ dω: what of the base leaves a clear layer.
+    /// ∫ T cosθ dω: the part of the base's light that leaves a clear layer.
     escape: f32,
     /// About the part of entering light that leaves again, by the brightest lane.
     bright: f32,
 }
 
-/// What fills a layer.
+/// The medium that fills a layer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Filling {
     /// The optical depth of the layer, scattering and absorption together.

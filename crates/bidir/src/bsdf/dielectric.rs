@@ -48,7 +48,7 @@ impl Dielectric {
         if w.z > 0.0 { 1.0 } else { self.eta }
     }
 
-    /// What crossing does to the quantity of `mode` that a walk from `wo` carries.
+    /// The factor of a crossing on the quantity of `mode` that a walk from `wo` carries.
     #[inline]
     pub(super) fn crossing_scale(&self, wo: Vec3, mode: TransportMode) -> f32 {
         match mode {

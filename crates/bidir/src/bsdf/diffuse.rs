@@ -26,7 +26,7 @@ impl Diffuse {
     pub(super) fn sample(&self, wo: Vec3, u: Vec2) -> Option<BsdfSample> {
         let mut wi = warp::cosine_hemisphere(u);
         wi.z = wi.z.copysign(wo.z);
-        // At the rim the density is zero and says nothing.
+        // At the rim the density is zero and cannot be used.
         if wi.z == 0.0 || wo.z == 0.0 || self.reflectance.is_black() {
             return None;
         }

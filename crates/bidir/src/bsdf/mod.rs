@@ -2,8 +2,8 @@
 //!
 //! A [`Bsdf`] is the material at one point with its textures looked up: a small `Copy` value. It
 //! works in the local shading frame: z is the shading normal `n_s`, and both `wo` and `wi` point away
-//! from the surface. `wo` is the known direction, `wi` the sampled one; which of them the light
-//! comes from is told by [`TransportMode`].
+//! from the surface. `wo` is the known direction, `wi` the sampled one; [`TransportMode`] decides
+//! which of them the light comes from.
 //!
 //! - `eval(wo, wi)` is f, without the cosine. Unit: 1/sr. Zero for Dirac distributions.
 //! - `sample(wo)` draws `wi`, and returns `weight = f·|cosθ_i| / density`.
@@ -21,8 +21,8 @@
 //! all that multiple importance sampling needs.
 //!
 //! **Mixed lobes.** A smooth coat reflects by a Dirac lobe, and its base does not. `eval` and `pdf` are
-//! those of the other lobes, `pdf` with the probability of drawing them, and each sample says which
-//! kind it is. Almost no path that the one kind makes is made by the other, so on every path the
+//! those of the other lobes, `pdf` with the probability of drawing them, and each sample is marked
+//! with its kind. Almost no path that the one kind makes is made by the other, so on every path the
 //! vertex is the one or the other (docs/derivations/mis-weights.md).
 //!
 //! **Adding one**: a file with the model and its tests, a variant here with an arm in each match (the
@@ -80,7 +80,7 @@ impl TransportMode {
 pub struct BsdfSample {
     /// The sampled direction. Space: local.
     pub wi: Vec3,
-    /// f·|cosθ_i| / density: what throughput is multiplied by.
+    /// f·|cosθ_i| / density: the factor of throughput.
     pub weight: Spectrum,
     /// The density of `wi`. Measure: solid angle, 1/sr; for a Dirac distribution the coefficient
     /// `probability · η² · |cosθ_i|` of the module's page.
@@ -181,7 +181,7 @@ impl Bsdf {
             Self::CoatedConductor(bsdf) => bsdf.sample(wo, u_lobe(), u),
             Self::Principled(bsdf) => bsdf.sample(wo, mode, u_lobe(), u),
         };
-        // Where the density underflows there is no sample.
+        // If the density underflows, there is no sample.
         sample.filter(|sample| sample.pdf > 0.0)
     }
 
@@ -228,8 +228,8 @@ impl Bsdf {
         }
     }
 
-    /// About which part of the light that arrives along `wo` is scattered: what path roulette
-    /// goes by. Deterministic in (`self`, `wo`), and positive where anything is scattered, but no
+    /// About which part of the light that arrives along `wo` is scattered, for path roulette.
+    /// Deterministic in (`self`, `wo`), and positive where anything is scattered, but no
     /// exact integral. Range: `[0, 1]` per lane.
     #[inline]
     pub fn albedo(&self, wo: Vec3) -> Spectrum {

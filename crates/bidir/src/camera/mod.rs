@@ -1,4 +1,4 @@
-//! Where paths end: the camera.
+//! The camera, at which paths end.
 //!
 //! The film's plane is measured in **raster** units: one pixel is one unit, (0, 0) the top left
 //! corner. Importance and densities count per raster area, so that they do not change with a crop
@@ -43,7 +43,7 @@ pub struct LensSample {
 /// A ray that leaves the lens.
 #[derive(Clone, Copy, Debug)]
 pub struct CameraRay {
-    /// Where it leaves.
+    /// The lens point that it leaves.
     pub lens: LensSample,
     /// The point from which it looks: the lens point, where that is finite.
     pub origin: Vec3,
@@ -72,7 +72,7 @@ impl Camera {
         }
     }
 
-    /// Where it stands, and which way it looks.
+    /// Its position and the directions of its axes.
     pub fn pose(&self) -> Pose {
         match self {
             Self::Perspective(camera) => camera.pose,
@@ -169,7 +169,7 @@ impl Camera {
         }
     }
 
-    /// How wide a pixel is at the point `p`, across the view: what textures there are averaged over.
+    /// How wide a pixel is at the point `p`, across the view: textures there are averaged over it.
     /// A function of the point alone, of any point of the world, seen or not. Unit: m.
     #[inline]
     pub fn pixel_width(&self, p: Vec3) -> f32 {

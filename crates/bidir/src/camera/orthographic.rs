@@ -10,7 +10,7 @@ use super::{CameraRay, LensSample};
 use crate::locus::Locus;
 use crate::math::{Affine3A, Vec2, Vec3};
 
-/// What an [`Orthographic`] camera is made of.
+/// The settings of an [`Orthographic`] camera.
 #[derive(Clone, Copy, Debug)]
 pub struct OrthographicSettings {
     /// The camera's place: x right, y up, z forward. Even scaling and mirroring are allowed.
@@ -21,7 +21,7 @@ pub struct OrthographicSettings {
     pub screen: [Vec2; 2],
 }
 
-/// Parallel rays from a plane. What lies behind the plane is not seen.
+/// Parallel rays from a plane. Surfaces behind the plane are not seen.
 #[derive(Clone, Copy, Debug)]
 pub struct Orthographic {
     pub(super) pose: Pose,

@@ -9,7 +9,7 @@ use super::{CameraRay, LensSample};
 use crate::locus::Locus;
 use crate::math::{Affine3A, PI, Vec2, Vec3, sqr, warp};
 
-/// What a [`Perspective`] camera is made of.
+/// The settings of a [`Perspective`] camera.
 #[derive(Clone, Copy, Debug)]
 pub struct PerspectiveSettings {
     /// The camera's place: x right, y up, z forward. Even scaling and mirroring are allowed.

@@ -1,4 +1,4 @@
-//! Where a camera stands, and which way it looks. Moves keep the frame's handedness: a mirrored
+//! The position and the axes of a camera. Moves keep the frame's handedness: a mirrored
 //! camera stays mirrored, and its right is the picture's right.
 
 use crate::math::{Affine3A, PI, Vec3, sin_cos, sqr};
@@ -11,7 +11,7 @@ const STEEPEST: f32 = 89.0 / 180.0 * PI;
 /// left-handed frame in the world.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose {
-    /// Where it stands.
+    /// Its position.
     pub origin: Vec3,
     /// The picture's right.
     pub right: Vec3,

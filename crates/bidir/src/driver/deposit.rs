@@ -7,7 +7,7 @@ use crate::path::{PathContext, Strategy};
 use crate::spectrum::{Rgb, Spectrum, luminance};
 use crate::stats::Stats;
 
-/// Where the contributions of a sample go.
+/// The destination of the contributions of a sample.
 pub(super) struct Deposit<'a> {
     pub(super) context: &'a PathContext<'a>,
     pub(super) layers: &'a Layers,
@@ -125,8 +125,8 @@ impl Deposit<'_> {
         f64::from(luminance(self.rgb(contribution.value())))
     }
 
-    /// What a contribution adds to which raw image. None: it has none, or the value is counted as
-    /// dropped from it.
+    /// The raw image of a contribution, and the value added to it. None: it has none, or the value is
+    /// counted as dropped from it.
     fn raw(&self, contribution: &Contribution, stats: &mut Stats) -> Option<(usize, Rgb)> {
         let part = self.layers.raw_part(contribution.term.strategy)?;
         let Some(value) = contribution.unweighted() else {

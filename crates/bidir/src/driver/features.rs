@@ -1,7 +1,7 @@
-//! Images of camera samples: what the first surface is like, and what the sample cost.
+//! Images of camera samples: features of the first surface, and the cost of the sample.
 //!
 //! All are plain numbers of one sample; the film makes means or sums of them. The camera subpath
-//! tells the surface; an estimator that walks none is given one ray for it.
+//! finds the surface; an estimator that walks none is given one ray for it.
 
 use super::Progress;
 use crate::film::{Aov, AovKind, Layers};
@@ -12,7 +12,7 @@ use crate::sampler::{Dimension, Purpose};
 use crate::scene::Chances;
 use crate::spectrum::Spectrum;
 
-/// What a sample has cost so far in its thread: looked at before and after.
+/// The cost of a sample so far in its thread: read before and after it.
 pub(super) struct Meter {
     rays: u64,
     nanoseconds: u64,

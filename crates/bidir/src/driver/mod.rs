@@ -5,7 +5,7 @@
 //! (settings, next pass, film, counters) and nothing hidden. Whatever the number of threads, the
 //! same passes give the same bits.
 //!
-//! A host that wants a time budget tells [`Budget`] its own time between passes: there is no clock here.
+//! A host that wants a time budget gives [`Budget`] its own time between passes: there is no clock here.
 
 mod budget;
 mod deposit;
@@ -32,7 +32,7 @@ use crate::stats::Clock;
 use crate::view::View;
 use thiserror::Error;
 
-/// What a render may use; nothing here changes an image.
+/// The resources that a render may use; nothing here changes an image.
 #[derive(Clone, Copy, Debug)]
 pub struct Resources {
     /// Threads; 0 is one per processor, and [`Threads`] has the most.
@@ -58,7 +58,7 @@ impl Resources {
     pub const DEFAULT_FILM_MEMORY: u64 = 16 << 30;
 }
 
-/// Told of progress by all threads, and asked whether to go on.
+/// Receives progress from all threads, and decides if the render goes on.
 pub trait Progress: Sync {
     /// Some `samples` more are done.
     fn advance(&self, samples: u64);

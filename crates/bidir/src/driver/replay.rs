@@ -1,5 +1,5 @@
-//! One sample again, with every term of its estimate: what it is worth, how likely it was to be
-//! traced, whether anything is in its way, and what came of it.
+//! One sample again, with every term of its estimate: its value, its probability of being traced, its
+//! visibility, and its outcome.
 //!
 //! Nothing here adds to a film. Visibility of what was not traced is found afterwards, by rays that
 //! are not counted.
@@ -30,9 +30,9 @@ pub struct Replay {
 /// A term of the estimate, and what came of it.
 #[derive(Clone, Copy, Debug)]
 pub struct ReplayedTerm {
-    /// What the strategy gives.
+    /// The term, as its strategy gives it.
     pub term: Term,
-    /// What was done with it.
+    /// Its outcome.
     pub fate: Fate,
     /// The ends of its shadow ray, light and camera. None for s = 0, which needs none.
     pub ends: Option<[Locus; 2]>,
@@ -43,21 +43,21 @@ pub struct ReplayedTerm {
     pub transmittance: f32,
     /// For t = 1: where it lands if it is visible.
     pub landing: Option<Landing>,
-    /// What it added to a pixel of an image of one pass.
+    /// The value it added to a pixel of an image of one pass.
     pub added: Spectrum,
 }
 
 /// How a candidate was chosen from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Selection {
-    /// What candidates are compared by: the luminance of the weighted contribution, times √V̂ where
-    /// visibility is learnt.
+    /// The score that candidates are compared by: the luminance of the weighted contribution, times √V̂ if
+    /// visibility is learned.
     pub score: f32,
     /// The probability π of being traced.
     pub prob: f64,
 }
 
-/// Where a contribution to the light image lands.
+/// The place of a contribution to the light image.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Landing {
     /// The point on the film. Unit: pixels.
@@ -156,7 +156,7 @@ impl ReplayedTerm {
     }
 }
 
-/// Where a splat lands, and what makes of its value a part of a pixel in an image of one pass.
+/// The place of a splat, and the factor that turns its value into its part of a pixel in one pass's image.
 fn land(film: &FilmSettings, place: SplatPlace) -> (Landing, f32) {
     let picked = film.pick_pixel(place);
     let landing = Landing {

@@ -234,7 +234,7 @@ impl<'a> Session<'a> {
         }
     }
 
-    /// Where the contributions of the sample at `place` go.
+    /// The destination of the contributions of the sample at `place`.
     fn deposit<'d>(&'d self, context: &'d PathContext<'d>, place: u64) -> Deposit<'d> {
         Deposit {
             context,
@@ -335,7 +335,7 @@ impl<'a> Session<'a> {
         &self.settings
     }
 
-    /// What was rendered so far.
+    /// The film rendered so far.
     pub fn film(&self) -> &Film {
         &self.film
     }
@@ -357,7 +357,7 @@ impl<'a> Session<'a> {
         passes >= 16 && passes.is_multiple_of(1 << (passes.ilog2() - 3))
     }
 
-    /// What was counted so far, without training.
+    /// The counters so far, without training.
     pub fn stats(&self) -> &Stats {
         &self.stats
     }
@@ -368,7 +368,7 @@ impl<'a> Session<'a> {
         &self.stage_times
     }
 
-    /// What was learnt before the first pass, if anything had to be.
+    /// The training before the first pass, if anything had to be learned.
     pub fn training(&self) -> Option<&Training> {
         self.training.as_ref()
     }

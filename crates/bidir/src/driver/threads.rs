@@ -149,7 +149,7 @@ fn recruit() -> io::Result<Sender<ThreadBuilder>> {
 }
 
 /// Makes the pool that everything outside of a session runs on; once in a process, before anything
-/// else is computed. Where no thread can be started, the calling thread becomes a pool of its own.
+/// else is computed. If no thread can be started, the calling thread becomes a pool of its own.
 ///
 /// None: there are as many threads as were asked for.
 pub fn start_pool(threads: Threads) -> Option<Shortage> {

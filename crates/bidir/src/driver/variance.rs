@@ -18,7 +18,7 @@ use super::Session;
 use crate::path::Strategy;
 use crate::spectrum::luminance;
 
-/// What a strategy adds to the picture in one pass.
+/// The moments of the values that a strategy adds to the picture in one pass.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StrategyMoments {
     /// The strategy.

@@ -71,7 +71,7 @@ impl Film {
     /// The images beside the picture: those of [`Layers::aovs`](super::Layers::aovs) in that order,
     /// then the parts of the picture.
     ///
-    /// Parts are exposed as the picture is; of the others [`AovKind`] tells what is divided by what.
+    /// Parts are exposed as the picture is; for the others [`AovKind`] gives numerator and divisor.
     pub fn develop_layers(&self) -> Vec<LayerImage> {
         let aovs = self.layers.aovs().iter().flat_map(|&aov| self.aov(aov));
         let names = self.layers.part_names().enumerate();

@@ -194,7 +194,7 @@ fn tent(u: f32) -> f32 {
 struct Shape {
     kind: FilterKind,
     radius: f32,
-    /// What a Gaussian is lowered by: its value at the radius.
+    /// The value of a Gaussian at the radius, which it is lowered by.
     rim: f32,
 }
 

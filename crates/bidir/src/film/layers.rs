@@ -22,8 +22,8 @@ pub(super) const PICTURE_SUMS: usize = 9;
 /// The sums of a pixel of a part: camera samples and splats.
 pub(super) const PART_SUMS: usize = 6;
 
-/// An image beside the picture: what the first surface is like that camera samples meet, how
-/// certain the picture is, and what it cost. In film files and on the command line by
+/// An image beside the picture: features of the first surface that camera samples meet, the
+/// certainty of the picture, and its cost. In film files and on the command line by
 /// [`NAMES`](Self::NAMES).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Aov {
@@ -51,7 +51,7 @@ pub enum Aov {
     Rays,
 }
 
-/// What makes the values of an [`Aov`].
+/// The source of the values of an [`Aov`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AovKind {
     /// A mean over the camera samples that meet a surface; 0 where none does.
@@ -60,11 +60,11 @@ pub enum AovKind {
     Sample,
     /// A sum over all camera samples.
     Cost,
-    /// The sums of the picture tell it.
+    /// Computed from the sums of the picture.
     Film,
 }
 
-/// What an [`Aov`] becomes in an image file.
+/// The layer and channels of an [`Aov`] in an image file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Channels {
     /// The layer's name; empty for channels that stand alone.
@@ -109,7 +109,7 @@ impl Aov {
         }
     }
 
-    /// How many sums a pixel has for it; none where other sums tell it already.
+    /// The number of sums that a pixel has for it; none if it is computed from other sums.
     pub fn sums(self) -> usize {
         match self {
             Self::Albedo | Self::Position | Self::Normal | Self::ShadingNormal => 3,
@@ -118,7 +118,7 @@ impl Aov {
         }
     }
 
-    /// What makes its values.
+    /// The source of its values.
     pub fn kind(self) -> AovKind {
         match self {
             Self::Position | Self::Normal | Self::ShadingNormal | Self::Depth => AovKind::Surface,
@@ -129,7 +129,7 @@ impl Aov {
     }
 }
 
-/// What a film keeps beside the picture.
+/// The images that a film keeps beside the picture.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Layers {
     aovs: Vec<Aov>,
@@ -215,7 +215,7 @@ impl Layers {
         self.aovs.iter().map(|aov| aov.sums()).sum()
     }
 
-    /// Where the sums of `aov` begin among [`Self::features`]. None: it is not kept.
+    /// The index of the first sum of `aov` among [`Self::features`]. None: it is not kept.
     pub fn feature(&self, aov: Aov) -> Option<usize> {
         let at = self.aovs.iter().position(|&kept| kept == aov)?;
         Some(self.aovs[..at].iter().map(|aov| aov.sums()).sum())
@@ -241,7 +241,7 @@ impl Layers {
         self.light_groups.len() + strategies
     }
 
-    /// Where `strategy` is among those that have images. None: it has none.
+    /// The index of `strategy` among those that have images. None: it has none.
     #[inline]
     fn strategy(&self, strategy: Strategy) -> Option<usize> {
         let n = usize::from(strategy.s + strategy.t);

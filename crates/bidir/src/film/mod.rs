@@ -1,4 +1,4 @@
-//! Where contributions add up, exactly.
+//! The film, which adds up contributions exactly.
 //!
 //! Two layers, as bidirectional estimators need them: **camera samples**, normalised per pixel and
 //! pass, and the **light image**, whose splats may land anywhere and are normalised by the number of
@@ -40,7 +40,7 @@ use rayon::prelude::{IndexedParallelIterator, ParallelIterator, ParallelSliceMut
 use std::slice::ChunksExact;
 use thiserror::Error;
 
-/// Where the sums of a pixel begin: camera samples in [`fixed::VALUE_SCALE`].
+/// The index of a pixel's first sum: camera samples in [`fixed::VALUE_SCALE`].
 const CAMERA: usize = 0;
 /// Splats, in [`fixed::VALUE_SCALE`].
 const LIGHT: usize = 3;
@@ -103,7 +103,7 @@ impl Film {
         })
     }
 
-    /// A film as it was stored: `sums` as [`Self::sums`] tells them.
+    /// A film as it was stored, with `sums` in the form of [`Self::sums`].
     ///
     /// Errors: there are not as many of them as the crop's pixels have.
     pub fn restore(
@@ -141,7 +141,7 @@ impl Film {
         Ok(copy)
     }
 
-    /// What a film costs, the running pass included. Unit: bytes.
+    /// The memory of a film, the running pass included. Unit: bytes.
     pub fn memory(settings: &FilmSettings, layers: &Layers) -> u64 {
         let of_pixel = layers.sums() * size_of::<i128>() + PassBuffer::bytes_per_pixel(layers);
         settings.crop.area().saturating_mul(of_pixel as u64)
@@ -152,7 +152,7 @@ impl Film {
         &self.settings
     }
 
-    /// What is kept beside the picture.
+    /// The images kept beside the picture.
     pub fn layers(&self) -> &Layers {
         &self.layers
     }

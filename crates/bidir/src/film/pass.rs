@@ -107,7 +107,7 @@ impl PassBuffer {
     }
 
     /// Stores the features of the camera sample of pixel `i`, in the order of
-    /// [`Layers::aovs`]. What is beyond [`fixed::LARGEST_CONTRIBUTION`] is cut there; NaN becomes 0.
+    /// [`Layers::aovs`]. Values beyond [`fixed::LARGEST_CONTRIBUTION`] are cut there; NaN becomes 0.
     pub fn set_features(&self, i: usize, values: impl Iterator<Item = f32>) {
         let features = self.layers[0];
         let cells = &self.features[i * features..(i + 1) * features];

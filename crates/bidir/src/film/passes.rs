@@ -77,7 +77,7 @@ impl PassSet {
         );
         while let (Some(x), Some(y)) = (a.peek(), b.peek()) {
             let both = x.start.max(y.start)..x.end.min(y.end);
-            // What ends first meets nothing more of the other.
+            // The range that ends first meets nothing more of the other.
             if x.end < y.end {
                 a.next();
             } else {

@@ -1,4 +1,4 @@
-//! What a sensor makes of light before the film sums it: balance · RGB, cut at a limit.
+//! The response of a sensor to light before the film sums it: balance · RGB, cut at a limit.
 
 use crate::math::{Mat3, Vec3};
 use crate::spectrum::Rgb;
@@ -6,7 +6,7 @@ use crate::spectrum::Rgb;
 /// How a film responds to light. The default takes it as it is.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Sensor {
-    /// White balance: what linear Rec. 709 is multiplied by. None: nothing.
+    /// White balance: the matrix that multiplies linear Rec. 709. None: the identity.
     pub balance: Option<Mat3>,
     /// The largest value of a channel in one camera sample, or in one contribution to the light
     /// image, before exposure: brighter ones keep their hue. None: there is no limit.

@@ -1,4 +1,4 @@
-//! What a film is before anything is rendered: its pixels, crop, filter and exposure. Lengths are
+//! The settings of a film, fixed before rendering: pixels, crop, filter and exposure. Lengths are
 //! in pixels, (0, 0) the top left one of the whole film, whatever the crop.
 
 use super::{Filter, Sensor};
@@ -59,9 +59,9 @@ pub struct FilmSettings {
     pub crop: PixelRect,
     /// The pixel filter.
     pub filter: Filter,
-    /// What developed values are multiplied by.
+    /// The factor on developed values.
     pub exposure: f32,
-    /// What sums are made of.
+    /// The response to light before it is summed.
     pub sensor: Sensor,
 }
 
@@ -89,14 +89,14 @@ impl FilmSettings {
         Some((self.crop.index(x, y)?, weight))
     }
 
-    /// Light subpaths of a pass where each sample has its own: one for each pixel that is rendered. Where
+    /// Light subpaths of a pass where each sample has its own: one for each pixel that is rendered. If
     /// k samples share one there are 1/k as many, and weights and the light image count with that.
     pub fn light_paths(&self) -> u64 {
         self.crop.area()
     }
 }
 
-/// Where a contribution to the light image lands.
+/// The place of a contribution to the light image.
 #[derive(Clone, Copy, Debug)]
 pub struct SplatPlace {
     /// The point on the film. Unit: pixels.

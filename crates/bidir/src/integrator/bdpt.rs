@@ -39,7 +39,7 @@ impl Integrator for Bdpt {
 }
 
 /// s = 0: the camera subpath hits lights, or escapes to those at infinity. No shadow rays.
-#[inline(never)] // Profiles shall show the stages, each of which is called once.
+#[inline(never)] // So that profiles show the stages, each of which is called once.
 pub(super) fn hits(context: &PathContext<'_>, sample: &Sample, workspace: &mut Workspace) {
     let count = workspace.camera.vertices.len();
     for i in 1..count {

@@ -1,4 +1,4 @@
-//! What estimators cannot see: light paths that none of their strategies makes, and those that only
+//! Light paths that estimators miss: those that none of their strategies makes, and those that only
 //! chance finds.
 //!
 //! In Heckbert's words, with S for a Dirac scattering, D for any other, L for a light and E for the
@@ -85,7 +85,7 @@ impl BlindSpot {
         }
     }
 
-    /// What it is, as a phrase.
+    /// The blind spot, as a phrase.
     pub const fn description(self) -> &'static str {
         match self {
             Self::Caustics => "caustics of point, spot, distant and hidden lights (L S+ D)",
@@ -108,8 +108,8 @@ impl BlindSpot {
     }
 }
 
-/// The blind spots of an estimator with all its strategies, in a scene. What is specular at a few points
-/// only, or may be by the bounds of its textures, counts as mirrors and clear glass do.
+/// The blind spots of an estimator with all its strategies, in a scene. A material that is specular at a few
+/// points only, or may be by the bounds of its textures, counts as mirrors and clear glass do.
 pub fn blind_spots(scene: &Scene, view: &View, integrator: IntegratorKind) -> Vec<BlindSpot> {
     let lights = scene.lights();
     let has_specular = scene.materials_of_surfaces().any(Material::may_be_specular);

@@ -8,7 +8,7 @@ use crate::film::SplatPlace;
 use crate::locus::Locus;
 use crate::spectrum::Spectrum;
 
-/// What links the two subpaths of a term.
+/// The link between the two subpaths of a term.
 #[derive(Clone, Copy, Debug)]
 pub enum Link {
     /// The camera walk, which came to the light by itself: s = 0.
@@ -29,7 +29,7 @@ impl Link {
     }
 }
 
-/// What was done with a term.
+/// The outcome of a term.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fate {
     /// Its shadow ray was not traced.
@@ -49,9 +49,9 @@ pub struct Entry {
     pub term: Term,
     /// How its subpaths come together.
     pub link: Link,
-    /// What was done with it.
+    /// Its outcome.
     pub fate: Fate,
-    /// What was added to the sample's value, or to a splat. Zero unless [`Fate::Added`].
+    /// The part added to the sample's value, or to a splat. Zero unless [`Fate::Added`].
     pub added: Spectrum,
 }
 

@@ -93,7 +93,7 @@ pub(super) fn light_image<'a>(
     })
 }
 
-/// Where a camera sees the vertex `end` from: the lens point, or the place of a parallel ray on the
+/// The point that a camera sees the vertex `end` from: the lens point, or the place of a parallel ray on the
 /// camera's plane, behind which nothing is in its way.
 fn camera_end(context: &PathContext<'_>, lens: &Vertex, end: &Vertex) -> Locus {
     if !lens.locus.is_infinite() {

@@ -1,4 +1,4 @@
-//! Estimators: what one sample does.
+//! Estimators: how one sample is computed.
 //!
 //! An [`Integrator`] makes the contributions of one camera sample and of the light subpath that
 //! goes with it. It knows no film: contributions go into the [`Workspace`], from where the driver
@@ -37,7 +37,7 @@ pub trait Integrator: Sync + Send {
     /// Adds the contributions of one sample to the workspace, which is cleared first.
     fn sample(&self, context: &PathContext<'_>, sample: &Sample, workspace: &mut Workspace);
 
-    /// What is done before the samples of a group, where they share light subpaths. None: each has its
+    /// The step before the samples of a group, if they share light subpaths. None: each has its
     /// own.
     fn shared_light(&self) -> Option<&dyn SharedLight> {
         None
@@ -98,7 +98,7 @@ impl IntegratorKind {
             Self::Path => Box::new(PathTracer),
             Self::Light => Box::new(LightTracer),
             Self::Bdpt => Box::new(Bdpt { selector }),
-            // What is open is decided before; this is what it would most often be.
+            // `Auto` is decided before this; `Lvc` is its most frequent plan.
             Self::Lvc | Self::Auto => Box::new(Lvc {
                 selector,
                 candidates: lvc.candidates,

@@ -100,8 +100,8 @@ fn next_event(context: &PathContext<'_>, sample: &Sample, workspace: &mut Worksp
     }
 }
 
-/// L_e · G · scatter · β / q: what of the light point x_0, drawn with density q, arrives by the vertex of
-/// `turn`, before weight and visibility.
+/// L_e · G · scatter · β / q: the light of the light point x_0, drawn with density q, that arrives by the
+/// vertex of `turn`, before weight and visibility.
 #[inline]
 fn arriving(
     context: &PathContext<'_>,

@@ -1,4 +1,4 @@
-//! What a sample leaves behind: subpaths, candidates, chosen rays and contributions, in buffers
+//! The results of a sample: subpaths, candidates, chosen rays and contributions, in buffers
 //! that the next sample uses again. A value that no film can sum is dropped and counted here.
 
 use super::lvc::LightCache;
@@ -28,7 +28,7 @@ pub struct Sample {
     pub pixel: [u32; 2],
     /// The random numbers of the camera ray.
     pub ray: SampleStream,
-    /// Those of the camera subpath behind it, and of its connections.
+    /// The random numbers of the camera subpath behind it, and of its connections.
     pub camera: SampleStream,
     /// The random numbers of the light subpath and of its light image.
     pub light: SampleStream,
@@ -57,9 +57,9 @@ impl Sample {
 /// A contribution to the light image.
 #[derive(Clone, Copy, Debug)]
 pub struct Splat {
-    /// What is added.
+    /// The contribution that is added.
     pub contribution: Contribution,
-    /// Where it lands.
+    /// Its place.
     pub place: SplatPlace,
 }
 
@@ -71,7 +71,7 @@ pub(crate) struct BroughtLight {
     entries: Vec<Entry>,
 }
 
-/// What a thread keeps from sample to sample, so that no sample allocates: buffers, the
+/// The state that a thread keeps from sample to sample, so that no sample allocates: buffers, the
 /// contributions of the last sample, and counters.
 #[derive(Debug, Default)]
 pub struct Workspace {
@@ -91,14 +91,13 @@ pub struct Workspace {
     pub value: Spectrum,
     /// The contributions to the light image.
     pub splats: Vec<Splat>,
-    /// What the sample adds to its own pixel by each strategy that the film keeps an image of. Unit:
-    /// luminance.
+    /// The luminance that the sample adds to its own pixel by each strategy that has an image in the film.
     pub(crate) luminances: Vec<(Strategy, f64)>,
     /// The number of terms so far.
     terms: u32,
-    /// What was counted.
+    /// The counters.
     pub stats: Stats,
-    /// What became of every term; kept where somebody asks for it.
+    /// The outcome of every term; kept if somebody asks for it.
     pub journal: Option<Journal>,
     /// Measures stages, where the host has a clock for it.
     pub stopwatch: Stopwatch,
@@ -162,7 +161,7 @@ impl Workspace {
         self.stopwatch.end(Stage::Walk);
     }
 
-    /// What a candidate connects: light vertex and camera vertex.
+    /// The vertices that a candidate connects: light vertex and camera vertex.
     #[inline]
     pub(crate) fn vertices(&self, strategy: Strategy, light_vertex: LightVertex) -> [&Vertex; 2] {
         let (s, t) = (usize::from(strategy.s), usize::from(strategy.t));

@@ -32,7 +32,7 @@ pub struct AreaLight {
     /// The shape, by index.
     shape: usize,
     radiance: Rgb,
-    /// What the radiance is multiplied by. None: it is the same everywhere.
+    /// The factor of the radiance. None: it is the same everywhere.
     pattern: Option<ColorTexture>,
     /// The mean over the area. Unit: luminance.
     mean: f32,
@@ -67,8 +67,8 @@ impl AreaLight {
         }
     }
 
-    /// Multiplies the radiance at each point of `shape`, which is the light's. What is negative
-    /// counts as black.
+    /// Multiplies the radiance at each point of `shape`, which is the light's. Negative values
+    /// count as black.
     pub(crate) fn set_pattern(&mut self, shape: &Shape, pattern: ColorTexture) {
         self.pattern = Some(pattern);
         let points = (0..PATTERN_POINTS).map(|i| {
@@ -154,7 +154,7 @@ impl AreaLight {
         (count > UNDIVIDED).then_some(count as u32)
     }
 
-    /// Where `part` is, and where it sends light to.
+    /// The bounds of `part`, and of the directions it sends light to.
     pub(super) fn bounds(&self, context: &LightContext<'_>, part: Part) -> EmitterBounds {
         let shape = &context.shapes[self.shape];
         let of_primitive = |i| self.primitive_bounds(shape, i);

@@ -1,4 +1,4 @@
-//! P(light) = power / Σ power, by luminance, or as was learnt of what light subpaths contribute. It does
+//! P(light) = power / Σ power, by luminance, or as learned from the contributions of light subpaths. It does
 //! not know the receiver: a dim light nearby is chosen no more often than one far away.
 
 use super::{Light, LightContext};

@@ -1,7 +1,7 @@
-//! Where light comes from.
+//! Lights: the sources of light.
 //!
 //! A path starts at a [`LightPoint`]: a point on a light, or, for lights at infinity, a direction.
-//! Three densities describe how one is drawn, and each says its measure:
+//! Three densities describe how one is drawn, each in its own measure:
 //!
 //! | | finite light | light at infinity |
 //! |---|---|---|
@@ -39,7 +39,7 @@ use crate::shape::{Shape, SurfacePoint};
 use crate::spectrum::Rgb;
 use tree::{Cone, EmitterBounds};
 
-/// Where a path starts.
+/// The start of a path.
 #[derive(Clone, Copy, Debug)]
 pub struct LightPoint {
     /// The place.
@@ -79,7 +79,7 @@ impl LightPoint {
 pub struct LightSample {
     /// The point or direction.
     pub at: LightPoint,
-    /// Its density, in the measure that the module's table says.
+    /// Its density, in the measure of the module's table.
     pub pdf: f32,
     /// How much of the surface is there, in `[0, 1]`: a factor of what leaves it, in no density.
     pub coverage: f32,
@@ -99,20 +99,20 @@ impl LightSample {
 /// A ray that leaves a light.
 #[derive(Clone, Copy, Debug)]
 pub struct EmissionSample {
-    /// Where it leaves.
+    /// The light point that it leaves.
     pub from: LightSample,
     /// The origin of the ray: the light point, or for a light at infinity a point outside the
     /// scene.
     pub origin: Vec3,
     /// The unit direction it travels in.
     pub direction: Vec3,
-    /// The density of `direction`, in the measure that the module's table says.
+    /// The density of `direction`, in the measure of the module's table.
     pub pdf_direction: f32,
     /// Emitted radiance, or intensity, times the cosine at the light where it has a surface.
     pub emitted_cos: Rgb,
 }
 
-/// What lights need to know of the scene around them.
+/// The scene around lights, as far as they need it.
 #[derive(Clone, Copy)]
 pub struct LightContext<'a> {
     /// The shapes that area lights refer to.
@@ -123,7 +123,7 @@ pub struct LightContext<'a> {
     pub radius: f32,
 }
 
-/// What of a light a point is drawn on.
+/// The part of a light that a point is drawn on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Part {
     /// Anywhere.
@@ -176,7 +176,7 @@ impl Light {
         matches!(self, Self::Distant(_) | Self::Infinite(_))
     }
 
-    /// About how much light it sends into the scene: what lights are chosen by. Unit: W, luminance.
+    /// About how much light it sends into the scene, for the choice of lights. Unit: W, luminance.
     pub fn power(&self, context: &LightContext<'_>) -> f32 {
         match self {
             Self::Area(light) => light.power(),
@@ -250,7 +250,7 @@ impl Light {
         })
     }
 
-    /// What of [`power`](Self::power) a part has. Unit: W, luminance.
+    /// The share of [`power`](Self::power) that a part has. Unit: W, luminance.
     fn part_power(&self, context: &LightContext<'_>, part: Part) -> f32 {
         match (self, part) {
             (Self::Area(light), Part::Primitive(i)) => light.primitive_power(context, i),
@@ -258,7 +258,7 @@ impl Light {
         }
     }
 
-    /// Where a part is, and where it sends light to. None: from infinity.
+    /// The bounds of a part, and of the directions it sends light to. None: it is at infinity.
     fn bounds(&self, context: &LightContext<'_>, part: Part) -> Option<EmitterBounds> {
         match self {
             Self::Area(light) => Some(light.bounds(context, part)),

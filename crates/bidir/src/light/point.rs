@@ -10,7 +10,7 @@ use accel::Aabb;
 /// A point that emits the same intensity in all directions.
 #[derive(Clone, Copy, Debug)]
 pub struct PointLight {
-    /// Where it is.
+    /// Its position.
     pub position: Vec3,
     /// Radiant intensity. Unit: W/sr.
     pub intensity: Rgb,
@@ -55,7 +55,7 @@ impl PointLight {
 /// Angles are kept as 1 - cosθ, which has its digits where the cone is narrow.
 #[derive(Clone, Copy, Debug)]
 pub struct SpotLight {
-    /// Where it is.
+    /// Its position.
     pub position: Vec3,
     axis: Frame,
     intensity: Rgb,

@@ -1,7 +1,7 @@
 //! Coated materials: their textures, and what is integrated for their surfaces before rendering.
 //!
-//! The integrals depend on slopes. Where those are constant there is one of each; where they are
-//! textures, some for slopes between 0 and 1, and what lies between is interpolated.
+//! The integrals depend on slopes. If slopes are constant, there is one of each; if they are
+//! textures, there are some for slopes between 0 and 1, with interpolation between them.
 
 use super::{Roughness, unit};
 use crate::bsdf::coat::{Filled, Layer, Reflections, Slab};

@@ -1,4 +1,4 @@
-//! What a surface is made of: textures that become a [`Bsdf`] at a point.
+//! Materials of surfaces: textures that become a [`Bsdf`] at a point.
 //!
 //! A mixture is one of its materials at each vertex, chosen by a number of the path's own: the choice is
 //! part of the path, as likely from whichever end the vertex was drawn, so that it cancels in densities.
@@ -149,7 +149,7 @@ pub enum Material {
         reflectance: ColorTexture,
         /// The part that goes through.
         transmittance: ColorTexture,
-        /// What both are multiplied by.
+        /// The factor of both.
         scale: f32,
     },
     /// A dielectric layer over a diffuse base.
@@ -181,7 +181,7 @@ impl Material {
         }
     }
 
-    /// What turns the shading frame. None: nothing does, or each part of a mixture for itself.
+    /// The relief that turns the shading frame. None: nothing does, or each part of a mixture for itself.
     #[inline]
     pub fn relief(&self) -> Option<&Relief> {
         match self {
@@ -199,7 +199,7 @@ impl Material {
         }
     }
 
-    /// What its textures depend on beside the parameters, and what its relief does.
+    /// The dependences of its textures and its relief, beside the parameters.
     pub fn needs(&self) -> Needs {
         match self {
             Self::Diffuse { reflectance } => reflectance.needs(),
@@ -273,7 +273,7 @@ impl Mixture {
     fn choose(&self, at: &TexturePoint, u: f32) -> &Material {
         let amount = self.amount.eval(at).clamp(0.0, 1.0);
         let [first, second] = &self.materials;
-        // Where the amount is not a number, the first stands for both.
+        // If the amount is not a number, the first stands for both.
         let (material, rest) = if u < amount {
             (second, u / amount)
         } else {

@@ -140,13 +140,13 @@ pub struct PrincipledMaterial {
     pub anisotropy: Anisotropy,
     /// The index of refraction of what is no metal; 0: it reflects all light.
     pub ior: f32,
-    /// What its reflectance is scaled by.
+    /// The factor of its reflectance.
     pub specular: ScaledFloat,
-    /// What its reflectance along the normal is scaled by, beside.
+    /// A further factor of its reflectance along the normal.
     pub specular_color: ScaledColor,
     /// The share of it that is transparent.
     pub transmission: ScaledFloat,
-    /// What lies behind the transparent part.
+    /// The medium behind the transparent part.
     pub wall: Wall,
     /// The share of the rest that lets light through diffusely.
     pub diffuse_transmission: ScaledFloat,
@@ -163,7 +163,7 @@ pub struct PrincipledMaterial {
 }
 
 impl Default for PrincipledMaterial {
-    /// What a glTF material is that says nothing: white rough metal.
+    /// A glTF material without any setting: white rough metal.
     fn default() -> Self {
         let [black, white] = [0.0, 1.0].map(|value| ScaledColor::constant([value; 3]));
         let [zero, one] = [0.0, 1.0].map(ScaledFloat::constant);
@@ -236,7 +236,7 @@ impl PrincipledMaterial {
             .fold(Needs::NOTHING, Needs::and)
     }
 
-    /// The scattering at a point. What the material has not is not looked up.
+    /// The scattering at a point. Parts that the material lacks are not looked up.
     pub(super) fn bsdf(
         &self,
         at: &TexturePoint,

@@ -1,5 +1,5 @@
-//! Whether a material scatters by Dirac distributions anywhere: asked of its numbers and of the bounds
-//! of its textures. Draws would miss lobes that are rarely drawn, and points what lies between them.
+//! A test of whether a material scatters by Dirac distributions anywhere, by its numbers and the bounds
+//! of its textures. Draws would miss lobes that are rarely drawn, and points the places between them.
 
 use super::{
     CoatSettings, CoatedConductorMaterial, CoatedDiffuseMaterial, Material, Mixture,
@@ -11,8 +11,7 @@ use crate::math::sqr;
 use crate::texture::{FloatTexture, Range};
 
 impl Material {
-    /// False only where no point of it scatters by Dirac distributions. Where its textures leave it open
-    /// it is true.
+    /// False only if no point of it scatters by Dirac distributions. True if its textures leave it open.
     pub fn may_be_specular(&self) -> bool {
         match self {
             Self::Diffuse { .. } | Self::DiffuseTransmission { .. } => false,

@@ -18,7 +18,7 @@ pub struct Distribution1d {
 }
 
 impl Distribution1d {
-    /// The distribution proportional to `weights`, which are finite and not negative. Where all are
+    /// The distribution proportional to `weights`, which are finite and not negative. If all are
     /// zero, or there are none, it is uniform over `max(1, n)` cells and its [`total`](Self::total) is zero.
     pub fn new(weights: impl IntoIterator<Item = f32>) -> Self {
         let mut cdf = vec![0.0];

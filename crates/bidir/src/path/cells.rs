@@ -1,5 +1,5 @@
-//! Cells of vertices: boxes of space, each divided by where normals point to. What is learnt about
-//! connections is learnt for cells.
+//! Cells of vertices: boxes of space, each divided by the directions of normals. Training learns about
+//! connections for cells.
 //!
 //! The boxes are the leaves of a k-d tree over vertices of a training render, so that each has about
 //! as many of them. A plane goes through the widest gap near the median: a wall that lies in a plane
@@ -172,7 +172,7 @@ mod tests {
                 counts[cells.of(p, Vec3::Z).index()] += 1;
             }
             let most = counts.iter().max().copied().unwrap_or(0);
-            // What shares a coordinate stays together.
+            // Points that share a coordinate stay together.
             prop_assert!(most <= 32 + points.len() / 8, "{most} of {}", points.len());
             Ok(())
         });

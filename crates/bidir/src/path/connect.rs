@@ -1,4 +1,4 @@
-//! C = β_L · scatter(z) · G(z, y) · scatter(y) · β_C: what a connection of two subpaths is worth
+//! C = β_L · scatter(z) · G(z, y) · scatter(y) · β_C: the contribution of a connection of two subpaths
 //! [Veach97, §10.2], and its weight.
 //!
 //! No ray is traced here: visibility is the caller's to ask for.
@@ -213,7 +213,7 @@ impl PathContext<'_> {
         learnt.unwrap_or_else(|| self.scene.light_choice())
     }
 
-    /// √V̂ of the shadow ray between a light vertex `z` and a camera vertex `y`: 1 where nothing is learnt, and
+    /// √V̂ of the shadow ray between a light vertex `z` and a camera vertex `y`: 1 if nothing is learned, and
     /// at infinity, where there are no places.
     #[inline]
     pub(crate) fn root_visibility(&self, z: &Vertex, y: &Vertex) -> f32 {
@@ -225,7 +225,7 @@ impl PathContext<'_> {
         proposals.map_or(1.0, of_cells)
     }
 
-    /// The cell of a vertex with the unit normal `n`, where anything is learnt for cells.
+    /// The cell of a vertex with the unit normal `n`, if anything is learned for cells.
     #[inline]
     pub(super) fn cell(&self, point: Vec3, n: Vec3) -> Cell {
         let cell = |all: &LightProposals| all.cells().of(point, n);

@@ -27,7 +27,7 @@ named!(MisHeuristic {
 });
 
 impl MisHeuristic {
-    /// What a strategy with n_j p_j = `density`, relative to another, counts.
+    /// The share of a strategy with n_j p_j = `density`, relative to another.
     #[inline]
     pub(super) fn share(self, density: f64) -> f64 {
         match self {
@@ -41,7 +41,7 @@ impl MisHeuristic {
     /// `hit`: a billionth of it where the image has at most twice as many samples there (the cutoff heuristic
     /// \[Veach97, §9.2.3\] for these two).
     ///
-    /// Where light that is seen directly covers a pixel evenly, hits have no variance, but the number
+    /// If light that is seen directly covers a pixel evenly, hits have no variance, but the number
     /// of samples of the image varies. A lamp that is small in a pixel has far more of these.
     #[inline]
     pub(super) fn share_of_image(self, image: f64, hit: f64) -> f64 {

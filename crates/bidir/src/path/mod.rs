@@ -68,7 +68,7 @@ pub struct PathSettings {
     pub roulette: PathRoulette,
     /// Which strategies take part.
     pub strategies: Strategies,
-    /// Where s = 1 takes its light point from.
+    /// The source of the light point of s = 1.
     pub light_point: LightPointChoice,
     /// How s = 1 chooses the light.
     pub light_choice: LightChoiceKind,
@@ -99,7 +99,7 @@ impl PathSettings {
     }
 }
 
-/// What every step of making a path needs.
+/// The data that every step of making a path needs.
 #[derive(Clone, Copy)]
 pub struct PathContext<'a> {
     /// The scene.

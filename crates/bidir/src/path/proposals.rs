@@ -1,5 +1,5 @@
 //! P(z | y) = ε / K + (1 - ε) Γ(c_z | c_y) / K_c: which of K cached light vertices z is a candidate for
-//! the camera vertex y, by their cells c; K_c of the K are in the cell of z. Γ is learnt before the
+//! the camera vertex y, by their cells c; K_c of the K are in the cell of z. Γ is learned before the
 //! first pass, and frozen: in the spirit of the subspaces of \[Su22\].
 //!
 //! With X the contribution of a connection, weighted and behind what is in its way, the variance of
@@ -183,8 +183,8 @@ fn first_end_beyond(ends: &[f32], part: usize) -> u8 {
     cell as u8
 }
 
-/// √V̂ where so many connections were traced and arrived. What training did not see counts as
-/// visible, and nothing as hidden for sure.
+/// √V̂ if so many connections were traced and arrived. Pairs of cells that training did not see count as
+/// visible, and none counts as hidden for sure.
 fn root_visibility([traced, arrived]: [u32; 2]) -> f32 {
     let visible = f64::from(arrived + 1) / f64::from(traced + 1);
     visible.max(LEAST_VISIBILITY).sqrt() as f32

@@ -1,5 +1,5 @@
-//! The weight of a strategy from sums that are carried along both subpaths: what it costs does not
-//! depend on how long the path is. In the spirit of \[Antwerpen11\] and \[Georgiev12\].
+//! The weight of a strategy from sums that are carried along both subpaths: its cost does not
+//! depend on the length of the path. In the spirit of \[Antwerpen11\] and \[Georgiev12\].
 //!
 //! h = `share` is multiplicative, h(x y) = h(x) h(y). So, with strategies counted by light vertices,
 //!

@@ -1,4 +1,4 @@
-//! What a vertex does to light: its value scatter(wo, wi) in the integrand, the directions that walks
+//! The effect of a vertex on light: its value scatter(wo, wi) in the integrand, the directions that walks
 //! draw there, and their densities. Visibility and roulette are no part of it.
 
 use super::{PathContext, Vertex, VertexKind};
@@ -91,7 +91,7 @@ impl<'a> Turn<'a> {
     /// The whole integrand is Π scatter · Π G over **geometric** cosines, so scattering carries
     /// |ω·n_s| / |ω·n_g| with ω the direction that light comes from: `wi` for radiance, `wo` for
     /// importance. That is the adjoint of shading normals [Veach97, §5.3]; it makes the
-    /// integrand one function of the path, whichever end a walk began at. Where shading and
+    /// integrand one function of the path, whichever end a walk began at. If shading and
     /// geometric normal disagree on the side of a direction, nothing is scattered.
     ///
     /// This is the only caller of `Bsdf::eval`.
@@ -193,7 +193,7 @@ impl Vertex {
 }
 
 impl PathContext<'_> {
-    /// What light number `light` sends from `at` along the unit direction `w`: radiance, intensity or
+    /// The emission of light number `light` from `at` along the unit direction `w`: radiance, intensity or
     /// irradiance, as [`Light::emitted`](crate::light::Light::emitted) says.
     #[inline]
     pub(crate) fn emitted(&self, light: u32, at: &LightPoint, w: Vec3) -> Spectrum {

@@ -14,9 +14,9 @@ pub struct Segment {
     pub w: Vec3,
     /// G. Visibility is no part of it. Unit: 1/m²; a cosine where an end is at infinity.
     pub geometry_term: f32,
-    /// What a density at a of the direction `w` is multiplied by to be one of b.
+    /// The factor that turns a density of the direction `w` at a into one of b.
     pub to_b: f32,
-    /// What a density at b of the direction -`w` is multiplied by to be one of a.
+    /// The factor that turns a density of the direction -`w` at b into one of a.
     pub to_a: f32,
 }
 

@@ -14,7 +14,7 @@ use crate::scene::SurfaceHit;
 use crate::spectrum::Spectrum;
 use crate::texture::TexturePoint;
 
-/// What a vertex is.
+/// The kind of a vertex.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum VertexKind {
     /// A point on the lens, or the direction towards a camera at infinity: the start of a camera
@@ -29,7 +29,7 @@ pub enum VertexKind {
 /// A vertex of a subpath.
 #[derive(Clone, Copy, Debug)]
 pub struct Vertex {
-    /// What it is.
+    /// The kind.
     pub kind: VertexKind,
     /// The place.
     pub locus: Locus,
@@ -46,20 +46,20 @@ pub struct Vertex {
     /// The density of this vertex drawn from its successor by a walk in the other direction,
     /// without roulette; set when the successor scatters.
     pub pdf_rev: f32,
-    /// What turns a density of the direction `wo` here into one of the previous vertex.
+    /// The factor that turns a density of the direction `wo` here into one of the previous vertex.
     pub to_previous: f32,
     /// The largest lane of the albedo seen from the previous vertex.
     pub albedo_fwd: f32,
     /// The largest lane of the albedo seen from the next vertex; set when this vertex scatters.
     pub albedo_rev: f32,
-    /// True where the walk went on by a Dirac lobe: what this vertex is on paths that use the walk's
-    /// next step. Set when this vertex scatters.
+    /// True if the walk went on by a Dirac lobe: then this vertex is a Dirac one on paths that use the
+    /// walk's next step. Set when this vertex scatters.
     pub went_by_delta: bool,
     /// The light that the vertex lies on, by index.
     pub light: Option<u32>,
     /// The primitive of the light's shape.
     pub light_primitive: u32,
-    /// What is learnt about its connections is learnt for this cell.
+    /// The cell for which training learns about its connections.
     pub cell: Cell,
 }
 
@@ -176,7 +176,7 @@ impl Vertex {
     }
 
     /// The vertex as what a light is chosen for, on a path that goes on along `w` from here, of any
-    /// length: towards the light, or towards the camera. Where nothing is transmitted both are on one side.
+    /// length: towards the light, or towards the camera. If nothing is transmitted both are on one side.
     #[inline]
     pub fn receiver(&self, w: Vec3) -> Receiver {
         let n = self.shading.z;
@@ -191,8 +191,8 @@ impl Vertex {
         Receiver { point, facing }
     }
 
-    /// True where all scattering is a Dirac distribution, so that nothing can connect here. What a
-    /// walk did here says [`went_by_delta`](Self::went_by_delta).
+    /// True if all scattering is a Dirac distribution, so that nothing can connect here.
+    /// [`went_by_delta`](Self::went_by_delta) is about the walk's own step.
     #[inline]
     pub fn is_delta(&self) -> bool {
         self.kind == VertexKind::Surface && self.bsdf.is_delta()

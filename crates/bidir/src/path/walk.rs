@@ -32,7 +32,7 @@ pub struct Escape {
 pub struct Subpath {
     /// The vertices; empty where the walk could not start.
     pub vertices: Vec<Vertex>,
-    /// Where the walk left the scene, if it did.
+    /// The walk's escape from the scene, if it left it.
     pub escape: Option<Escape>,
 }
 
@@ -44,7 +44,7 @@ struct Step {
     pdf_w: f32,
 }
 
-/// What a walk does not change.
+/// The data that a walk does not change.
 struct Walker<'a> {
     context: &'a PathContext<'a>,
     mode: TransportMode,

@@ -1,7 +1,7 @@
-//! What random numbers are for: a vertex and a purpose. Numbers have names instead of an order, so
+//! The use of random numbers: a vertex and a purpose. Numbers have names instead of an order, so
 //! that code may ask for them in any order, or leave some out, and change no other.
 
-/// What a random number decides at one vertex.
+/// The decision of a random number at one vertex.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Purpose {
     /// Position within the pixel's filter (vertex 0 of a camera subpath).
@@ -12,7 +12,7 @@ pub enum Purpose {
     Wavelengths,
     /// Which light a light subpath starts on.
     Light,
-    /// Where on the light it starts.
+    /// The point on the light where it starts.
     LightPosition,
     /// In what direction it leaves.
     LightDirection,
@@ -24,7 +24,7 @@ pub enum Purpose {
     Roulette,
     /// Which light next-event estimation connects to.
     NextEventLight,
-    /// Where on that light.
+    /// The point on that light.
     NextEventPosition,
     /// The lens point that a light vertex connects to (t = 1).
     LightImageLens,
@@ -32,7 +32,7 @@ pub enum Purpose {
     LightImagePixel,
     /// The draw of shadow-ray selection; the vertex counts the groups.
     Select,
-    /// Whether a walk passes surfaces that are not all there, on its way to the vertex.
+    /// The passage of a walk through surfaces with partial coverage, on its way to the vertex.
     Coverage,
     /// Which of mixed materials a surface point is made of.
     Mix,

@@ -38,7 +38,7 @@ named!(SamplerKind {
     "sobol" => Sobol,
 });
 
-/// What a stream is drawn for; streams of different domains are unrelated.
+/// The use of a stream; streams of different domains are unrelated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Domain {
     /// Camera subpaths of the image.
@@ -80,7 +80,7 @@ impl Sampler {
         let key = mix(self.key(domain) ^ stream);
         match self.kind {
             SamplerKind::Independent => SampleStream::independent(key, index),
-            // A sequence has 2³² points; those beyond are of another one.
+            // A sequence has 2³² points; later points are of another one.
             SamplerKind::Sobol => SampleStream {
                 source: Source::Sequence(reversed(index)),
                 key: mix(key ^ (index >> 32)),
@@ -88,8 +88,8 @@ impl Sampler {
         }
     }
 
-    /// The numbers of point `index` of one of many streams that complement each other: those of a
-    /// member are stratified over the indices, and those of an index over the members.
+    /// The numbers of point `index` of one of many streams that complement each other: the points
+    /// of a member are stratified over the indices, and the points of an index over the members.
     ///
     /// A point is S(index) ⊕ S'(member), digit by digit: either sequence, moved by a digital shift,
     /// is as even as before.
@@ -117,7 +117,7 @@ fn reversed(index: u64) -> u32 {
     (index as u32).reverse_bits()
 }
 
-/// Where the numbers of a stream come from.
+/// The source of a stream's numbers.
 #[derive(Clone, Copy, Debug)]
 enum Source {
     /// A hash of the key.

@@ -11,7 +11,7 @@ pub(super) struct Digits {
     /// The index in the sequence, which is x.
     index: u32,
     key: u64,
-    /// What digits are moved by: the index of an unscrambled point.
+    /// The digital shift: the index of an unscrambled point.
     shift: u32,
 }
 

@@ -21,7 +21,7 @@ pub struct MaterialId(u32);
 pub struct Emission {
     /// Emitted radiance.
     pub radiance: Rgb,
-    /// What it is multiplied by at each point. None: it is even.
+    /// The factor on it at each point. None: it is even.
     pub pattern: Option<ColorTexture>,
     /// Which sides emit.
     pub sides: EmissionSides,
@@ -56,7 +56,7 @@ pub enum SceneError {
         vertices: usize,
         /// The number of values.
         count: usize,
-        /// What is counted.
+        /// The name of the attribute.
         what: &'static str,
     },
     /// A coordinate is NaN or infinite, or a size overflows.
@@ -166,7 +166,7 @@ impl SceneBuilder {
     /// Lets only the part `alpha` of shape number `shape` be there, in `[0, 1]` over its parameters:
     /// rays pass it with 1 - `alpha`, and what it emits is less by `alpha`.
     ///
-    /// Where `alpha` is 0 all over, no ray meets the shape, but it emits all the same: an invisible
+    /// If `alpha` is 0 all over, no ray meets the shape, but it emits all the same: an invisible
     /// light, as in pbrt-v4.
     pub fn coverage(&mut self, shape: usize, alpha: FloatTexture) -> &mut Self {
         let surface = &mut self.surfaces[shape];

@@ -1,4 +1,4 @@
-//! What must hold of the parts of a scene before rays are traced in it.
+//! The conditions on the parts of a scene before rays are traced in it.
 
 use super::{Presence, PrimitiveRef, SceneError, Surface};
 use crate::shape::{Mesh, Shape};

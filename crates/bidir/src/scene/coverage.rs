@@ -1,5 +1,5 @@
-//! α: how much of a surface is there. Rays pass it with 1 - α, as if it were not; what they pass is no
-//! vertex and in no density.
+//! α: how much of a surface is there. Rays pass it with 1 - α, as if it were not; a surface they pass is
+//! no vertex and in no density.
 //!
 //! A walk decides by chance whether it meets a surface, for each one by a number of its own, so that
 //! the order in which the intersector asks does not matter. Its throughput needs no factor: the
@@ -25,7 +25,7 @@ pub struct Chances<'a> {
 }
 
 impl<'a> Chances<'a> {
-    /// Those of the ray that looks for vertex number `vertex` of a subpath.
+    /// The chances of the ray that looks for vertex number `vertex` of a subpath.
     #[inline]
     pub fn new(stream: &'a SampleStream, vertex: usize) -> Self {
         Self {
@@ -110,7 +110,7 @@ impl Scene {
 struct Factors {
     first: [f32; Self::FEW],
     count: usize,
-    /// Those beyond the first; what is empty takes no memory.
+    /// The factors beyond the first ones; empty, it takes no memory.
     rest: Vec<f32>,
 }
 

@@ -50,13 +50,13 @@ struct Surface {
 enum Presence {
     /// All of it.
     Whole,
-    /// What a texture of the scene says, by index.
+    /// The part given by a texture of the scene, by index.
     Part(u32),
     /// Nothing: no ray meets it.
     Absent,
 }
 
-/// Where a ray meets a surface.
+/// The point where a ray meets a surface.
 #[derive(Clone, Copy, Debug)]
 pub struct SurfaceHit {
     /// Local geometry.
@@ -76,7 +76,7 @@ pub struct Scene {
     color: ColorModel,
     shapes: Vec<Shape>,
     surfaces: Vec<Surface>,
-    /// Those of the world first, then those of the objects.
+    /// The primitives of the world first, then those of the objects.
     primitives: Vec<PrimitiveRef>,
     instances: Vec<Placed>,
     /// The textures of surfaces that are not all there. Without any, rays do not ask.
@@ -102,7 +102,7 @@ impl Scene {
         &self.space
     }
 
-    /// What the lanes of a spectrum mean.
+    /// The meaning of the lanes of a spectrum.
     #[inline]
     pub fn color(&self) -> ColorModel {
         self.color
@@ -150,7 +150,7 @@ impl Scene {
         &self.environment
     }
 
-    /// What lights need to know of the scene.
+    /// The parts of the scene that lights need.
     #[inline]
     pub fn light_context(&self) -> LightContext<'_> {
         LightContext {
@@ -243,7 +243,7 @@ impl Scene {
         })
     }
 
-    /// What was hit: the instance, if it is of one, and the part of a shape.
+    /// The target of a hit: the instance, if it is of one, and the part of a shape.
     #[inline]
     fn resolve(&self, hit: &accel::Hit) -> (Option<&Placed>, PrimitiveRef) {
         let placed = hit.instance.checked_sub(1);

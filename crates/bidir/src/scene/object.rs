@@ -16,7 +16,7 @@ pub struct ObjectId(pub(super) u32);
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Placed {
     pub(super) place: Place,
-    /// Where the object's primitives begin among those of the scene.
+    /// The index of the object's first primitive among those of the scene.
     pub(super) first_primitive: u32,
 }
 
@@ -29,10 +29,10 @@ pub(super) struct Objects {
     pub(super) instances: Vec<(ObjectId, Place)>,
 }
 
-/// What the intersector is asked with, and what its answers mean.
+/// The tree that the intersector asks, and the primitives and instances that its answers refer to.
 pub(super) struct Geometry {
     pub(super) bvh: accel::Bvh,
-    /// Those of the world first, then those of the objects.
+    /// The primitives of the world first, then those of the objects.
     pub(super) primitives: Vec<PrimitiveRef>,
     pub(super) instances: Vec<Placed>,
 }

@@ -35,7 +35,7 @@ impl Budget {
                     rest += score;
                 }
             }
-            // As many certain ones as rays: what is left is lost in rounding.
+            // As many certain ones as rays: the remainder is lost in rounding.
             if certain >= self.rays || rest <= 0.0 {
                 return Some(threshold);
             }

@@ -3,7 +3,7 @@
 
 use super::{Candidate, Chosen, Draws, LightVertex, Selector};
 
-/// What candidates have in common within a group.
+/// The property that candidates have in common within a group.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Group {
     /// The light vertex. For s = 1 with fresh light points: the row of next-event estimates, each
@@ -96,7 +96,7 @@ fn pick(candidates: &[Candidate], group: &[Chosen], u: f64) -> Chosen {
         rest -= f64::from(member.of(candidates).score);
         rest < 0.0
     };
-    // Where rounding leaves a rest, it is the last.
+    // If rounding leaves a rest, the last member is it.
     let found = group.iter().find(is_it);
     let picked = *found.unwrap_or(&group[group.len() - 1]);
     Chosen {
@@ -109,7 +109,7 @@ impl Selector for OnePerGroup {
     fn select(&self, candidates: &[Candidate], draws: Draws<'_>, chosen: &mut Vec<Chosen>) {
         let mut kept = chosen.len();
         self.append_sorted(candidates, chosen);
-        // Where members were sorted, the chosen ones move to the front.
+        // If members were sorted, the chosen ones move to the front.
         let mut next = kept;
         while next < chosen.len() {
             let group = self.groups(candidates, &chosen[next..]).next();

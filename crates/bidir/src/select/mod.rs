@@ -31,14 +31,14 @@ use std::str::FromStr;
 pub struct Candidate {
     /// Its term; s ≥ 1 and t ≥ 2.
     pub term: Term,
-    /// What candidates are compared by: the luminance of C w, times what is known of the root of the chance
+    /// The score that candidates are compared by: the luminance of C w, times the estimated root of the chance
     /// that it arrives. Positive.
     pub score: f32,
-    /// Where its light vertex is.
+    /// The place of its light vertex.
     pub light_vertex: LightVertex,
 }
 
-/// Where the light vertex of a candidate is.
+/// The place of the light vertex of a candidate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LightVertex {
     /// The last of the first s of the sample's own light subpath.
@@ -55,7 +55,7 @@ impl Candidate {
     pub fn new(term: Term, score: f32, light_vertex: LightVertex) -> Self {
         Self {
             term,
-            // What underflows must keep a chance.
+            // A score that underflows must keep a chance.
             score: score.max(f32::MIN_POSITIVE),
             light_vertex,
         }

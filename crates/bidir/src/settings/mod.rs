@@ -102,7 +102,7 @@ impl Settings {
 
 impl IntegratorKind {
     /// The path roulette that suits the estimator: of several scenes the least product of error and
-    /// time (docs/performance.md). Where every vertex is connected with every other, short walks pay.
+    /// time (docs/performance.md). If every vertex is connected with every other, short walks pay.
     pub fn roulette(self) -> PathRoulette {
         match self {
             Self::Bdpt | Self::Lvc | Self::Auto => PathRoulette::Albedo { start: 0 },
@@ -111,7 +111,7 @@ impl IntegratorKind {
         }
     }
 
-    /// The choice of shadow rays that suits the estimator, likewise. Where many candidates are weighed
+    /// The choice of shadow rays that suits the estimator, likewise. If many candidates are weighed
     /// for a few rays, those that matter pay.
     pub fn shadow_rays(self) -> ShadowRays {
         match self {

@@ -18,7 +18,7 @@ pub struct Differentials {
 }
 
 impl Differentials {
-    /// Those of a flat surface. Where the tangents span nothing, some unit tangents around `normal`
+    /// The differentials of a flat surface. If the tangents span nothing, some unit tangents around `normal`
     /// stand for them.
     pub(super) fn flat(normal: Vec3, [dp_du, dp_dv]: [Vec3; 2]) -> Self {
         let area2 = dp_du.cross(dp_dv).length_squared();
@@ -38,7 +38,7 @@ impl Differentials {
     }
 
     /// ∇u and ∇v: by how much the parameters change along a step on the surface. Unit: 1/m. Zero
-    /// where the tangents are too nearly parallel to tell.
+    /// where the tangents are too nearly parallel.
     pub fn gradients(&self) -> [Vec3; 2] {
         let (e, f, g) = (
             self.dp_du.length_squared(),

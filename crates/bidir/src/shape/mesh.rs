@@ -17,14 +17,14 @@ pub struct Mesh {
     pub positions: Vec<Vec3>,
     /// Shading normals per vertex; empty: the surface is faceted.
     pub normals: Vec<Vec3>,
-    /// Where the shading frame's x points, per vertex; empty: along ∂p/∂u. Of any length; what of
-    /// them is along the normal has no effect.
+    /// The direction of the shading frame's x, per vertex; empty: along ∂p/∂u. Of any length; the part
+    /// along the normal has no effect.
     pub tangents: Vec<Vec3>,
     /// Parameters per vertex; empty: each triangle has (0,0), (1,0), (1,1).
     pub uvs: Vec<Vec2>,
     /// Three vertices per triangle.
     pub triangles: Vec<[u32; 3]>,
-    /// Which side of the winding (p1 - p0) × (p2 - p0) is the front. Where there are normals,
+    /// Which side of the winding (p1 - p0) × (p2 - p0) is the front. If there are normals,
     /// they decide.
     pub orientation: Orientation,
 }
@@ -87,7 +87,7 @@ impl Mesh {
         corners.surface_point(b, position_error(corners.magnitude()))
     }
 
-    /// The same of a mesh that belongs to an object at `place`: what a mesh of moved vertices has,
+    /// The same for a mesh that belongs to an object at `place`: the point of a mesh of moved vertices,
     /// with the error of the map added.
     #[inline]
     pub(super) fn surface_point_at(&self, place: &Place, i: usize, b: Vec2) -> SurfacePoint {
@@ -132,13 +132,13 @@ impl Mesh {
     }
 }
 
-/// What is known at the corners of a triangle.
+/// The attributes of a triangle's corners.
 struct Corners {
     positions: [Vec3; 3],
     normals: Option<[Vec3; 3]>,
     tangents: Option<[Vec3; 3]>,
     uvs: [Vec2; 3],
-    /// -1 where the front is not what the winding says.
+    /// -1 where the front is not on the winding's side.
     winding_sign: f32,
 }
 

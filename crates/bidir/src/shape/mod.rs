@@ -4,7 +4,7 @@
 //! [`SurfacePoint`], and, where it is a light, draws points by area. Densities are **area
 //! measure**, 1/m².
 //!
-//! The geometric normal `n_g` says which side is the front: the side that a one-sided light emits
+//! The geometric normal `n_g` points to the front: the side that a one-sided light emits
 //! to, and the outside of a dielectric. It is always on the side of the shading normal `n_s`.
 //!
 //! **Adding one**: a file, a variant in [`Shape`] with an arm in each match, its intersection in
@@ -35,8 +35,8 @@ use crate::math::{Affine3A, Frame, PI, Vec2, Vec3};
 pub struct SurfacePoint {
     /// The point.
     pub point: Vec3,
-    /// A bound of the distance between `point` and the surface that the intersector sees: what ray
-    /// origins are pushed off by.
+    /// A bound of the distance between `point` and the surface that the intersector sees: the
+    /// offset of ray origins.
     pub error: f32,
     /// The geometric normal, unit, towards the front.
     pub n_g: Vec3,
@@ -264,7 +264,7 @@ fn azimuth_part(local: Vec3, phi_max: f32) -> f32 {
 /// Which side of a surface is the front.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Orientation {
-    /// The side that the shape's own parametrisation or winding says.
+    /// The side of the shape's own parametrisation or winding.
     #[default]
     Natural,
     /// The other side.

@@ -1,4 +1,4 @@
-//! Where a shared object stands: an affine map from its space to the world.
+//! The place of a shared object: an affine map from its space to the world.
 //!
 //! Points and tangents go by the map, normals by its inverse transpose, in `f64`. Neither asks whether the map
 //! mirrors: the front of a surface stays the front.
@@ -53,8 +53,8 @@ impl Place {
         [m.x_axis, m.y_axis, m.z_axis]
     }
 
-    /// What the error of a point in the object's space, with coordinates up to `magnitude`, becomes
-    /// in the world at most.
+    /// A bound of the error in the world of a point in the object's space, with coordinates up to
+    /// `magnitude`.
     #[inline]
     pub(super) fn error(&self, magnitude: f32) -> f32 {
         let [x, y, z] = self.columns();

@@ -178,7 +178,7 @@ impl Sphere {
 
     /// 1 - cosθ of the cone in which `reference` sees the ball, the distance, and the ball.
     ///
-    /// None: this is no ball, or the reference is within it or too near to tell.
+    /// None: this is no ball, or the reference is within it or too near.
     #[inline]
     fn cone(&self, reference: Vec3) -> Option<(f32, f32, Vec3, f32)> {
         let (centre, radius) = self.ball?;

@@ -1,4 +1,4 @@
-//! Where the time of samples goes: stages, measured in some of the samples by the host's clock.
+//! The time of samples by stage, measured in some of the samples by the host's clock.
 //!
 //! Times differ from run to run, so they are kept apart from what is counted: no film, no counter
 //! and no estimate depends on them.
@@ -14,7 +14,7 @@ pub type Clock = fn() -> Instant;
 /// the same columns be measured in every row.
 const MEASURED_EVERY: u32 = 61;
 
-/// What a sample does.
+/// A stage of a sample.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stage {
     /// Walking the subpaths, with their rays.
@@ -132,7 +132,7 @@ impl Stopwatch {
         }
     }
 
-    /// What was measured since it was taken last.
+    /// The times measured since the last call.
     pub(crate) fn take(&mut self) -> StageTimes {
         std::mem::take(&mut self.times)
     }

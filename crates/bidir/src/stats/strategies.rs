@@ -10,9 +10,9 @@ use std::ops::AddAssign;
 pub struct StrategyCounts {
     /// Contributions that are not zero, before selection and visibility.
     pub candidates: u64,
-    /// Those whose shadow ray was traced. s = 0 needs none; all of t = 1 are.
+    /// Candidates whose shadow ray was traced. s = 0 needs none; all of t = 1 are.
     pub traced: u64,
-    /// Those whose ray something blocked.
+    /// Candidates whose shadow ray something blocked.
     pub blocked: u64,
 }
 

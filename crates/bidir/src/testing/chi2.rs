@@ -5,7 +5,7 @@ use super::gamma;
 use crate::math::{Frame, Vec2, Vec3, sqr};
 use std::f64::consts::PI;
 
-/// What a density is over. Each is the image of the unit square under a map of even measure.
+/// The domain of a density. Each is the image of the unit square under a map of even measure.
 #[derive(Clone, Copy)]
 pub(crate) enum Domain {
     /// The unit square, as points with z = 0.
@@ -114,7 +114,7 @@ impl Grid {
         y * self.columns + x
     }
 
-    /// The probability of each cell, exact to far less than what `n` samples tell; last, that of
+    /// The probability of each cell, exact to far less than `n` samples resolve; last, that of
     /// None.
     pub(super) fn expected(&self, pdf: impl Fn(Vec3) -> f32, n: u64) -> Vec<f64> {
         let measure = self.domain.measure();

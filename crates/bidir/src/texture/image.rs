@@ -123,8 +123,8 @@ fn bounds<const N: usize>(texels: &[[f32; N]]) -> [[f32; N]; 2] {
     })
 }
 
-/// What a texel of a half as long row has of the longer one: the first index, and the weights of it
-/// and of those after it.
+/// The texels of a row that make one of a row half as long: the first index, and the weights of it
+/// and of the next two.
 struct Shares {
     first: usize,
     weights: [f64; 3],

@@ -5,17 +5,17 @@ use super::{Image, Mapping, Needs, TexturePoint};
 use crate::math::{Vec2, Vec3, sqr};
 use std::sync::Arc;
 
-/// What lies beyond an image's borders.
+/// The values beyond an image's borders.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Wrap {
     /// Beyond the borders that s crosses, and beyond those that t crosses.
     Axes([Beyond; 2]),
-    /// What lies there on a sphere that the image is the octahedral map of: the other half of the
+    /// The neighbours on a sphere that the image is the octahedral map of: the other half of the
     /// same border, mirrored.
     OctahedralSphere,
 }
 
-/// What lies beyond the borders that one coordinate crosses.
+/// The values beyond the borders that one coordinate crosses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Beyond {
     /// The image again.
@@ -47,7 +47,7 @@ pub enum ImageFilter {
     Trilinear,
 }
 
-/// What happens to values that were looked up.
+/// A change of values that were looked up.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Change {
     /// They are multiplied.
@@ -61,13 +61,13 @@ pub enum Change {
 pub struct ImageMap<const N: usize> {
     /// The texels, shared between textures.
     pub image: Arc<Image<N>>,
-    /// What lies beyond the border.
+    /// The values beyond the border.
     pub wrap: Wrap,
     /// How texels are interpolated.
     pub filter: ImageFilter,
-    /// What happens to values.
+    /// The change of values.
     pub change: Change,
-    /// Where (s, t) is.
+    /// The mapping from the surface to (s, t).
     pub mapping: Mapping,
 }
 
@@ -104,8 +104,8 @@ impl<const N: usize> ImageMap<N> {
 
     /// The copy whose texels are as wide as a pixel, as a real number.
     ///
-    /// Where texels are not square on the surface, this is measured across their longer side: what is
-    /// shown is never coarser than a pixel. The pixel's samples average the rest.
+    /// If texels are not square on the surface, this is measured across their longer side: the texture
+    /// is never coarser than a pixel. The pixel's samples average the rest.
     fn level(&self, at: &TexturePoint) -> f32 {
         let [s, t] = self.mapping.gradients(at);
         let texels = size(&self.image) * at.footprint.width;

@@ -2,7 +2,7 @@
 //!
 //! A texture is a function of the point, its normal and its parameters, and of how wide a pixel is
 //! there for the camera ([`TexturePoint`]); it never depends on how a walk arrived, so the integrand
-//! stays one function of the path. Colours are linear Rec. 709; the material that asks says which
+//! stays one function of the path. Colours are linear Rec. 709; the material that asks chooses the
 //! [`ColorModel`](crate::spectrum::ColorModel) conversion they go through.
 //!
 //! Numbers and colours share one implementation over [`Value`]. Evaluation allocates nothing, and
@@ -41,7 +41,7 @@ use crate::spectrum::Rgb;
 use std::fmt::Debug;
 use std::sync::Arc;
 
-/// What a texture gives: a number or a colour.
+/// A value of a texture: a number or a colour.
 pub trait Value: Copy + Debug {
     /// An image of such values.
     type Map: Clone + Debug;
@@ -57,7 +57,7 @@ pub trait Value: Copy + Debug {
     /// The value of an image.
     fn look_up(map: &Self::Map, at: &TexturePoint) -> Self;
 
-    /// What looking it up depends on.
+    /// The dependences of a look-up.
     fn needs(map: &Self::Map) -> Needs;
 
     /// The colour as such a value: a number is the mean of its channels.
@@ -153,16 +153,16 @@ pub enum Texture<T: Value> {
 /// `texture` times `factor`.
 #[derive(Clone, Debug)]
 pub struct Scale<T: Value> {
-    /// What is multiplied.
+    /// The texture to be scaled.
     pub texture: Texture<T>,
-    /// By what.
+    /// Its factor.
     pub factor: FloatTexture,
 }
 
 /// (1 - `amount`) of the first and `amount` of the second.
 #[derive(Clone, Debug)]
 pub struct Mix<T: Value> {
-    /// What is mixed.
+    /// The textures to be mixed.
     pub textures: [Texture<T>; 2],
     /// The part of the second.
     pub amount: FloatTexture,
@@ -171,7 +171,7 @@ pub struct Mix<T: Value> {
 /// |n·d| of the first and 1 - |n·d| of the second, with n the shading normal before any relief.
 #[derive(Clone, Debug)]
 pub struct DirectionMix<T: Value> {
-    /// What is mixed.
+    /// The textures to be mixed.
     pub textures: [Texture<T>; 2],
     /// The unit direction d. Space: world.
     pub direction: Vec3,
@@ -194,7 +194,7 @@ impl<T: Value> Texture<T> {
         }
     }
 
-    /// What its values depend on beside the parameters (u, v).
+    /// The dependences of its values beside the parameters (u, v).
     pub fn needs(&self) -> Needs {
         let own = match self {
             Self::Image(map) => T::needs(map),
@@ -210,7 +210,7 @@ impl<T: Value> Texture<T> {
         self.number().map_or(all, |number| all.and(number.needs()))
     }
 
-    /// How many textures it is made of, itself included; what is used twice counts twice.
+    /// How many textures it is made of, itself included; one that is used twice counts twice.
     pub fn size(&self) -> usize {
         let parts: usize = self.parts().iter().map(Self::size).sum();
         1 + parts + self.number().map_or(0, Texture::size)
@@ -246,7 +246,7 @@ impl<T: Value> Mix<T> {
     fn eval(&self, at: &TexturePoint) -> T {
         let amount = self.amount.eval(at);
         let [first, second] = &self.textures;
-        // What has no part is not looked up: that saves time, and keeps what is not finite out.
+        // Textures of weight 0 are not looked up: that saves time, and keeps values that are not finite out.
         if amount == 0.0 {
             first.eval(at)
         } else if 1.0 - amount == 0.0 {
@@ -265,7 +265,7 @@ impl<T: Value> DirectionMix<T> {
     }
 }
 
-/// What a texture depends on beside the parameters (u, v).
+/// The dependences of a texture beside the parameters (u, v).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Needs {
     /// True where the point or the normal matters.
@@ -291,7 +291,7 @@ impl Needs {
         footprint: true,
     };
 
-    /// What two textures need together.
+    /// The dependences of two textures together.
     #[must_use]
     pub fn and(self, other: Self) -> Self {
         Self {

@@ -48,7 +48,7 @@ const GRADIENTS: [Vec3; 16] = [
 pub(super) fn noise(p: Vec3) -> f32 {
     let cell = p.floor();
     let within = p - cell;
-    // Whole numbers, of which the last eight bits count; what is not finite becomes some number.
+    // Whole numbers, of which the last eight bits count; infinity and NaN become some number.
     let corner = [cell.x, cell.y, cell.z].map(|x| x as i64);
     let permuted = |x: i64| i64::from(PERMUTATION[(x & 255) as usize]);
     let gradient = |offset: [i64; 3]| {
@@ -79,7 +79,7 @@ struct Octaves {
 }
 
 impl Octaves {
-    /// Σ gain^i · `shape`(noise(λ^i p)), where a pixel is `width` wide. What is left out counts
+    /// Σ gain^i · `shape`(noise(λ^i p)), where a pixel is `width` wide. An octave left out counts
     /// `mean`.
     fn sum(self, p: Vec3, width: f32, mean: f32, shape: impl Fn(f32) -> f32) -> f32 {
         let most = self.count as f32;
@@ -115,7 +115,7 @@ fn fbm(octaves: Octaves, p: Vec3, width: f32) -> f32 {
     octaves.sum(p, width, 0.0, |value| value)
 }
 
-/// What noise is made into.
+/// The functions made of noise.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum NoiseKind {
     /// Σ ωⁱ noise(λⁱ p).
@@ -139,9 +139,9 @@ pub enum NoiseKind {
 /// Noise in texture space.
 #[derive(Clone, Copy, Debug)]
 pub struct Noise {
-    /// What it is made into.
+    /// The function made of it.
     pub kind: NoiseKind,
-    /// Where.
+    /// The space it is defined in.
     pub space: TextureSpace,
 }
 
@@ -170,11 +170,11 @@ pub struct Marble {
     pub octaves: u32,
     /// The factor between them.
     pub roughness: f32,
-    /// What the point is multiplied by.
+    /// The factor of the point.
     pub scale: f32,
     /// How strong the noise is.
     pub variation: f32,
-    /// Where.
+    /// The space it is defined in.
     pub space: TextureSpace,
 }
 

@@ -23,7 +23,7 @@ impl<T: Value> Bilerp<T> {
     }
 }
 
-/// Where the cells of a checkerboard are; each is one wide.
+/// The cells of a checkerboard; each is one wide.
 #[derive(Clone, Copy, Debug)]
 pub enum Cells {
     /// Squares.
@@ -35,7 +35,7 @@ pub enum Cells {
 /// Two textures in turn; the cell from the origin on has the first.
 #[derive(Clone, Debug)]
 pub struct Checkerboard<T: Value> {
-    /// What is in the cells.
+    /// The textures of the cells.
     pub textures: [Texture<T>; 2],
     /// The cells.
     pub cells: Cells,

@@ -1,4 +1,4 @@
-//! Where textures are asked for: at points of surfaces, with the width of a pixel there (metres).
+//! The points at which textures are evaluated: on surfaces, with the width of a pixel there (metres).
 
 use crate::math::{Vec2, Vec3};
 use crate::shape::{Differentials, SurfacePoint};
@@ -12,11 +12,11 @@ pub struct TexturePoint {
     pub point: Vec3,
     /// The shading normal before any relief, unit.
     pub normal: Vec3,
-    /// What a pixel covers.
+    /// The footprint of a pixel.
     pub footprint: Footprint,
 }
 
-/// What a pixel covers of a surface: a function of the point and the camera.
+/// The part of a surface that a pixel covers: a function of the point and the camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Footprint {
     /// How wide it is; 0: textures are as fine as they can be. Unit: m.

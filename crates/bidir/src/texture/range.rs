@@ -1,4 +1,4 @@
-//! Bounds of the numbers that a texture gives: what points alone cannot tell, as between any of them
+//! Bounds of the numbers that a texture gives. Points alone cannot give them, as between any of them
 //! it may be another number.
 
 use super::map::{Change, ImageMap, Wrap};
@@ -40,7 +40,7 @@ impl Range {
         })
     }
 
-    /// What is in either, and between them.
+    /// The numbers in either, and between them.
     fn and(self, other: Self) -> Self {
         Self::around([self.least, self.most, other.least, other.most])
     }
@@ -53,7 +53,7 @@ impl Range {
         Self::around([a * c, a * d, b * c, b * d])
     }
 
-    /// What becomes of it where nothing falls and nothing exceeds what is next to it.
+    /// The range of `rising` over it, for a function that never falls.
     #[must_use]
     pub fn map(self, rising: impl Fn(f32) -> f32) -> Self {
         Self {

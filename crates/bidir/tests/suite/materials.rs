@@ -1,7 +1,7 @@
 //! All estimators agree on every material: a floor and a ball of it in a closed room, with a ceiling
 //! light and a small bright ball whose light the floor and the ball throw on as caustics.
 //!
-//! What a material does by a Dirac lobe, and what it does beside it, has to count once in each.
+//! The Dirac lobe of a material, and its other lobes, have to count once in each.
 
 use crate::common::Shot;
 use crate::common::statistics::{Replicates, WHOLE, check_agree, replicates};
@@ -55,12 +55,12 @@ fn render(scene: &Shot, integrator: IntegratorKind, mis: MisHeuristic) -> Replic
     replicates(scene, &settings, passes)
 }
 
-/// Whether the light tracer can see all of a material.
+/// The lobes of a material, which decide if the light tracer can see all of it.
 #[derive(Clone, Copy, PartialEq)]
 enum Lobes {
     /// None is a Dirac distribution.
     Finite,
-    /// Some are: what they show the lens, no light subpath finds.
+    /// Some are: no light subpath finds the light that they show the lens.
     Dirac,
 }
 

@@ -61,7 +61,7 @@ fn used(source: &str) -> impl Iterator<Item = &str> {
     })
 }
 
-/// What `source` of `module` uses that is not below it.
+/// The modules that `source` of `module` uses and that are not below it.
 fn upward<'a>(module: &str, source: &'a str) -> Vec<&'a str> {
     let own = level(module).unwrap_or_else(|| panic!("`{module}` has no place in the order"));
     let other = used(source).filter(|other| *other != module);

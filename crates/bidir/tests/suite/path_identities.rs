@@ -1,4 +1,4 @@
-//! What must hold exactly for every path, on real subpaths.
+//! Identities that must hold exactly for every path, on real subpaths.
 //!
 //! A path that one strategy made is taken apart and made again, from its points alone, as every
 //! other strategy would have made it. The product that is stored with a subpath is so compared

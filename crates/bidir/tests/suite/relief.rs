@@ -1,7 +1,7 @@
 //! All estimators agree on surfaces with relief and filtered textures: a bumped floor, glossy or
 //! diffuse in patches, and a ball under a map of normals, lit by an area light.
 //!
-//! What a pixel covers decides how fine textures and bumps are. It must be the same from
+//! The footprint of a pixel decides how fine textures and bumps are. It must be the same from
 //! whichever end a path was walked.
 
 use crate::common::Shot;

@@ -281,7 +281,7 @@ fn other_seeds_and_samplers_are_other_images() {
     assert!(film(&first) != film(&other));
 }
 
-/// Memory of this process. Unit: pages. None: the system does not tell.
+/// Memory of this process. Unit: pages. None: the system does not report it.
 fn resident_pages() -> Option<u64> {
     let text = std::fs::read_to_string("/proc/self/statm").ok()?;
     text.split_whitespace().nth(1)?.parse().ok()

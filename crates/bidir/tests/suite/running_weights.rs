@@ -19,7 +19,7 @@ const TOLERANCE: f32 = 1e-6;
 /// Weights below this are compared absolutely.
 const SMALL: f32 = 1e-30;
 
-/// What is compared, and how much of it says something.
+/// The two computations of weights, and the number of paths compared.
 #[derive(Default)]
 struct Comparison {
     sums: RunningSums,

@@ -23,8 +23,8 @@ pub(crate) struct Embree {
 }
 
 impl Embree {
-    /// The libraries that `BIDIR_EMBREE` names, divided as in `PATH`, or one of a usual name. `Err` tells
-    /// what was tried.
+    /// The libraries that `BIDIR_EMBREE` names, divided as in `PATH`, or one of a usual name. `Err` lists
+    /// the names tried.
     pub(crate) fn load() -> Vec<Result<Self, String>> {
         match std::env::var_os("BIDIR_EMBREE") {
             Some(paths) => std::env::split_paths(&paths)
@@ -55,8 +55,8 @@ impl Embree {
     }
 
     fn open(name: &OsStr) -> Result<Self, String> {
-        // SAFETY: what Embree and its libraries do when they are loaded is start no thread and touch
-        // nothing of ours; that the name is Embree's is for the user to see to.
+        // SAFETY: Embree and its libraries start no thread when they are loaded, and touch nothing of
+        // ours; that the name is Embree's is for the user to see to.
         let library = unsafe { Library::new(name) };
         let reason = |error| format!("{}: {error}", name.display());
         Self::with_version(library.map_err(reason)?)

@@ -64,7 +64,7 @@ impl Embree {
     }
 }
 
-/// What Embree has allocated; scenes are built one after another.
+/// Bytes that Embree has allocated; scenes are built one after another.
 static BYTES: AtomicIsize = AtomicIsize::new(0);
 
 type Monitor = extern "C" fn(Handle, isize, bool) -> bool;
@@ -80,7 +80,7 @@ pub(crate) struct EmbreeScene<'a> {
     device: Handle,
     /// The first is what rays are traced in.
     scenes: Vec<Handle>,
-    /// What geometries refer to: Embree reads a little beyond the end.
+    /// The buffers that geometries refer to: Embree reads a little beyond the end.
     buffers: Vec<(Vec<f32>, Vec<u32>)>,
     calls: Calls,
     seconds: f64,

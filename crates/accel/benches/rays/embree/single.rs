@@ -53,7 +53,7 @@ pub(super) enum Calls {
 }
 
 impl Calls {
-    /// Those of the library's version.
+    /// The calls of the library's version.
     pub(super) fn new(embree: &Embree) -> Self {
         if embree.version[0] == 3 {
             Self::V3 {
@@ -68,7 +68,7 @@ impl Calls {
         }
     }
 
-    /// Whether the ray hits, after finding where.
+    /// Finds the hit of the ray. True if there is one.
     pub(super) fn intersect(&self, scene: Handle, ray: &Ray) -> bool {
         let mut hit = RtcRayHit {
             ray: rtc_ray(ray),
@@ -96,7 +96,7 @@ impl Calls {
         hit.geometry != NOTHING
     }
 
-    /// Whether anything is in the way.
+    /// True if anything is in the way.
     pub(super) fn occluded(&self, scene: Handle, ray: &Ray) -> bool {
         let mut ray = rtc_ray(ray);
         let mut context = CONTEXT;

@@ -93,9 +93,9 @@ pub struct Slab {
     g: f32,
 }
 
-/// Where light from outside goes.
+/// The parts of light that arrives from outside.
 struct Arriving {
-    /// T: what enters.
+    /// T: the part that enters.
     entering: f32,
     /// B.
     base: Orders,

@@ -1,4 +1,4 @@
-//! A dielectric layer over an opaque base: what both coated materials have in common.
+//! A dielectric layer over an opaque base: the common part of both coated materials.
 //!
 //! Light that the interface lets through reaches the base along refracted directions, and leaves by
 //! the interface again, so that a base that scatters f_b inside scatters, seen from outside,
@@ -44,7 +44,7 @@ pub(super) struct Coat<const R: usize, const L: usize> {
     ggx: Ggx,
     /// g: the cosine that a grazing direction meets facets at.
     grazing: f32,
-    /// q: what facets shadow of the transmitted light.
+    /// q: the factor by which facets shadow the transmitted light.
     ratio: Curve<R>,
     /// ℓ: the depth of a crossing, divided by D.
     length: Curve<L>,
@@ -113,7 +113,7 @@ impl<const R: usize, const L: usize> Coat<R, L> {
         (cos2 > 0.0).then(|| Vec3::new(x, y, cos2.sqrt().copysign(w.z)))
     }
 
-    /// A(wo) A(wi): what the layer leaves of light that crosses it along both.
+    /// A(wo) A(wi): the part of light that the layer leaves after crossing along both.
     #[inline]
     pub(super) fn attenuation(&self, wo: Vec3, wi: Vec3) -> Spectrum {
         if self.depth.is_black() {

@@ -1,4 +1,4 @@
-//! What leaves a layer over white metal, after one reflection at the metal and after more.
+//! Light that leaves a layer over white metal, after one reflection at the metal and after more.
 //!
 //! E₁(μ) is the part of light that leaves after exactly one reflection, E(μ) after two or more, and
 //! m_k the share of that which leaves after exactly k, from all directions. They are integrated by
@@ -6,7 +6,7 @@
 //!
 //! The closed form of one reflection has a factor T = (1 - F(μ̂)) q(√μ) for each direction. Here q is
 //! such that it scatters E₁: a fixed point, which is near after some rounds because the reflected
-//! direction has about the cosine of the other. Walks also say how far light goes within the layer, and
+//! direction has about the cosine of the other. Walks also measure how far light goes within the layer, and
 //! how steeply it meets the facets of the metal.
 
 use super::layer::Interface;
@@ -23,7 +23,7 @@ const WALKS: u64 = 1 << 12;
 const FAINT: f32 = 3e-4;
 /// The most reflections of a walk: few need as many.
 const MOST: usize = 100;
-/// Reflections that are told apart; the last stands for all that are more.
+/// Orders of reflection that are counted apart; the last holds all higher ones.
 const ORDERS: usize = 32;
 /// Points of an integral over facets, in each dimension.
 const FACETS: usize = 32;
@@ -82,7 +82,7 @@ struct Light {
 struct Leaving {
     /// By the number of reflections, from 1.
     parts: [f32; ORDERS],
-    /// Of `parts[0]`: what absorption leaves, and with the weight (1 - cosθ)⁵.
+    /// Of `parts[0]`: the part that absorption leaves, and with the weight (1 - cosθ)⁵.
     once: [f32; 2],
     /// After more: Σ w way, Σ w (reflections - 1), Σ w cosθ, Σ w cos²θ, Σ w reflections.
     more: [f32; 5],
@@ -168,7 +168,7 @@ impl Reflections {
         }
     }
 
-    /// Σ m_k F^k a^(k-1) over k ≥ 2: what a metal of reflectance `fresnel` leaves of E, under a layer
+    /// Σ m_k F^k a^(k-1) over k ≥ 2: the part of E for a metal of reflectance `fresnel`, under a layer
     /// that leaves the part `trip` between two reflections.
     #[inline]
     pub(in crate::bsdf) fn remaining(&self, fresnel: f32, trip: f32) -> f32 {
@@ -329,7 +329,7 @@ struct Once {
     part: f32,
     /// With the weight (1 - cosθ)⁵ at the metal's facets.
     steep: f32,
-    /// Of `part`: what absorption leaves.
+    /// Of `part`: the part that absorption leaves.
     left: f32,
 }
 

@@ -46,7 +46,7 @@ pub struct Principled {
     f90: f32,
     /// The share of the transparent part.
     glass: f32,
-    /// What Fresnel's reflectance of the transparent part is scaled by.
+    /// The factor of Fresnel's reflectance of the transparent part.
     specular: f32,
     /// Index of refraction of the transparent part, inside over outside.
     eta: f32,
@@ -123,13 +123,13 @@ impl Principled {
         self.sheen.max_lane() * under::sheen_albedo(w.z.abs(), self.sheen_alpha)
     }
 
-    /// What coat and sheen leave of light along `w`.
+    /// The part of light along `w` that coat and sheen leave.
     #[inline]
     fn layers(&self, w: Vec3) -> f32 {
         (1.0 - self.coat_albedo(w)) * (1.0 - self.sheen_albedo(w))
     }
 
-    /// k: what the dielectric's reflection leaves for a diffuse base.
+    /// k: the part that the dielectric's reflection leaves for a diffuse base.
     #[inline]
     fn uncovered(&self, w: Vec3) -> f32 {
         self.uncovered_at(under::facet_weight(w.z.abs(), self.alpha()))
@@ -192,7 +192,7 @@ impl Principled {
         let below = (1.0 - coat) * (1.0 - fibres);
         let weight = under::facet_weight(w.z.abs(), self.alpha());
         let (_, crossing) = self.facet(w.z);
-        // Facets tilted away from `w` reflect where the bound says that none does.
+        // Facets tilted away from `w` reflect where the bound is zero.
         let tilted = 0.01 * self.f90.max(self.glass);
         let facets = self.reflectance(w.z, weight) + crossing + Spectrum::splat(tilted);
         let diffuse = self.tint * self.diffuse + self.through;

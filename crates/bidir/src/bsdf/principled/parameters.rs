@@ -1,4 +1,4 @@
-//! What a principled surface is described by, and what that makes of it.
+//! The parameters of a principled surface, and the BSDF that they give.
 
 use super::sheen::SHEEN_ALPHA;
 use super::{Principled, under};
@@ -6,7 +6,7 @@ use crate::bsdf::microfacet::Ggx;
 use crate::math::{INV_PI, Vec2, sqr};
 use crate::spectrum::Spectrum;
 
-/// What lies behind a transparent surface.
+/// The medium behind a transparent surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Wall {
     /// The same as before it: light goes on without being bent.
@@ -37,13 +37,13 @@ pub struct PrincipledParameters {
     pub grain: Vec2,
     /// The index of refraction of the dielectric; 0: it reflects all light.
     pub ior: f32,
-    /// What the dielectric's reflectance is scaled by, at all angles.
+    /// The factor of the dielectric's reflectance, at all angles.
     pub specular: f32,
-    /// What its reflectance along the normal is scaled by, beside.
+    /// A further factor of its reflectance along the normal.
     pub specular_color: Spectrum,
     /// The share of the dielectric that is transparent.
     pub transmission: f32,
-    /// What lies behind.
+    /// The medium behind the surface.
     pub wall: Wall,
     /// The share of the rest that lets light through diffusely.
     pub diffuse_transmission: f32,

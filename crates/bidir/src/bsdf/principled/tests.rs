@@ -186,7 +186,7 @@ fn white_surfaces_gain_nothing_in_a_furnace() {
     }
 }
 
-/// What all vertices keep is no larger than what the largest of the others takes.
+/// A principled BSDF is no larger than the largest of the others, as all vertices keep one.
 #[test]
 fn it_makes_no_vertex_larger() {
     assert!(size_of::<Principled>() <= size_of::<CoatedConductor>());

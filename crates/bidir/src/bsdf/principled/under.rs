@@ -1,8 +1,8 @@
-//! What a layer leaves for what lies under it: bounds of directional albedos in closed form.
+//! The light that a layer leaves for the lobes under it: bounds of directional albedos in closed form.
 //!
-//! A lobe on top reflects E(μ) of the light from a direction of cosine μ. What lies below is scaled
+//! A lobe on top reflects E(μ) of the light from a direction of cosine μ. The lobe below is scaled
 //! by 1 - Ẽ(μ) for each of its two directions, Ẽ ≥ E, so that both together never gain. The bounds
-//! were fitted to quadratures, as docs/derivations/principled.md tells; they are at most 0.08 above
+//! were fitted to quadratures, as docs/derivations/principled.md describes; they are at most 0.08 above
 //! the true values where α > 0.05.
 
 use crate::bsdf::fresnel;

@@ -60,7 +60,7 @@ fn coated() -> Vec<Bsdf> {
             let layer = Layer::new(eta, alpha);
             let reflections = Reflections::new(&layer, 0.2, 2.0);
             let ggx = Ggx::new(alpha, alpha);
-            // Few indices: what scatters is walked.
+            // Few indices, as scattering layers are walked.
             let is_hazy = (eta, alpha) == (1.5, 0.0) || (eta, alpha) == (0.7, 0.3);
             let hazes = if is_hazy { 3 } else { 1 };
             for &(thickness, albedo) in &[(0.0, 0.0), (1e4, 1.0), (2.0, 0.5)][..hazes] {

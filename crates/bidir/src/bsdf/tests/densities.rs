@@ -2,7 +2,7 @@ use super::{cases, is_two_sided, numbers};
 use crate::bsdf::TransportMode;
 use crate::testing::{Battery, Domain, Grid, samples};
 
-/// Directions are drawn as the density says, and what it lacks to 1 is lost below the surface.
+/// Directions follow the density, and the part that it lacks to 1 is lost below the surface.
 #[track_caller]
 fn check(is_taken: impl Fn(&str) -> bool) {
     let grid = Grid {
@@ -19,7 +19,7 @@ fn check(is_taken: impl Fn(&str) -> bool) {
         let draws = samples(&name, 1 << 20).map(|sample| {
             let (u_lobe, u) = numbers(&sample);
             let drawn = bsdf.sample(wo, TransportMode::Radiance, || u_lobe, u)?;
-            // What a Dirac lobe takes is not in the density.
+            // The part of a Dirac lobe is not in the density.
             (!drawn.is_delta).then_some(drawn.wi)
         });
         battery.chi2(&name, &grid, |wi| bsdf.pdf(wo, wi), draws);

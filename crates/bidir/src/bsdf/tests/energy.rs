@@ -83,7 +83,7 @@ fn white_surfaces_vanish_in_a_furnace_but_for_light_between_facets() {
     check_furnace(&white_metal(0.0), 1.0 - 1e-5);
     check_furnace(&glass(1.5, 0.0), 1.0 - 1e-5);
     check_furnace(&glass(0.7, 0.0), 1.0 - 1e-5);
-    // What a second facet would scatter again is lost.
+    // Light that a second facet would scatter again is lost.
     check_furnace(&white_metal(0.05), 0.9);
     check_furnace(&white_metal(0.3), 0.75);
     check_furnace(&white_metal(1.0), 0.3);

@@ -8,7 +8,7 @@ use crate::testing::{check_close, samples};
 #[track_caller]
 fn check_spectra(actual: Spectrum, expected: Spectrum, case: &str) {
     for lane in 0..4 {
-        // What crosses a facet at grazing incidence is 1 minus almost 1: it has few digits left.
+        // Transmittance at grazing incidence is 1 minus almost 1: it has few digits left.
         let slack = (expected[lane] - actual[lane]).clamp(-1e-4, 1e-4);
         check_close(actual[lane] + slack, expected[lane], 1e-3, case);
     }
@@ -182,7 +182,7 @@ fn coefficients_of_dirac_distributions_hold_the_probability_of_the_lobe() {
     }
 }
 
-/// What does not transmit has no value for directions on opposite sides.
+/// Opaque BSDFs have no value for directions on opposite sides.
 #[test]
 fn light_goes_through_only_what_transmits() {
     let mut all = 0;

@@ -1,4 +1,4 @@
-//! Light in a dielectric layer over an opaque base, event by event: what closed forms are judged by.
+//! Light in a dielectric layer over an opaque base, event by event: the reference for closed forms.
 //!
 //! It is position-free, in double precision, and shares nothing with the closed forms but the physics:
 //! Fresnel's equations by Snell's law, GGX facets drawn as spherical caps \[Dupuy23\], height-correlated
@@ -142,7 +142,7 @@ impl Stack {
 }
 
 impl Base {
-    /// Where light from `v` goes, and the part that does. None: it is lost.
+    /// The direction of light from `v`, and the part that goes there. None: it is lost.
     fn reflect(self, v: DVec3, u: [f64; 2]) -> Option<Ray> {
         match self {
             Self::Diffuse(reflectance) => {

@@ -96,7 +96,7 @@ fn the_terms_of_a_pass_are_its_image() {
     }
 }
 
-/// What is said of a term fits together.
+/// Checks that the parts of a term fit together.
 #[track_caller]
 fn check_term(replayed: &ReplayedTerm) {
     let value = replayed.term.value();
@@ -133,7 +133,7 @@ fn every_term_says_what_became_of_it() {
     }
 }
 
-/// Of what samples share each brings its part: counted, and told.
+/// Each sample brings its part of the shared light subpaths, in counters and in its replay.
 #[test]
 fn the_rays_of_a_pass_are_those_of_its_samples() {
     let scene = scene();

@@ -27,7 +27,7 @@ pub(super) const PATH_ALLOWANCE: f64 = 1.1;
 pub(super) const BDPT_ALLOWANCE: f64 = 0.85;
 /// The least albedo that a second moment is divided by: bounds rare dark paths.
 pub(super) const LEAST_ALBEDO: f32 = 1e-3;
-/// The least share of a path that a second moment is divided by: what a plan misses makes it very bad, not
+/// The least share of a path that a second moment is divided by: a missed path makes a plan very bad, not
 /// infinitely so.
 pub(super) const LEAST_SHARE: f64 = 1e-9;
 

@@ -18,7 +18,7 @@ pub(super) type IsLate<'a> = &'a (dyn Fn() -> bool + Sync);
 impl Effort<'_> {
     /// Hosts let training take at most one part in so many of the samples and of the time of a render.
     pub const PART: u32 = 10;
-    /// As many samples as training needs.
+    /// The number of samples that training needs.
     pub const WHOLE: Effort<'static> = Effort::at_most(u64::MAX);
 
     /// No more than so many samples.

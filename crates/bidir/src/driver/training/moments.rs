@@ -80,8 +80,8 @@ pub(super) struct Counts {
 }
 
 impl Counts {
-    /// Those of the estimator of `settings`, where light subpaths have so many vertices that can be connected,
-    /// and walks of the survey had a roulette of their own.
+    /// The counts of the estimator of `settings`, if a light subpath has `light_vertices` vertices that can be
+    /// connected on average, and walks of the survey had the roulette `surveyed`.
     pub(super) fn new(settings: &Settings, surveyed: PathRoulette, light_vertices: f64) -> Self {
         let lvc = &settings.lvc;
         let each = |candidates: u16| f64::from(candidates) / light_vertices.max(LEAST_SHARE);
@@ -279,7 +279,7 @@ mod tests {
         [moment, survey.cost(&path, &counts)]
     }
 
-    /// Its own strategies tell without other numbers of samples, and with the roulette that it has.
+    /// Its own strategies give the same without other numbers of samples, and with the roulette that it has.
     #[test]
     fn all_strategies_tell_second_moment_and_cost_of_path_tracing() {
         for start in 0..3 {

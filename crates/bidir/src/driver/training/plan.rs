@@ -56,8 +56,8 @@ pub(super) const LVC: Plan = Plan {
 const PLANS: [(Plan, f64); 3] = [(PATH, PATH_ALLOWANCE), (BDPT, BDPT_ALLOWANCE), (LVC, 1.0)];
 
 impl Plan {
-    /// The plan with the least product of second moment and cost. Where the survey found no light: `lvc`, which
-    /// makes most paths, or `path` where there are no lights.
+    /// The plan with the least product of second moment and cost. If the survey found no light: `lvc`, which
+    /// makes most paths, or `path` if there are no lights.
     pub(super) fn best(task: Task<'_>, survey: &Survey) -> Self {
         let settings = task.settings;
         let Some(squares) = survey.relative_squares(task.view.film()) else {

@@ -49,7 +49,7 @@ fn filters_are_normalised() {
 #[test]
 fn drawn_offsets_reproduce_the_filter() {
     for filter in examples() {
-        // Where h changes sign, a grid of numbers errs by 1/n.
+        // At sign changes of h, a grid of numbers errs by 1/n.
         let n = 2048;
         let mut sum = 0.0;
         for i in 0..n * n {

@@ -17,7 +17,7 @@ pub(super) fn scene(materials: &[Material], lights: Vec<Light>) -> Scene {
         let ball = Sphere::new(Affine3A::IDENTITY, 1.0, Orientation::Natural);
         builder.shape(Shape::Sphere(ball), material, None);
     }
-    // What no surface is made of does not count.
+    // A material of no surface does not count.
     builder.material(Material::ThinDielectric { eta: 1.5 });
     for light in lights {
         builder.light(light);

@@ -6,8 +6,8 @@
 //! **Weights.** For each vertex of the light subpath of a path, strategy (s, t) takes M N P samples on
 //! average. K differs from group to group, and P with it; weights must not, or the estimate is biased. They
 //! take M / κ in place of M N / K, with κ the mean of K / N in a training render
-//! ([`PathContext::connections`](crate::path::PathContext::connections)), and for a learnt P what stands in
-//! for it likewise.
+//! ([`PathContext::connections`](crate::path::PathContext::connections)), and for a learned P its stand-in
+//! likewise.
 //!
 //! s = 0, s = 1 and t = 1 are those of [`Bdpt`](super::Bdpt), but that a camera vertex may have several
 //! light points.

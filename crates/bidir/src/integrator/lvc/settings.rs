@@ -4,7 +4,7 @@ use crate::names::{as_text, named};
 use std::fmt;
 use std::str::FromStr;
 
-/// What [`Lvc`](super::Lvc) can be told.
+/// The settings of [`Lvc`](super::Lvc).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LvcSettings {
     /// M: how many vertices of the cache are candidates for each camera vertex.

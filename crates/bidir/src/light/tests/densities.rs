@@ -160,7 +160,7 @@ fn environments_are_drawn_by_luminance() {
     }
 }
 
-/// The point of the mesh for one of the square, whose x also says which triangle: of even area
+/// The point of the mesh for one of the square, whose x also chooses the triangle: of even area
 /// within each.
 fn on_mesh(mesh: &Mesh, p: Vec3) -> (LightPoint, f32) {
     let count = mesh.triangle_count();

@@ -1,5 +1,5 @@
-//! The choice by a tree: what is drawn has the probability that is found again, and all that light a
-//! receiver have one.
+//! The choice by a tree: an emitter is drawn with the probability that is found again, and all that
+//! light a receiver have one.
 
 use super::{Surroundings, examples, receivers};
 use crate::light::{
@@ -134,7 +134,7 @@ fn probabilities_sum_to_one_and_are_those_of_the_draws() {
     }
 }
 
-/// Checks that even numbers lead to each emitter as often as its probability says. An emitter takes
+/// Checks that even numbers lead to each emitter in proportion to its probability. An emitter takes
 /// one interval of them, so that its count is off by one or two and nothing else.
 #[track_caller]
 fn check_draws(tree: &LightTree, receiver: &Receiver, emitters: &[ChosenEmitter], case: &str) {

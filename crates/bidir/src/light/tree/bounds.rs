@@ -1,4 +1,4 @@
-//! Where emitters are, where they send light, and how much: boxes (m), cones of directions (rad) and
+//! Bounds of emitters, of their directions and of their light: boxes (m), cones of directions (rad) and
 //! peak intensities (W/sr, luminance).
 
 use accel::Aabb;
@@ -86,12 +86,12 @@ fn angle(a: Vec3, b: Vec3) -> f32 {
     libm::atan2f(a.cross(b).length(), a.dot(b))
 }
 
-/// What is known of an emitter, or of several.
+/// The bounds of an emitter, or of several.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::light) struct EmitterBounds {
     /// A box around them.
     pub(in crate::light) bounds: Aabb,
-    /// Where they send light to.
+    /// A cone around the directions of their light.
     pub(in crate::light) cone: Cone,
     /// The sum of their intensities, each where it is greatest. Unit: W/sr, luminance.
     pub(in crate::light) intensity: f32,

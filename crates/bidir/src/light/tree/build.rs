@@ -86,7 +86,7 @@ fn are_even(items: &[Item]) -> bool {
     items.iter().all(|item| item.around.cone.spread >= PI)
 }
 
-/// The emitters of the children of a node: those of a half beside each other.
+/// The emitters of the children of a node; children of one half are neighbours.
 fn quarters(items: &mut [Item], level: u32) -> [&mut [Item]; WIDTH] {
     let [a, b] = halves(items, level);
     let [[a, b], [c, d]] = [halves(a, level), halves(b, level)];
@@ -137,7 +137,7 @@ impl Axis {
     }
 }
 
-/// Where items are divided: before a bin.
+/// A plane that divides items: before a bin.
 struct Plane {
     axis: Axis,
     bin: usize,

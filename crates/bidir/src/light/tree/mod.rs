@@ -11,9 +11,9 @@
 //! - θ' = max(0, θ - θ_o - θ_u), with θ from the axis to the receiver, and sinθ_u = r/d the cone in
 //!   which the ball is seen: no normal is nearer to the receiver's direction. Beyond θ_e none emits;
 //! - θ_r' = max(0, θ_r - θ_u), from the receiver's shading normal to the centre, on the side that
-//!   the path goes on at. Where the surface transmits, it is |cosθ_r|.
+//!   the path goes on at. If the surface transmits, it is |cosθ_r|.
 //!
-//! Inside of the ball all cosines are 1. Where bounds say that no light can come, a thousandth is
+//! Inside of the ball all cosines are 1. If bounds exclude all light, a thousandth is
 //! left, as they are rounded, and as a choice has to be made; within the horizon the receiver's
 //! cosine is taken for a tenth at least, as much that shines does so at grazing angles.
 //!
@@ -24,10 +24,10 @@
 //! lamps can cost more than twice what they must.
 //!
 //! Below a child that is at least eight radii away, and whose emitters send their light in much the
-//! same directions, or evenly, the choice is by intensity alone: more nodes would tell little more.
+//! same directions, or evenly, the choice is by intensity alone: more nodes would add little.
 //!
-//! One number is used at every level, so that its stratification is kept. What a receiver is given
-//! for an emitter can be found again: each knows its path from the root, as bits.
+//! One number is used at every level, so that its stratification is kept. The probability of an
+//! emitter for a receiver can be found again: each knows its path from the root, as bits.
 
 mod bounds;
 mod build;
@@ -46,7 +46,7 @@ const POWER_BESIDE_INFINITY: f32 = 0.5;
 /// The same elsewhere.
 const POWER: f32 = 1.0 / 16.0;
 
-/// Where the light that a surface scatters comes from.
+/// The sides whose light a surface scatters.
 #[derive(Clone, Copy, Debug)]
 pub enum Facing {
     /// From the side of this unit normal.
@@ -64,7 +64,7 @@ impl Facing {
     }
 }
 
-/// Whom a light is chosen for.
+/// The surface point that a light is chosen for.
 #[derive(Clone, Copy, Debug)]
 pub struct Receiver {
     /// The point.
@@ -134,8 +134,8 @@ impl LightTree {
         }
     }
 
-    /// Draws an emitter. None: there is no light. Where there is a choice, it is asked for whom, and for
-    /// the number `u`.
+    /// Draws an emitter. None: there is no light. The receiver and the number `u` are
+    /// asked for only if there is a choice.
     #[inline]
     pub fn sample(
         &self,
@@ -150,7 +150,7 @@ impl LightTree {
         Some(self.sample_among(&receiver(), u()))
     }
 
-    /// The same where there are several: apart, as scenes with one lamp shall not pay for it.
+    /// The same for several emitters. Outlined: keeps the path with one emitter small.
     #[inline(never)]
     fn sample_among(&self, receiver: &Receiver, u: f32) -> ChosenEmitter {
         let a = self.power_part;

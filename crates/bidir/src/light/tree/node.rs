@@ -12,13 +12,13 @@ use glam::Vec4;
 /// The children of a node.
 pub(super) const WIDTH: usize = 4;
 
-/// What is left of the importance where bounds say that no light can come: they are rounded, and a
+/// The factor left of the importance where bounds exclude all light: they are rounded, and a
 /// receiver whose emitters all turn away still needs a choice.
 const LEAST: f32 = 1e-3;
-/// The least cosine of a receiver within its horizon: what shines does so at grazing angles too.
+/// The least cosine of a receiver within its horizon: glossy surfaces shine at grazing angles too.
 const GRAZING: f32 = 0.1;
 
-/// What a child is.
+/// The kinds of a child.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Child {
     /// Nothing: a place that is left.
@@ -56,7 +56,7 @@ pub(super) struct Node {
     pub(super) children: [Child; WIDTH],
 }
 
-/// What the children are to a receiver.
+/// The shares of the children for a receiver.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Shares {
     /// I / Σ I of each.
@@ -87,7 +87,7 @@ impl Angle {
         Self { cos, sin }
     }
 
-    /// What is left of this angle after `other`; 0 where nothing is.
+    /// This angle less `other`; 0 where nothing is left.
     #[inline]
     fn less(&self, other: &Self) -> Self {
         let is_within = self.cos.cmpgt(other.cos);
@@ -134,12 +134,12 @@ impl Node {
         self.children[i] = child;
     }
 
-    /// Says that child number `i` is of emitters that shine evenly, or in much the same directions.
+    /// Marks child number `i` as one of emitters that shine evenly, or in much the same directions.
     pub(super) fn set_uniform(&mut self, i: usize) {
         self.far2[i] = FAR * FAR * self.radius2[i];
     }
 
-    /// What the children are to `receiver`.
+    /// The shares of the children for `receiver`.
     #[inline]
     pub(super) fn shares(&self, receiver: &Receiver) -> Shares {
         let across = offset(receiver.point, &self.centre);

@@ -2,7 +2,7 @@
 //! are, and so does the geometric normal.
 //!
 //! The frame is a function of the point and of the camera, so that the integrand stays one function of
-//! the path; what the two normals disagree on is dealt with where light scatters
+//! the path. Scattering handles the directions on which the two normals disagree
 //! ([`Turn::scatter`](crate::path::Turn::scatter)).
 
 use super::{Material, Mixture};
@@ -11,7 +11,7 @@ use crate::shape::{Differentials, SurfacePoint};
 use crate::texture::{ColorTexture, FloatTexture, TexturePoint};
 use std::sync::Arc;
 
-/// What turns the shading frame of a surface.
+/// A texture that turns the shading frame of a surface.
 #[derive(Clone, Debug)]
 pub enum Relief {
     /// The normals of the surface pushed out along its normal by a height. Unit: m.
@@ -25,13 +25,13 @@ pub enum Relief {
 pub struct NormalMap {
     /// The colours, linear as stored.
     pub texture: ColorTexture,
-    /// What their x and y are multiplied by.
+    /// The factor of their x and y.
     pub scale: f32,
-    /// Where their y points.
+    /// The direction of their y.
     pub bitangent: Bitangent,
 }
 
-/// Where the y of a [`NormalMap`] points; its x follows the surface's tangent, its z is the shading
+/// The direction of the y of a [`NormalMap`]; its x follows the surface's tangent, its z is the shading
 /// normal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Bitangent {
@@ -69,7 +69,7 @@ impl Material {
 
 impl Relief {
     /// The shading frame at a point. Its normal is on the side of the geometric normal, as in
-    /// pbrt-v4; where nothing can be told, the frame is that of the surface.
+    /// pbrt-v4; where it is undefined, the frame is that of the surface.
     pub fn frame(
         &self,
         surface: &SurfacePoint,

@@ -176,7 +176,7 @@ fn a_constant_height_or_a_flat_map_changes_nothing() {
     }
 }
 
-/// The stored y goes to the left of ∂p/∂u, or to the side of ∂p/∂v; only mirrored parameters tell.
+/// The stored y goes to the left of ∂p/∂u, or to the side of ∂p/∂v; they differ if parameters are mirrored.
 #[test]
 fn normal_maps_follow_the_parameters() {
     let n = Vec3::new(0.6, 0.0, 0.8);

@@ -1,4 +1,4 @@
-//! What is said of materials against what is known of them, and against draws from them.
+//! The test of materials for Dirac distributions, against known answers and against draws.
 
 use super::*;
 use crate::bsdf::{TransportMode, Wall};

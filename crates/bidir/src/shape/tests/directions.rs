@@ -5,11 +5,11 @@ use crate::shape::{Orientation, Shape, Sphere};
 use crate::testing::{Battery, Domain, Grid, check_close, samples};
 use std::f64::consts::PI;
 
-/// What these tests look at; it fits a binary fraction, so that the far view is exact.
+/// The centre of the ball that these tests look at: binary fractions, so that the far view is exact.
 const CENTRE: Vec3 = Vec3::new(1.0, -2.0, 0.5);
 const RADIUS: f32 = 0.875;
 
-/// Where they look from, by distance from the centre in radii.
+/// The places they look from, by distance from the centre in radii.
 const DISTANCES: [(&str, f32); 6] = [
     ("far", 32.0),
     ("very far", 32768.0),
@@ -69,7 +69,7 @@ impl View {
                 * RADIUS
     }
 
-    /// What is seen along (x, y) of the unit square: even in solid angle.
+    /// The point seen along (x, y) of the unit square: even in solid angle.
     fn look(&self, x: f64, y: f64) -> Seen {
         let drop = x * self.height();
         let (sin2, cos) = (drop * (2.0 - drop), 1.0 - drop);
@@ -119,7 +119,7 @@ impl View {
     }
 }
 
-/// Points are drawn for a receiver as the density says, in solid angle around it.
+/// Points drawn for a receiver follow the density, in solid angle around it.
 #[test]
 fn samples_for_a_receiver_follow_the_density() {
     let grid = Grid {
@@ -144,7 +144,7 @@ fn samples_for_a_receiver_follow_the_density() {
     battery.check();
 }
 
-/// Where the ball is seen in a cone, every ray of the cone has the same density.
+/// If the ball is seen in a cone, every ray of the cone has the same density.
 #[test]
 fn rays_that_hit_a_sphere_have_the_density_of_its_cone() {
     for (name, distance) in DISTANCES

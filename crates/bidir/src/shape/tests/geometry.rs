@@ -60,7 +60,7 @@ fn normals_stand_upright_on_surfaces() {
     }
 }
 
-/// Points are where the parametrisation says, within the error that rays are pushed off by.
+/// Points are where the parametrisation puts them, within the error that rays are pushed off by.
 #[test]
 fn points_lie_on_the_surface_within_their_error() {
     for example in examples() {
@@ -81,7 +81,7 @@ fn points_lie_on_the_surface_within_their_error() {
     }
 }
 
-/// What the intersector finds at a drawn point is what was drawn.
+/// The intersector finds the drawn surface at a drawn point.
 #[test]
 fn a_hit_has_the_geometry_of_the_sample() {
     for example in examples() {
@@ -141,7 +141,7 @@ fn the_front_is_the_outside_unless_reversed() {
     }
 }
 
-/// The winding says the front of a mesh, unless it has normals: they do.
+/// The winding decides the front of a mesh, unless it has normals.
 #[test]
 fn the_front_of_a_mesh_follows_its_winding_or_its_normals() {
     let faceted = triangle();

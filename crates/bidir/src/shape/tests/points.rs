@@ -22,7 +22,7 @@ fn point(example: &Example, p: Vec3) -> Vec3 {
     Vec3::from_array((example.point)(f64::from(p.x), f64::from(p.y)).map(|x| x as f32))
 }
 
-/// Points are drawn as the density says, and it integrates to one over the area.
+/// Drawn points follow the density, and it integrates to one over the area.
 #[test]
 fn samples_follow_the_density() {
     let grid = Grid {

@@ -95,7 +95,7 @@ fn noise_is_zero_at_whole_numbers_smooth_and_without_mean() {
     assert!((sum / f64::from(n)).abs() < 0.01, "{sum}");
 }
 
-/// Where no octave is wider than a pixel, only the mean is left; without an extent all octaves are.
+/// If no octave is wider than a pixel, only the mean is left; without an extent all octaves are.
 #[test]
 fn octaves_finer_than_a_pixel_are_left_out() {
     let texture = |octaves| {

@@ -356,13 +356,13 @@ fn effort() -> u64 {
     variable("BIDIR_TEST_EFFORT").unwrap_or(1).max(1)
 }
 
-/// Where comparisons fail: the variable BIDIR_TEST_LEVEL, else [`LEVEL`].
+/// The level at which comparisons fail: the variable BIDIR_TEST_LEVEL, else [`LEVEL`].
 fn level() -> f64 {
     let variable = std::env::var("BIDIR_TEST_LEVEL").ok();
     variable.map_or(LEVEL, |text| text.parse().expect("a level is a number"))
 }
 
-/// Where the seeds of replicates begin: the variable BIDIR_TEST_SEED, else 0.
+/// The first seed of replicates: the variable BIDIR_TEST_SEED, else 0.
 fn first_seed() -> u64 {
     variable("BIDIR_TEST_SEED").unwrap_or(0)
 }

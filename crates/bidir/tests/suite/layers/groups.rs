@@ -57,7 +57,7 @@ fn parts_add_up_to_the_picture_and_leave_it_alone() {
     }
 }
 
-/// What is kept of each lamp's group.
+/// The images of each lamp's group.
 fn pictures_of_groups(film: &Film) -> [Vec<Rgb>; 3] {
     let images = film.develop_layers();
     ["ceiling", DEFAULT_GROUP, ENVIRONMENT_GROUP].map(|group| {

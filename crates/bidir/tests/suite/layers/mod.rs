@@ -1,5 +1,5 @@
-//! What a film keeps beside the picture: known features of a plane, parts that add up, and groups of
-//! lights that are what the lights alone would give.
+//! The images that a film keeps beside the picture: known features of a plane, parts that add up, and
+//! groups of lights that equal the images of the lights alone.
 
 mod films;
 mod groups;

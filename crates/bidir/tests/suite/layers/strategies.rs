@@ -107,7 +107,7 @@ fn mean_and_variance(films: &[Film], strategy: Strategy) -> [f64; 2] {
     [0, 1].map(|k| moments.iter().map(|moment| moment[k]).sum::<f64>() / size as f64)
 }
 
-/// Compares what a session tells of each strategy with its films, pass by pass. Variances of light
+/// Compares a session's moments of each strategy with its films, pass by pass. Variances of light
 /// images, whose paths meet in pixels, may be wrong by the part `tolerance`.
 #[track_caller]
 fn check_moments(scene: &Shot, settings: Settings, count: u64, tolerance: f64) {
