@@ -62,7 +62,12 @@ class Scene:
 @final
 class Session:
     def __new__(
-        cls, scene: Scene, requested: Mapping[str, Any], threads: int, limits: Any
+        cls,
+        scene: Scene,
+        requested: Mapping[str, Any],
+        threads: int,
+        training: int | None,
+        time: float | None,
     ) -> Session: ...
     def step(self) -> None: ...
     def start_at(self, first: int) -> None: ...

@@ -9,7 +9,7 @@ from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
-from typing import Any, NamedTuple, Protocol, TypeAlias
+from typing import Any, Protocol, TypeAlias
 
 from bidir import _bidir
 from bidir.errors import FilmError, RenderInterruptedError, SettingsError
@@ -149,7 +149,7 @@ class Session:
         strategy_layers: int = 0,
         threads: int = 0,
         training: int | None = None,
-        _of_render: tuple[int | None, float | None] = (None, None),
+        _time: float | None = None,
     ) -> None:
         """Start a render; only training, if the integrator has any, is done here.
 
@@ -175,9 +175,8 @@ class Session:
             raise SettingsError(f"threads: {threads} is below 0")
         if training is not None and training < 0:
             raise SettingsError(f"training: {training} is below 0")
-        # Training takes at most a tenth of the passes and seconds of the render.
-        limits = _TrainingLimits(training, *_of_render)
-        self._native = _bidir.Session(self.scene._native, native, threads, limits)
+        # Training takes at most a tenth of the time of a render.
+        self._native = _bidir.Session(self.scene._native, native, threads, training, _time)
         self._stopping = "fixed"
 
     def step(self, passes: int = 1) -> None:
@@ -305,7 +304,7 @@ def render(
         strategy_layers=strategy_layers,
         threads=threads,
         training=None if earlier is None else _training(earlier),
-        _of_render=(limit, time) if earlier is None else (None, None),
+        _time=time if earlier is None else None,
     )
     limits = {"spp": limit, "time": time, "noise": noise}
     keeper = _Keeper(session, checkpoint, earlier, checkpoint_every, limit)
@@ -337,14 +336,6 @@ def _training(film: Film) -> int | None:
     """Return the number of samples that the training of a film was limited to."""
     samples = film.settings.get("training")
     return None if samples is None else int(samples)
-
-
-class _TrainingLimits(NamedTuple):
-    """The limits of training: its samples, or passes and seconds of the render."""
-
-    samples: int | None
-    passes: int | None
-    time: float | None
 
 
 class _Keeper:

@@ -26,19 +26,16 @@ pub(crate) struct TrainingLimits {
 }
 
 impl TrainingLimits {
-    /// Returns the limits for a render that starts now, with the limits of all its samples and of its time. A
-    /// render that continues the film of `earlier` repeats its training.
-    pub(crate) fn new(
-        samples: Option<u64>,
-        time: Option<Duration>,
-        earlier: Option<&FilmHeader>,
-    ) -> Self {
+    /// Returns the limits for a render that starts now and has so much time. A render that continues the film
+    /// of `earlier` repeats its training. The number of passes sets no limit, so that parts of a render have the
+    /// training of the whole.
+    pub(crate) fn new(time: Option<Duration>, earlier: Option<&FilmHeader>) -> Self {
         if let Some(earlier) = earlier {
             let samples = formats::film::training_samples(earlier).unwrap_or(u64::MAX);
             return Self { samples, end: None };
         }
         Self {
-            samples: samples.map_or(u64::MAX, |samples| samples / u64::from(Effort::PART)),
+            samples: u64::MAX,
             end: time.and_then(|time| Instant::now().checked_add(time / Effort::PART)),
         }
     }
@@ -175,19 +172,19 @@ mod tests {
             header(&[("trained-mean", "1e0")]),
             header(&[("trained-mean", "1e0"), ("training", "64")]),
         );
-        let limits = |time, earlier| TrainingLimits::new(Some(1000), time, earlier);
         for time in [None, Some(Duration::from_secs(2)), Some(Duration::MAX)] {
             for (earlier, samples) in [(&whole, u64::MAX), (&short, 64)] {
                 let end = None;
-                assert_eq!(limits(time, Some(earlier)), TrainingLimits { samples, end });
+                let limits = TrainingLimits::new(time, Some(earlier));
+                assert_eq!(limits, TrainingLimits { samples, end });
             }
         }
-        let alone = limits(Some(Duration::from_secs(20)), None);
-        assert_eq!(alone.samples, 100);
+        let alone = TrainingLimits::new(Some(Duration::from_secs(20)), None);
+        assert_eq!(alone.samples, u64::MAX);
         let end = alone.end.expect("the time is limited");
         let left = end.saturating_duration_since(Instant::now());
         assert!(left <= Duration::from_secs(2) && left > Duration::from_secs(1));
-        let open = TrainingLimits::new(None, None, None);
+        let open = TrainingLimits::new(None, None);
         assert_eq!((open.samples, open.end), (u64::MAX, None));
     }
 }

@@ -50,8 +50,7 @@ pub(crate) fn run(args: &RenderArgs, console: Console) -> Result<Exit, Failure> 
     loaded.print_warnings(&args.scene, unused + lost + missing, console)?;
     if let Some(target) = args.replay {
         replay::check_apart(args, &loaded.inputs)?;
-        // The sample is one of the render with the other arguments.
-        let limits = TrainingLimits::new(samples(args, &loaded), None, None);
+        let limits = TrainingLimits::new(None, None);
         return match begin::session(args, &loaded, &settings, &signals, limits, console)? {
             Started::Session(session) => replay::run(args, &session, target),
             Started::Stopped(exit) => Ok(exit),
@@ -75,16 +74,6 @@ pub(crate) fn run(args: &RenderArgs, console: Console) -> Result<Exit, Failure> 
         signals: &signals,
     }
     .run(checkpoint, load, server)
-}
-
-/// Returns the number of samples of the whole render, whichever part of it this is. None: it is not limited, or
-/// not known.
-fn samples(args: &RenderArgs, loaded: &LoadedScene) -> Option<u64> {
-    let budget = &args.budget;
-    let is_open = budget.time.is_some() || budget.noise.is_some() || args.long.passes.is_some();
-    let spp = budget.spp.filter(|_| args.long.passes.is_none());
-    let passes = spp.or((!is_open).then_some(loaded.spp))?;
-    Some(passes.saturating_mul(loaded.view.film().crop.area()))
 }
 
 /// A render whose arguments are checked: only a signal, a full disk or a bug can prevent its image.
@@ -114,8 +103,7 @@ impl Job<'_> {
         }
         let is_resumed = checkpoint.as_ref().is_some_and(Checkpoint::is_resumed);
         let earlier = checkpoint.as_ref().and_then(Checkpoint::earlier);
-        let samples = samples(self.args, self.loaded);
-        let limits = TrainingLimits::new(samples, budget.time, earlier);
+        let limits = TrainingLimits::new(budget.time, earlier);
         let start = Instant::now();
         let started = begin::session(
             self.args,

@@ -92,33 +92,6 @@ impl State {
     }
 }
 
-/// The limits of training, of which None is none.
-#[derive(FromPyObject)]
-struct TrainingLimits {
-    /// The maximum number of samples.
-    samples: Option<u64>,
-    /// The passes of the render, of whose samples training takes at most a tenth.
-    passes: Option<u64>,
-    /// The time of the render, likewise. Unit: seconds.
-    time: Option<f64>,
-}
-
-impl TrainingLimits {
-    /// The maximum number of samples of training for a film of so many pixels.
-    fn samples(&self, pixels: u64) -> u64 {
-        let of_passes = self
-            .passes
-            .map(|passes| passes.saturating_mul(pixels) / u64::from(Effort::PART));
-        self.samples.or(of_passes).unwrap_or(u64::MAX)
-    }
-
-    /// True if training that began at `begin` has no time left.
-    fn is_late(&self, begin: Instant) -> bool {
-        let part = self.time.map(|time| time / f64::from(Effort::PART));
-        part.is_some_and(|part| begin.elapsed().as_secs_f64() >= part)
-    }
-}
-
 impl Session {
     /// Calls `f` with the state; other Python threads run while this one waits for it.
     fn with<T: Send>(&self, py: Python<'_>, f: impl FnOnce(&mut State) -> T + Send) -> T {
@@ -145,7 +118,8 @@ impl Session {
         scene: &Scene,
         requested: Requested,
         threads: usize,
-        limits: TrainingLimits,
+        training: Option<u64>,
+        time: Option<f64>,
     ) -> PyResult<Self> {
         let settings = resolve(py, &requested, &scene.settings)?;
         let resources = Resources {
@@ -153,11 +127,12 @@ impl Session {
             ..Resources::default()
         };
         let begin = Instant::now();
+        let part = time.map(|time| time / f64::from(Effort::PART));
         let (shared, view, own) = (scene.shared.clone(), &scene.view, settings.clone());
         let session = wait_silently(py, |_| {
             let effort = Effort {
-                samples: limits.samples(view.film().crop.area()),
-                is_late: &|| limits.is_late(begin),
+                samples: training.unwrap_or(u64::MAX),
+                is_late: &|| part.is_some_and(|part| begin.elapsed().as_secs_f64() >= part),
             };
             driver::Session::with_effort(shared, view, own, &resources, effort)
         })?;
@@ -195,6 +170,7 @@ impl Session {
         wait_silently(py, |stop| {
             let mut state = self.lock();
             let begin = Instant::now();
+            let part = time.map(|time| time / f64::from(Effort::PART));
             let watcher = Watcher { stop, begin };
             state.session.step(&watcher);
             state.time += begin.elapsed();

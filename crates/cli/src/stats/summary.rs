@@ -62,7 +62,7 @@ impl Summary {
         let plan = self.plan.as_ref();
         let plan = plan.map(|plan| format!("auto chose {}", describe(plan)));
         let trained = self.trained.map(|samples| {
-            format!("training was limited to {samples} samples, a tenth of the render")
+            format!("training was limited to {samples} samples, a tenth of the time")
         });
         let training: Vec<_> = plan.into_iter().chain(trained).collect();
         let training = Some(training.join("; ")).filter(|line| !line.is_empty());
@@ -249,7 +249,7 @@ mod tests {
         let [_, line] = limited.lines().try_into().expect("two lines");
         assert_eq!(
             line,
-            "training was limited to 512 samples, a tenth of the render"
+            "training was limited to 512 samples, a tenth of the time"
         );
     }
 
