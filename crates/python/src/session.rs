@@ -170,7 +170,6 @@ impl Session {
         wait_silently(py, |stop| {
             let mut state = self.lock();
             let begin = Instant::now();
-            let part = time.map(|time| time / f64::from(Effort::PART));
             let watcher = Watcher { stop, begin };
             state.session.step(&watcher);
             state.time += begin.elapsed();
