@@ -422,7 +422,7 @@ PATHS = [
         "vertices of a light cache in the groups of their depths",
         "crates/bidir/src/select/grouped.rs",
         "=> 1 + vertex,",
-        "=> 1 + vertex.min(0) + u32::from(candidate.strategy.s),",
+        "=> 1 + vertex.min(0) + u32::from(candidate.term.strategy.s),",
         unit("select::"),
     ),
     (
