@@ -10,7 +10,7 @@
 //!   → candidates: every connection (s, t), weighted, before visibility      path::connect, path::mis
 //!   → select: a probability π for each candidate                            select
 //!   → trace only the chosen segments                                        scene::visibility
-//!   → film: add value / π                                                   film
+//!   → film: add C w v / π                                                   film
 //! ```
 //!
 //! The crate does not read files, print, look at a clock or hold statics. A built scene is valid,

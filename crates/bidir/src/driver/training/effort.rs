@@ -7,8 +7,7 @@ pub struct Effort<'a> {
     /// The most samples. The first 16 are always taken, and the others in rounds that double their number:
     /// training with as many as another one took is the same.
     pub samples: u64,
-    /// Ends training where it becomes true: with the samples of the rounds that were complete. Asked by all
-    /// threads.
+    /// Training ends when it returns true, with the samples of the complete rounds. All threads call it.
     pub is_late: IsLate<'a>,
 }
 
@@ -16,7 +15,7 @@ pub struct Effort<'a> {
 pub(super) type IsLate<'a> = &'a (dyn Fn() -> bool + Sync);
 
 impl Effort<'_> {
-    /// Hosts let training take at most one part in so many of the samples and of the time of a render.
+    /// Hosts give training at most one part in so many of the time of a render.
     pub const PART: u32 = 10;
     /// The number of samples that training needs.
     pub const WHOLE: Effort<'static> = Effort::at_most(u64::MAX);
