@@ -23,12 +23,12 @@ METHODS = {
 PROFILED = ("room-indirect", "bdpt")
 # The functions of each stage of `bdpt`, by the names of the stages in `--stats`.
 STAGES = {
-    "walk": r"^bidir::(path::walk::(camera|light)_subpath|integrator::workspace::camera_ray)$",
-    "hits": r"^bidir::integrator::bdpt::hits$",
-    "light_image": r"^bidir::integrator::bdpt::light_images$",
-    "candidates": r"^bidir::integrator::bdpt::gather_candidates$",
+    "walk": r"^bidir::integrator::stages::walk::(walk|sum)_(camera|light)$",
+    "hits": r"^bidir::integrator::stages::hits::hits$",
+    "light_image": r"^bidir::integrator::stages::light_image::light_image$",
+    "candidates": r"^bidir::integrator::stages::(next_event::next_events|connect::connect)$",
     "select": r"^<bidir::select::\w+::\w+ as bidir::select::Selector>::select$",
-    "shadow": r"^bidir::integrator::bdpt::trace_chosen$",
+    "shadow": r"^bidir::integrator::stages::trace::shadow_rays$",
     "film": r"^bidir::(driver::deposit::Deposit::take|film::Film::add_pass"
             r"|film::pass::PassBuffer::clear)$",
 }

@@ -71,13 +71,13 @@ class Stages(unittest.TestCase):
                                for line in ("fn=%s" % name, "0 %d" % count))
 
     NAMES = [
-        ("bidir::path::walk::camera_subpath", 100),
-        ("bidir::path::walk::light_subpath", 60),
-        ("bidir::integrator::bdpt::hits", 10),
-        ("bidir::integrator::bdpt::light_images", 50),
-        ("bidir::integrator::bdpt::gather_candidates", 200),
+        ("bidir::integrator::stages::walk::walk_camera", 100),
+        ("bidir::integrator::stages::walk::walk_light", 60),
+        ("bidir::integrator::stages::hits::hits", 10),
+        ("bidir::integrator::stages::light_image::light_image", 50),
+        ("bidir::integrator::stages::connect::connect", 200),
         ("<bidir::select::simple::All as bidir::select::Selector>::select", 8),
-        ("bidir::integrator::bdpt::trace_chosen", 120),
+        ("bidir::integrator::stages::trace::shadow_rays", 120),
         ("bidir::driver::deposit::Deposit::take", 20),
         ("bidir::driver::session::Session::step", 32),
     ]

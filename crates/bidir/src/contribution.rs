@@ -16,23 +16,9 @@ pub struct Term {
     pub contribution: Spectrum,
     /// The strategy's share w of the path.
     pub weight: f32,
-    /// Its number among the terms of the sample that are not zero; 0 until it is counted.
-    pub number: u32,
 }
 
 impl Term {
-    /// A term that is not counted yet.
-    #[inline]
-    pub fn new(strategy: Strategy, light: u32, contribution: Spectrum, weight: f32) -> Self {
-        Self {
-            strategy,
-            light,
-            contribution,
-            weight,
-            number: 0,
-        }
-    }
-
     /// C w.
     #[inline]
     pub fn value(&self) -> Spectrum {

@@ -37,10 +37,10 @@ fn record(session: &Session<'_>, pass: u64) -> Vec<Contributions> {
     let of = |pixel| {
         let replay = session.replay(crop.pixel(pixel), pass)?;
         let rgb = |value| color.to_rgb(value, &replay.wavelengths);
-        let splats = replay.workspace.splats.iter();
-        let splats = splats.map(|splat| (splat.place, rgb(splat.contribution.value())));
+        let splats = replay.splats();
+        let splats = splats.map(|(contribution, place)| (place, rgb(contribution.value())));
         Some(Contributions {
-            camera: rgb(replay.workspace.value),
+            camera: rgb(replay.value()),
             splats: splats.collect(),
         })
     };

@@ -1,152 +1,211 @@
-//! From a sample's workspace to the running pass: the picture, its parts, and raw images.
+//! From a batch to the running pass: the picture, its parts, and raw images.
 
+use super::features::Features;
 use crate::contribution::Contribution;
-use crate::film::{Layers, PassBuffer};
-use crate::integrator::{Splat, Workspace};
-use crate::path::{PathContext, Strategy};
+use crate::film::{Layers, PassBuffer, SplatPlace};
+use crate::integrator::{Batch, Entry, Job, Sample};
+use crate::path::Strategy;
 use crate::spectrum::{Rgb, Spectrum, luminance};
 use crate::stats::Stats;
 
-/// The destination of the contributions of a sample.
+/// The destination of the contributions of a batch.
 pub(super) struct Deposit<'a> {
-    pub(super) context: &'a PathContext<'a>,
+    pub(super) job: &'a Job<'a>,
     pub(super) layers: &'a Layers,
     pub(super) buffer: &'a PassBuffer,
-    pub(super) pixel: usize,
 }
 
 impl Deposit<'_> {
-    /// Moves the contributions of the last sample to the pass.
-    pub(super) fn take(&self, workspace: &mut Workspace) {
-        self.buffer
-            .set_camera_sample(self.pixel, self.rgb(workspace.value));
-        if self.layers.parts() > 0 {
-            for contribution in &workspace.contributions {
-                self.part_of_pixel(contribution);
+    /// Adds the samples of `batch` to the pass.
+    pub(super) fn take(&self, batch: &mut Batch) {
+        for (sample, &value) in batch.samples.iter().zip(&batch.values) {
+            if let Some(pixel) = self.pixel(sample) {
+                self.buffer
+                    .set_camera_sample(pixel, self.rgb(sample, value));
             }
         }
-        self.take_light(workspace);
+        if self.layers.parts() > 0 {
+            for (sample, entry) in added(&batch.samples, &batch.entries) {
+                self.part_of_pixel(sample, &entry.contribution);
+            }
+        }
+        self.take_light(batch);
     }
 
-    /// Moves what came from a light subpath, where that was not walked for one sample.
-    pub(super) fn take_light(&self, workspace: &mut Workspace) {
-        for splat in &workspace.splats {
-            let contribution = &splat.contribution;
-            let (place, value) = (splat.place, self.rgb(contribution.value()));
+    /// Adds what comes from light subpaths, where these are not walked for one sample.
+    pub(super) fn take_light(&self, batch: &mut Batch) {
+        for (sample, contribution, place) in splats(&batch.samples, &batch.splats) {
+            let value = self.rgb(sample, contribution.value());
             let parts = self.parts_of(contribution);
-            let film = self.context.view.film();
+            let film = self.job.view.film();
             self.buffer.splat(film, place, value, parts);
         }
         if self.layers.strategy_vertices() > 0 {
-            self.strategies(workspace);
+            self.strategies(batch);
         }
     }
 
-    fn rgb(&self, value: Spectrum) -> Rgb {
-        let PathContext { scene, view, .. } = self.context;
-        let light = scene.color().to_rgb(value, &self.context.wavelengths);
+    /// Adds the features of the one sample of `batch`.
+    pub(super) fn take_features(&self, batch: &Batch, features: &Features) {
+        if let Some(pixel) = self.pixel(&batch.samples[0]) {
+            let values = features.values(self.layers);
+            self.buffer.set_features(pixel, values);
+        }
+    }
+
+    /// The place of a sample's pixel in the crop.
+    fn pixel(&self, sample: &Sample) -> Option<usize> {
+        let [x, y] = sample.pixel.map(i64::from);
+        self.job.view.film().crop.index(x, y)
+    }
+
+    fn rgb(&self, sample: &Sample, value: Spectrum) -> Rgb {
+        let Job { scene, view, .. } = self.job;
+        let light = scene.color().to_rgb(value, &sample.wavelengths);
         view.film().sensor.respond(light)
     }
 
     /// Adds to the parts of the sample's own pixel.
-    fn part_of_pixel(&self, contribution: &Contribution) {
-        let value = self.rgb(contribution.value());
+    fn part_of_pixel(&self, sample: &Sample, contribution: &Contribution) {
+        let value = self.rgb(sample, contribution.value());
         for part in self.parts_of(contribution) {
-            self.buffer.add_to_part(self.pixel, part, value);
+            self.add_to_part(sample, part, value);
+        }
+    }
+
+    fn add_to_part(&self, sample: &Sample, part: usize, value: Rgb) {
+        if let Some(pixel) = self.pixel(sample) {
+            self.buffer.add_to_part(pixel, part, value);
         }
     }
 
     /// The parts of the picture that a contribution is in.
     fn parts_of(&self, contribution: &Contribution) -> impl Iterator<Item = usize> {
-        let group = self.context.scene.light_group(contribution.term.light);
+        let group = self.job.scene.light_group(contribution.term.light);
         self.layers.parts_of(contribution.term.strategy, group)
     }
 
     /// Adds to raw images, and counts squares.
-    fn strategies(&self, workspace: &mut Workspace) {
-        let Workspace {
-            contributions,
+    fn strategies(&self, batch: &mut Batch) {
+        let Batch {
+            samples,
+            entries,
             luminances,
-            splats,
+            splats: images,
             stats,
             ..
-        } = workspace;
-        luminances.clear();
-        for contribution in contributions.iter() {
-            self.add_luminance(contribution, luminances);
-            if let Some((part, value)) = self.raw(contribution, stats) {
-                self.buffer.add_to_part(self.pixel, part, value);
+        } = batch;
+        for (sample, entry) in added(samples, entries) {
+            let value = self.raw(sample, &entry.contribution, stats);
+            if let Some((part, value)) = value {
+                self.add_to_part(sample, part, value);
             }
+            self.add_luminance(sample, entry, luminances);
         }
-        for &(strategy, luminance) in luminances.iter() {
+        for ((_, strategy), luminance) in luminances.drain(..) {
             stats.add_square(strategy, luminance);
         }
-        for splat in splats.iter() {
-            self.splat(splat, stats);
+        for (sample, contribution, place) in splats(samples, images) {
+            self.splat(sample, contribution, place, stats);
         }
     }
 
     /// Adds to what a sample gives the weighted image of a strategy, if there is one. A strategy may
     /// contribute often, and others in between: by several light points, by several vertices of a light
     /// cache, by each environment that a walk escapes to.
-    fn add_luminance(&self, contribution: &Contribution, sums: &mut Vec<(Strategy, f64)>) {
-        let strategy = contribution.term.strategy;
+    fn add_luminance(
+        &self,
+        sample: &Sample,
+        entry: &Entry,
+        sums: &mut Vec<((u32, Strategy), f64)>,
+    ) {
+        let strategy = entry.contribution.term.strategy;
         if self.layers.weighted_part(strategy).is_none() {
             return;
         }
-        let luminance = self.luminance(contribution);
-        match sums.iter_mut().find(|(known, _)| *known == strategy) {
+        let luminance = self.luminance(sample, &entry.contribution);
+        let place = (entry.sample, strategy);
+        match sums.iter_mut().find(|(known, _)| *known == place) {
             Some((_, sum)) => *sum += luminance,
-            None => sums.push((strategy, luminance)),
+            None => sums.push((place, luminance)),
         }
     }
 
     /// The same for a splat, where it reaches the film.
-    fn splat(&self, splat: &Splat, stats: &mut Stats) {
-        let (film, contribution) = (self.context.view.film(), &splat.contribution);
-        let Some((_, weight)) = film.pick_pixel(splat.place) else {
+    fn splat(
+        &self,
+        sample: &Sample,
+        contribution: &Contribution,
+        place: SplatPlace,
+        stats: &mut Stats,
+    ) {
+        let (film, strategy) = (self.job.view.film(), contribution.term.strategy);
+        let Some((_, weight)) = film.pick_pixel(place) else {
             return;
         };
         // A light subpath has one splat by each strategy.
-        if self
-            .layers
-            .weighted_part(contribution.term.strategy)
-            .is_some()
-        {
-            let luminance = self.luminance(contribution) * f64::from(weight);
-            stats.add_square(contribution.term.strategy, luminance);
+        if self.layers.weighted_part(strategy).is_some() {
+            let luminance = self.luminance(sample, contribution) * f64::from(weight);
+            stats.add_square(strategy, luminance);
         }
-        if let Some((part, value)) = self.raw(contribution, stats) {
-            self.buffer.splat_to_part(film, splat.place, value, part);
+        if let Some((part, value)) = self.raw(sample, contribution, stats) {
+            self.buffer.splat_to_part(film, place, value, part);
         }
     }
 
-    fn luminance(&self, contribution: &Contribution) -> f64 {
-        f64::from(luminance(self.rgb(contribution.value())))
+    fn luminance(&self, sample: &Sample, contribution: &Contribution) -> f64 {
+        f64::from(luminance(self.rgb(sample, contribution.value())))
     }
 
     /// The raw image of a contribution, and the value added to it. None: it has none, or the value is
     /// counted as dropped from it.
-    fn raw(&self, contribution: &Contribution, stats: &mut Stats) -> Option<(usize, Rgb)> {
+    fn raw(
+        &self,
+        sample: &Sample,
+        contribution: &Contribution,
+        stats: &mut Stats,
+    ) -> Option<(usize, Rgb)> {
         let part = self.layers.raw_part(contribution.term.strategy)?;
         let Some(value) = contribution.unweighted() else {
             stats.drop_raw(contribution.term.strategy);
             return None;
         };
-        Some((part, self.rgb(value)))
+        Some((part, self.rgb(sample, value)))
     }
+}
+
+/// The entries that add to an image, with their samples.
+fn added<'a>(
+    samples: &'a [Sample],
+    entries: &'a [Entry],
+) -> impl Iterator<Item = (&'a Sample, &'a Entry)> {
+    let added = entries.iter().filter(|entry| entry.is_added());
+    added.map(|entry| (&samples[entry.sample as usize], entry))
+}
+
+/// The splats that add to the light image, with their samples and places.
+fn splats<'a>(
+    samples: &'a [Sample],
+    entries: &'a [Entry],
+) -> impl Iterator<Item = (&'a Sample, &'a Contribution, SplatPlace)> {
+    entries.iter().filter_map(|entry| {
+        let place = entry.splat_place()?;
+        Some((&samples[entry.sample as usize], &entry.contribution, place))
+    })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::contribution::Term;
-    use crate::film::{Film, FilmSettings, Filter, SplatPlace};
+    use crate::film::{Film, FilmSettings, Filter};
+    use crate::integrator::{Fate, Link};
     use crate::light::{InfiniteLight, Light};
-    use crate::math::Vec2;
+    use crate::locus::Locus;
+    use crate::math::{Vec2, Vec3};
     use crate::path::{Connections, PathSettings};
+    use crate::sampler::{Domain, Sampler, SamplerKind};
     use crate::scene::{Scene, SceneBuilder};
-    use crate::spectrum::Wavelengths;
 
     /// A sky.
     fn scene() -> Scene {
@@ -155,43 +214,54 @@ mod tests {
         builder.build().unwrap()
     }
 
-    /// A contribution C w of this strategy.
-    fn contribution((s, t): (usize, usize), c: f32, weight: f32) -> Contribution {
-        let strategy = Strategy::new(s, t);
-        Term::new(strategy, 0, Spectrum::splat(c), weight).certain(1.0)
+    /// An entry C w of this strategy.
+    fn entry((s, t): (usize, usize), c: f32, weight: f32) -> Entry {
+        let place = SplatPlace {
+            raster: Vec2::splat(0.5),
+            u: Vec2::splat(0.5),
+        };
+        let term = Term {
+            strategy: Strategy::new(s, t),
+            light: 0,
+            contribution: Spectrum::splat(c),
+            weight,
+        };
+        Entry {
+            sample: 0,
+            contribution: term.certain(1.0),
+            link: match t {
+                1 => Link::LightImage([Locus::in_space(Vec3::ZERO); 2], place),
+                _ => Link::Walk,
+            },
+            fate: Fate::Added,
+        }
     }
 
     /// The film and the counters after one sample that leaves these behind, the last as a splat.
-    fn deposit(contributions: &[Contribution], splat: Contribution) -> (Film, Stats) {
+    fn deposit(entries: &[Entry], splat: Entry) -> (Film, Stats) {
         let view = crate::testing::view(FilmSettings::new([1, 1], Filter::default()));
         let (scene, layers) = (scene(), Layers::new(&[], &[], 3).with_raw());
         let mut film = Film::with_layers(view.film().clone(), layers, u64::MAX).unwrap();
         let buffer = PassBuffer::new(film.settings(), film.layers()).unwrap();
-        let mut workspace = Workspace::default();
-        workspace.contributions.extend(contributions);
-        workspace.splats.push(Splat {
-            contribution: splat,
-            place: SplatPlace {
-                raster: Vec2::splat(0.5),
-                u: Vec2::splat(0.5),
-            },
-        });
-        let context = PathContext {
+        let stream = Sampler::new(SamplerKind::Independent, 1).stream(Domain::Camera, 0, 0);
+        let mut batch = Batch::default();
+        batch.fill([Sample::new(&scene, 0, [0; 2], stream, stream)]);
+        batch.entries.extend(entries);
+        batch.splats.push(splat);
+        let job = Job {
             scene: &scene,
             view: &view,
             settings: &PathSettings::default(),
-            wavelengths: Wavelengths::default(),
             connections: Connections::ONE_SUBPATH,
         };
         Deposit {
-            context: &context,
+            job: &job,
             layers: film.layers(),
             buffer: &buffer,
-            pixel: 0,
         }
-        .take(&mut workspace);
+        .take(&mut batch);
         film.add_pass(0, &buffer);
-        (film, workspace.stats)
+        (film, batch.stats)
     }
 
     #[track_caller]
@@ -202,32 +272,42 @@ mod tests {
 
     #[test]
     fn raw_values_that_are_too_large_are_counted_and_harm_nothing() {
-        let fine = contribution((1, 2), 2.0, 0.25);
-        let large = contribution((0, 3), 3e30, 1e-30);
-        let splat = contribution((2, 1), 7e30, 1e-30);
+        let fine = entry((1, 2), 2.0, 0.25);
+        let large = entry((0, 3), 3e30, 1e-30);
+        let splat = entry((2, 1), 7e30, 1e-30);
         let (film, stats) = deposit(&[fine, large], splat);
         let layers = film.layers();
-        check_image(&film, layers.raw_part(fine.term.strategy), 2.0);
-        for (contribution, weighted) in [(fine, 0.5), (large, 3.0), (splat, 7.0)] {
+        check_image(&film, layers.raw_part(fine.contribution.term.strategy), 2.0);
+        for (entry, weighted) in [(fine, 0.5), (large, 3.0), (splat, 7.0)] {
             check_image(
                 &film,
-                layers.weighted_part(contribution.term.strategy),
+                layers.weighted_part(entry.contribution.term.strategy),
                 weighted,
             );
         }
-        for contribution in [large, splat] {
-            check_image(&film, layers.raw_part(contribution.term.strategy), 0.0);
-            let counts = stats.strategy_images.get(contribution.term.strategy);
+        for entry in [large, splat] {
+            check_image(
+                &film,
+                layers.raw_part(entry.contribution.term.strategy),
+                0.0,
+            );
+            let counts = stats.strategy_images.get(entry.contribution.term.strategy);
             assert_eq!(counts.raw_dropped, 1);
         }
-        assert_eq!(stats.strategy_images.get(fine.term.strategy).raw_dropped, 0);
+        assert_eq!(
+            stats
+                .strategy_images
+                .get(fine.contribution.term.strategy)
+                .raw_dropped,
+            0
+        );
     }
 
     #[test]
     fn all_that_a_strategy_adds_to_a_sample_is_one_square() {
-        let [a, b] = [2.0, 3.0].map(|value| contribution((0, 3), value, 1.0));
-        let other = contribution((1, 2), 4.0, 1.0);
-        let splat = contribution((2, 1), 5.0, 1.0);
+        let [a, b] = [2.0, 3.0].map(|value| entry((0, 3), value, 1.0));
+        let other = entry((1, 2), 4.0, 1.0);
+        let splat = entry((2, 1), 5.0, 1.0);
         for order in [[a, b, other], [a, other, b]] {
             let (_, stats) = deposit(&order, splat);
             for (strategy, square) in [((0, 3), 25.0), ((1, 2), 16.0), ((2, 1), 25.0)] {
@@ -240,7 +320,7 @@ mod tests {
 
     #[test]
     fn a_weight_of_zero_leaves_nothing() {
-        let nothing = contribution((1, 2), 0.0, 0.0);
-        assert_eq!(nothing.unweighted(), Some(Spectrum::ZERO));
+        let nothing = entry((1, 2), 0.0, 0.0);
+        assert_eq!(nothing.contribution.unweighted(), Some(Spectrum::ZERO));
     }
 }

@@ -5,7 +5,7 @@
 
 use super::Progress;
 use crate::film::{Aov, AovKind, Layers};
-use crate::integrator::{Sample, Workspace, camera_ray};
+use crate::integrator::{Batch, Job, camera_ray};
 use crate::math::Vec3;
 use crate::path::{PathContext, Vertex};
 use crate::sampler::{Dimension, Purpose};
@@ -21,10 +21,10 @@ pub(super) struct Meter {
 impl Meter {
     /// Looks at the counters, and at the host's clock where `layers` ask for it.
     #[inline]
-    pub(super) fn read(layers: &Layers, workspace: &Workspace, progress: &dyn Progress) -> Self {
+    pub(super) fn read(layers: &Layers, batch: &Batch, progress: &dyn Progress) -> Self {
         let is_timed = layers.feature(Aov::Time).is_some();
         Self {
-            rays: workspace.stats.rays.total(),
+            rays: batch.stats.rays.total(),
             nanoseconds: if is_timed { progress.nanoseconds() } else { 0 },
         }
     }
@@ -47,16 +47,16 @@ struct FirstSurface {
 }
 
 impl Features {
-    /// The features of a sample that was just taken, between two looks at what it cost.
+    /// The features of the one sample of `batch`, which was just taken, between two looks at what it cost.
     pub(super) fn new(
-        context: &PathContext<'_>,
+        job: &Job<'_>,
         layers: &Layers,
-        (sample, workspace): (&Sample, &mut Workspace),
+        batch: &mut Batch,
         [before, after]: [&Meter; 2],
     ) -> Self {
         let kinds = [AovKind::Surface, AovKind::Sample];
         let sees = layers.aovs().iter().any(|aov| kinds.contains(&aov.kind()));
-        let surface = sees.then(|| FirstSurface::find(context, sample, workspace));
+        let surface = sees.then(|| FirstSurface::find(job, batch));
         Self {
             surface: surface.flatten(),
             rays: (after.rays - before.rays) as f32,
@@ -88,24 +88,22 @@ impl Features {
 }
 
 impl FirstSurface {
-    /// None: the ray escapes.
-    fn find(context: &PathContext<'_>, sample: &Sample, workspace: &mut Workspace) -> Option<Self> {
-        match workspace.camera.vertices.as_slice() {
-            [_, surface, ..] => Some(Self::new(context, surface)),
-            [_] => None,
-            [] => {
-                let (ray, _) = camera_ray(context, sample);
-                workspace.stats.rays.camera += 1;
-                let chances = Chances::new(&sample.camera, 1);
-                let hit = context
-                    .scene
-                    .intersect(ray.origin, ray.direction, chances)?;
-                let u_mix = || sample.camera.get_1d(Dimension::at(1, Purpose::Mix));
-                let (wo, beta) = (-ray.direction, Spectrum::ONE);
-                let surface = Vertex::surface(context, &hit, wo, beta, u_mix);
-                Some(Self::new(context, &surface))
-            }
+    /// That of the one sample of `batch`. None: the ray escapes.
+    fn find(job: &Job<'_>, batch: &mut Batch) -> Option<Self> {
+        let sample = &batch.samples[0];
+        let context = job.context(sample);
+        if batch.camera.count() > 0 {
+            let surface = batch.camera.get(0).vertices.get(1)?;
+            return Some(Self::new(&context, surface));
         }
+        let (ray, _) = camera_ray(&context, sample);
+        batch.stats.rays.camera += 1;
+        let chances = Chances::new(&sample.camera, 1);
+        let hit = job.scene.intersect(ray.origin, ray.direction, chances)?;
+        let u_mix = || sample.camera.get_1d(Dimension::at(1, Purpose::Mix));
+        let (wo, beta) = (-ray.direction, Spectrum::ONE);
+        let surface = Vertex::surface(&context, &hit, wo, beta, u_mix);
+        Some(Self::new(&context, &surface))
     }
 
     fn new(context: &PathContext<'_>, surface: &Vertex) -> Self {

@@ -4,23 +4,21 @@
 //! Nothing here adds to a film. Visibility of what was not traced is found afterwards, by rays that
 //! are not counted.
 
-use crate::contribution::Term;
+use crate::contribution::{Contribution, Term};
 use crate::film::{FilmSettings, SplatPlace};
-use crate::integrator::{Entry, Fate, Link, Workspace};
+use crate::integrator::{Batch, Entry, Fate, Job, Link, Sample};
 use crate::locus::Locus;
-use crate::path::{PathContext, Strategy, Subpath};
+use crate::path::{Strategy, Subpath};
 use crate::select::Selector;
-use crate::spectrum::{Spectrum, Wavelengths};
+use crate::spectrum::Spectrum;
 
 /// One sample again, with all that it made.
 pub struct Replay {
-    /// The buffers as the sample left them: subpaths, candidates, chosen rays, contributions.
-    pub workspace: Workspace,
-    /// The light subpath that the sample brought to those that samples share.
-    brought: Option<Subpath>,
-    /// The wavelengths of the sample.
-    pub wavelengths: Wavelengths,
-    /// The terms that are not zero, in the order in which they were evaluated.
+    /// The one sample, with what its stages left.
+    pub batch: Batch,
+    /// The number of its light subpath. None: it has that of another.
+    light: Option<usize>,
+    /// The terms that are not zero: hits, connections, the light image.
     pub terms: Vec<ReplayedTerm>,
     /// The connections of the two subpaths that are zero: for a Dirac distribution, for sides that
     /// face away, or because they take no part.
@@ -67,76 +65,106 @@ pub struct Landing {
 }
 
 impl Replay {
-    /// Looks into what a sample with a journal left in `workspace`, and the light subpath that it
-    /// `brought`; `selector` is the rule that chose its rays.
+    /// Looks into `batch`, a sample with light subpath number `light`; `selector` is the rule that chose its rays.
     pub(super) fn new(
-        context: &PathContext<'_>,
-        workspace: Workspace,
-        brought: Option<Subpath>,
+        job: &Job<'_>,
+        batch: Batch,
+        light: Option<usize>,
         selector: &dyn Selector,
     ) -> Self {
-        let probs = selector.probabilities(&workspace.candidates);
-        let entries = workspace.journal.iter().flat_map(|j| &j.entries);
-        let term = |(number, entry): (u32, &Entry)| {
-            let mut candidates = workspace.candidates.iter().zip(&probs);
-            let candidate = candidates.find(|(candidate, _)| candidate.term.number == number);
-            let selection = candidate.map(|(candidate, &prob)| Selection {
+        let certain = batch.entries.len() - batch.chosen.len();
+        let term = |entry: &Entry| ReplayedTerm::new(job, entry, None);
+        let mut terms: Vec<_> = batch.entries[..certain].iter().map(term).collect();
+        let probs = selector.probabilities(&batch.candidates);
+        for ((candidate, entry), prob) in batch.connections().zip(probs) {
+            let selection = Selection {
                 score: candidate.score,
                 prob,
-            });
-            ReplayedTerm::new(context, entry, selection)
-        };
-        let terms: Vec<_> = (0..).zip(entries).map(term).collect();
-        Self {
-            zeros: zeros(context, &workspace, &terms),
-            terms,
-            wavelengths: context.wavelengths,
-            workspace,
-            brought,
+            };
+            let entry = entry.copied().unwrap_or_else(|| batch.untraced(candidate));
+            terms.push(ReplayedTerm::new(job, &entry, Some(selection)));
         }
+        let unoffered = batch.unoffered.iter().map(|other| batch.untraced(other));
+        terms.extend(unoffered.map(|entry| term(&entry)));
+        terms.extend(batch.splats.iter().map(term));
+        let mut replay = Self {
+            zeros: Vec::new(),
+            terms,
+            batch,
+            light,
+        };
+        replay.zeros = replay.zeros(job);
+        replay
     }
 
-    /// The light subpath of the sample; empty where it has that of another.
-    pub fn light(&self) -> &Subpath {
-        self.brought.as_ref().unwrap_or(&self.workspace.light)
+    /// The sample.
+    pub fn sample(&self) -> &Sample {
+        &self.batch.samples[0]
     }
-}
 
-/// The connections within the limit of length that no term is about.
-fn zeros(
-    context: &PathContext<'_>,
-    workspace: &Workspace,
-    terms: &[ReplayedTerm],
-) -> Vec<Strategy> {
-    let lengths = [&workspace.light, &workspace.camera].map(|subpath| subpath.vertices.len());
-    let all = (2..=lengths[1]).flat_map(|t| (1..=lengths[0]).map(move |s| Strategy::new(s, t)));
-    let is_short = |strategy: &Strategy| {
-        usize::from(strategy.s) + usize::from(strategy.t) <= context.settings.max_vertices()
-    };
-    all.filter(is_short)
-        .filter(|strategy| terms.iter().all(|term| term.term.strategy != *strategy))
-        .collect()
+    /// The sum of the terms that it adds to its own pixel.
+    pub fn value(&self) -> Spectrum {
+        self.batch.values[0]
+    }
+
+    /// The terms that it adds to the light image, with their places.
+    pub fn splats(&self) -> impl Iterator<Item = (&Contribution, SplatPlace)> {
+        let splats = self.batch.splats.iter();
+        splats.filter_map(|entry| Some((&entry.contribution, entry.splat_place()?)))
+    }
+
+    /// The light subpath of the sample; empty where it has that of another, or none was walked.
+    pub fn light(&self) -> Subpath<'_> {
+        let light = self.light.map(|number| self.batch.light.get(number));
+        light.unwrap_or_default()
+    }
+
+    /// The camera subpath of the sample; empty where none was walked.
+    pub fn camera(&self) -> Subpath<'_> {
+        let is_walked = self.batch.camera.count() > 0;
+        let camera = is_walked.then(|| self.batch.camera.get(0));
+        camera.unwrap_or_default()
+    }
+
+    /// The connections within the limit of length that no term is about.
+    fn zeros(&self, job: &Job<'_>) -> Vec<Strategy> {
+        let [light, camera] = [self.light(), self.camera()].map(|walk| walk.vertices.len());
+        let all = (2..=camera).flat_map(|t| (1..=light).map(move |s| Strategy::new(s, t)));
+        let is_short = |strategy: &Strategy| {
+            usize::from(strategy.s) + usize::from(strategy.t) <= job.settings.max_vertices()
+        };
+        let has_none = |strategy: &Strategy| {
+            self.terms
+                .iter()
+                .all(|term| term.term.strategy != *strategy)
+        };
+        all.filter(is_short).filter(has_none).collect()
+    }
 }
 
 impl ReplayedTerm {
-    fn new(context: &PathContext<'_>, entry: &Entry, selection: Option<Selection>) -> Self {
-        let (scene, ends) = (context.scene, entry.link.ends());
+    fn new(job: &Job<'_>, entry: &Entry, selection: Option<Selection>) -> Self {
+        let (scene, ends) = (job.scene, entry.link.ends());
         let transmittance = ends.map_or(1.0, |[a, b]| scene.transmittance(a, b));
         let (landing, scale) = match &entry.link {
             Link::Walk | Link::Connection(_) => (None, 1.0),
             Link::LightImage(_, place) => {
-                let (landing, scale) = land(context.view.film(), *place);
+                let (landing, scale) = land(job.view.film(), *place);
                 (Some(landing), scale)
             }
         };
+        let added = match entry.fate {
+            Fate::Added => entry.contribution.value(),
+            Fate::NotTraced | Fate::Blocked | Fate::Dropped => Spectrum::ZERO,
+        };
         Self {
-            term: entry.term,
+            term: entry.contribution.term,
             fate: entry.fate,
             ends: ends.copied(),
             selection,
             transmittance,
             landing,
-            added: entry.added * scale,
+            added: added * scale,
         }
     }
 

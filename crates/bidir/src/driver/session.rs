@@ -16,18 +16,22 @@ use super::threads::{Shortage, Threads, Workers};
 use super::training::prepare;
 use super::{Effort, Progress, Replay, Resources, SessionError, Settings, Training};
 use crate::film::{Film, FilmError, MergeError, PassBuffer};
-use crate::integrator::{Integrator, IntegratorKind, Sample, Workspace, group_size, no_path};
-use crate::path::{Connections, PathContext};
+use crate::integrator::{Batch, IntegratorKind, Job, Method, Sample, group_size, no_path};
+use crate::path::Connections;
 use crate::sampler::{Domain, Sampler};
 use crate::scene::Scene;
 use crate::select::Selector;
 use crate::stats::{Stage, StageTimes, Stats};
 use crate::view::View;
+use std::ops::Range;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 /// Pixels are handed to threads in runs of this length.
 const RUN: u64 = 256;
+
+/// How many samples go through the stages together: as many as stay in a processor's fastest cache.
+const BATCH: usize = 8;
 
 /// A render that goes pass by pass.
 ///
@@ -74,7 +78,7 @@ pub struct Session<'a> {
     scene: SceneHandle<'a>,
     view: View,
     settings: Settings,
-    integrator: Box<dyn Integrator>,
+    method: Method,
     training: Option<Training>,
     film: Film,
     order: Order,
@@ -85,7 +89,7 @@ pub struct Session<'a> {
     stage_times: StageTimes,
     workers: Workers,
     /// One per thread, kept so that no sample allocates.
-    workspaces: Vec<Mutex<Workspace>>,
+    batches: Vec<Mutex<Batch>>,
 }
 
 impl<'a> Session<'a> {
@@ -123,13 +127,13 @@ impl<'a> Session<'a> {
         let threads = workers.count();
         let (settings, training) = workers.install(|| prepare(&scene, view, settings, effort));
         let rule = selector(&settings, training.as_ref());
-        let integrator = settings.integrator.integrator(rule, &settings.lvc);
-        let order = workers.install(|| Order::new(view.film().crop, &*integrator));
+        let method = Method::new(settings.integrator, rule, &settings.lvc);
+        let order = workers.install(|| Order::new(view.film().crop, &method));
         Ok(Self {
             scene,
             view: view.clone(),
             settings,
-            integrator,
+            method,
             order,
             training,
             film,
@@ -138,7 +142,7 @@ impl<'a> Session<'a> {
             stats: Stats::default(),
             stage_times: StageTimes::default(),
             workers,
-            workspaces: std::iter::repeat_with(|| Workspace::timed_by(resources.clock))
+            batches: std::iter::repeat_with(|| Batch::timed_by(resources.clock))
                 .map(Mutex::new)
                 .take(threads)
                 .collect(),
@@ -170,24 +174,24 @@ impl<'a> Session<'a> {
         let given_up = AtomicBool::new(false);
         let this = &*self;
         this.workers.broadcast(|thread| {
-            let Some(workspace) = this.workspaces.get(thread) else {
+            let Some(batch) = this.batches.get(thread) else {
                 return;
             };
             // Only this thread locks it; a panic elsewhere does not make its buffers wrong.
-            let mut workspace = workspace
+            let mut batch = batch
                 .lock()
                 .unwrap_or_else(std::sync::PoisonError::into_inner);
-            if !this.render_runs(pass, &next, &mut workspace, progress) {
+            if !this.render_runs(pass, &next, &mut batch, progress) {
                 given_up.store(true, Ordering::Relaxed);
             }
         });
         let (mut stats, mut stage_times) = (Stats::default(), StageTimes::default());
-        for workspace in &mut self.workspaces {
-            let workspace = workspace
+        for batch in &mut self.batches {
+            let batch = batch
                 .get_mut()
                 .unwrap_or_else(std::sync::PoisonError::into_inner);
-            stats += &std::mem::take(&mut workspace.stats);
-            stage_times += &workspace.stopwatch.take();
+            stats += &std::mem::take(&mut batch.stats);
+            stage_times += &batch.stopwatch.take();
         }
         let finished = !given_up.into_inner();
         if finished {
@@ -205,12 +209,12 @@ impl<'a> Session<'a> {
         &self,
         pass: u64,
         next: &AtomicU64,
-        workspace: &mut Workspace,
+        batch: &mut Batch,
         progress: &dyn Progress,
     ) -> bool {
         let pixels = self.view.film().crop.area();
-        let shared = self.integrator.shared_light();
-        let run = if shared.is_some() {
+        let shares_light = self.method.shares_light();
+        let run = if shares_light {
             group_size(pixels)
         } else {
             RUN
@@ -223,30 +227,32 @@ impl<'a> Session<'a> {
             if progress.should_stop() {
                 return false;
             }
-            let end = (begin + run).min(pixels);
-            if let Some(shared) = shared {
-                self.walk_light(shared, begin..end, pass, workspace);
+            let places = self.group(begin, run);
+            if shares_light {
+                let keep = |batch: &mut Batch| self.deposit(&self.job()).take_light(batch);
+                self.walk_light(places.clone(), pass, (batch, BATCH), keep);
             }
-            for place in begin..end {
-                self.render_sample(place, pass, workspace, progress);
-            }
-            progress.advance(end - begin);
+            self.render_run(places.clone(), pass, batch, progress);
+            progress.advance(places.end - places.start);
         }
     }
 
-    /// The destination of the contributions of the sample at `place`.
-    fn deposit<'d>(&'d self, context: &'d PathContext<'d>, place: u64) -> Deposit<'d> {
+    /// The destination of contributions.
+    fn deposit<'d>(&'d self, job: &'d Job<'d>) -> Deposit<'d> {
         Deposit {
-            context,
+            job,
             layers: self.film.layers(),
             buffer: &self.buffer,
-            pixel: self.order.pixel(place),
         }
     }
 
-    fn context(&self, sample: &Sample) -> PathContext<'_> {
-        let settings = &self.settings.path;
-        sample.context(&self.scene, &self.view, settings, self.connections())
+    fn job(&self) -> Job<'_> {
+        Job {
+            scene: &self.scene,
+            view: &self.view,
+            settings: &self.settings.path,
+            connections: self.connections(),
+        }
     }
 
     /// How many connections a camera vertex makes.
@@ -264,29 +270,32 @@ impl<'a> Session<'a> {
         }
     }
 
-    /// Takes a sample, and keeps what it found.
-    fn render_sample(
+    /// Takes the samples at `places` batch by batch, and keeps what they found.
+    fn render_run(
         &self,
-        place: u64,
+        mut places: Range<u64>,
         pass: u64,
-        workspace: &mut Workspace,
+        batch: &mut Batch,
         progress: &dyn Progress,
     ) {
-        workspace.stopwatch.begin_sample();
-        let sample = self.sample(place, pass);
-        let context = self.context(&sample);
+        let job = self.job();
         let layers = self.film.layers();
-        let before = Meter::read(layers, workspace, progress);
-        self.integrator.sample(&context, &sample, workspace);
-        self.deposit(&context, place).take(workspace);
-        if layers.features() > 0 {
-            let after = Meter::read(layers, workspace, progress);
-            let taken = (&sample, &mut *workspace);
-            let features = Features::new(&context, layers, taken, [&before, &after]);
-            let values = features.values(layers);
-            self.buffer.set_features(self.order.pixel(place), values);
+        // Features are of one sample.
+        let size = if layers.features() > 0 { 1 } else { BATCH };
+        while !places.is_empty() {
+            let samples = places.by_ref().take(size);
+            batch.fill(samples.map(|place| self.sample(place, pass)));
+            batch.stopwatch.begin_samples(batch.samples.len());
+            let before = Meter::read(layers, batch, progress);
+            self.method.run(&job, batch);
+            self.deposit(&job).take(batch);
+            if layers.features() > 0 {
+                let after = Meter::read(layers, batch, progress);
+                let features = Features::new(&job, layers, batch, [&before, &after]);
+                self.deposit(&job).take_features(batch, &features);
+            }
+            batch.stopwatch.end(Stage::Film);
         }
-        workspace.stopwatch.end(Stage::Film);
     }
 
     /// The sample at `place` in the order of a pass, with the light path that goes with it.
@@ -296,28 +305,28 @@ impl<'a> Session<'a> {
         let [x, y] = film.crop.pixel(self.order.pixel(place));
         let stream = u64::from(y) * u64::from(film.resolution[0]) + u64::from(x);
         let camera = sampler.stream(Domain::Camera, stream, pass);
-        Sample {
-            pass,
-            pixel: [x, y],
-            ray: camera,
-            camera,
-            light: sampler.member(Domain::Light, place / self.samples_per_subpath(), pass),
-        }
+        let light = sampler.member(Domain::Light, place / self.samples_per_subpath(), pass);
+        Sample::new(&self.scene, pass, [x, y], camera, light)
     }
 
     /// Repeats the sample of `pixel` in `pass`. None: the pixel is outside the crop.
     pub fn replay(&self, pixel: [u32; 2], pass: u64) -> Option<Replay> {
         let [x, y] = pixel.map(i64::from);
         let place = self.order.place(self.view.film().crop.index(x, y)?);
-        let mut workspace = Workspace::with_journal();
-        let sample = self.sample(place, pass);
-        let context = self.context(&sample);
-        let shared = self.integrator.shared_light();
-        let light = shared.and_then(|s| self.replay_light(s, place, pass, &mut workspace));
-        self.integrator.sample(&context, &sample, &mut workspace);
-        let light = light.map(|light| workspace.add_light(light));
+        let (job, mut batch) = (self.job(), Batch::default());
+        let shared = self.method.shares_light();
+        let brought = shared.then(|| self.replay_light(place, pass, &mut batch));
+        batch.fill([self.sample(place, pass)]);
+        self.method.run(&job, &mut batch);
+        let light = match brought.flatten() {
+            Some((number, splats)) => {
+                batch.splats = splats;
+                Some(number)
+            }
+            None => (!shared && batch.light.count() > 0).then_some(0),
+        };
         let selector = selector(&self.settings, self.training.as_ref());
-        Some(Replay::new(&context, workspace, light, &*selector))
+        Some(Replay::new(&job, batch, light, &*selector))
     }
 
     /// The view that is rendered.
@@ -375,7 +384,7 @@ impl<'a> Session<'a> {
 
     /// The number of threads.
     pub fn threads(&self) -> usize {
-        self.workspaces.len()
+        self.batches.len()
     }
 
     /// Threads that the system did not start; their part of the work is done by the others.

@@ -1,12 +1,8 @@
-//! The terms of a sample's estimate, one for each strategy and path: C · w, before it is known
-//! whether a shadow ray is traced and whether it arrives.
-//!
-//! A render drops them as it goes; a replayed sample keeps a journal of what became of each.
+//! The terms of a batch that take part in its estimate, each with what became of it.
 
-use crate::contribution::Term;
+use crate::contribution::{Contribution, Term};
 use crate::film::SplatPlace;
 use crate::locus::Locus;
-use crate::spectrum::Spectrum;
 
 /// The link between the two subpaths of a term.
 #[derive(Clone, Copy, Debug)]
@@ -21,6 +17,7 @@ pub enum Link {
 
 impl Link {
     /// The ends of the shadow ray, if there is one.
+    #[inline]
     pub fn ends(&self) -> Option<&[Locus; 2]> {
         match self {
             Self::Walk => None,
@@ -42,41 +39,43 @@ pub enum Fate {
     Dropped,
 }
 
-/// A term with what became of it.
+/// A term that was chosen, or that is certain to take part.
 #[derive(Clone, Copy, Debug)]
 pub struct Entry {
-    /// The term.
-    pub term: Term,
+    /// Its sample, by number in the batch.
+    pub sample: u32,
+    /// The term, with its probability and what arrives.
+    pub contribution: Contribution,
     /// How its subpaths come together.
     pub link: Link,
     /// Its outcome.
     pub fate: Fate,
-    /// The part added to the sample's value, or to a splat. Zero unless [`Fate::Added`].
-    pub added: Spectrum,
 }
 
-/// The terms of one sample that are not zero, in the order in which they were evaluated: by number.
-#[derive(Clone, Debug, Default)]
-pub struct Journal {
-    /// The entries.
-    pub entries: Vec<Entry>,
-}
-
-impl Journal {
-    /// Begins the entry of a term.
-    pub(super) fn begin(&mut self, term: Term, link: Link) {
-        self.entries.push(Entry {
-            term,
+impl Entry {
+    /// A term that is certain to take part, and of which all arrives until its shadow ray is traced.
+    #[inline]
+    pub(super) fn certain(sample: usize, term: Term, link: Link) -> Self {
+        Self {
+            sample: sample as u32,
+            contribution: term.certain(1.0),
             link,
-            fate: Fate::NotTraced,
-            added: Spectrum::ZERO,
-        });
+            fate: Fate::Added,
+        }
     }
 
-    /// Completes the entry of term number `number`.
-    pub(super) fn end(&mut self, number: u32, fate: Fate, added: Spectrum) {
-        if let Some(entry) = self.entries.get_mut(number as usize) {
-            (entry.fate, entry.added) = (fate, added);
+    /// True where it adds to an image.
+    #[inline]
+    pub fn is_added(&self) -> bool {
+        self.fate == Fate::Added
+    }
+
+    /// Its place, if it adds to the light image.
+    #[inline]
+    pub fn splat_place(&self) -> Option<SplatPlace> {
+        match self.link {
+            Link::LightImage(_, place) => self.is_added().then_some(place),
+            Link::Walk | Link::Connection(_) => None,
         }
     }
 }

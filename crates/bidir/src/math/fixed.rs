@@ -15,24 +15,46 @@ fn power_of_two(exponent: i32) -> f64 {
     f64::from_bits(((1023 + exponent) as u64) << 52)
 }
 
-/// `value`·2^scale, rounded towards zero, which is the same on every machine.
+/// `value`·2^scale, rounded towards zero, which is the same on every machine; 0 for no number.
 #[inline]
 pub fn from_f64(value: f64, scale: i32) -> i128 {
     let scaled = value * power_of_two(scale);
-    // One instruction converts to 64 bits, a hundred to 128; most values are small.
     if scaled.abs() < power_of_two(63) {
+        // One instruction converts to 64 bits.
         i128::from(scaled as i64)
     } else {
-        scaled as i128
+        large_from_f64(scaled)
     }
 }
 
-/// `fixed`·2^-scale.
+/// A number of 2⁶³ or more is an integer: 53 bits that are shifted, in a tenth of the time of a conversion to
+/// 128 bits.
+fn large_from_f64(value: f64) -> i128 {
+    let (bits, fraction) = (value.to_bits(), (1 << 52) - 1);
+    let shift = ((bits >> 52) & 0x7ff) as i32 - 1075;
+    if shift > 127 - 53 {
+        // It does not fit, or is no number.
+        return value as i128;
+    }
+    let magnitude = i128::from(bits & fraction | (1 << 52)) << shift;
+    if value < 0.0 { -magnitude } else { magnitude }
+}
+
+/// `fixed`·2^-scale, rounded to nearest.
 #[inline]
 pub fn to_f64(fixed: i128, scale: i32) -> f64 {
-    // Both round to nearest.
-    let value = i64::try_from(fixed).map_or(fixed as f64, |small| small as f64);
+    let value = i64::try_from(fixed).map_or_else(|_| large_to_f64(fixed), |small| small as f64);
     value * power_of_two(-scale)
+}
+
+/// The first 63 bits round as all of them do if the last one stands for what is behind them.
+fn large_to_f64(fixed: i128) -> f64 {
+    let magnitude = fixed.unsigned_abs();
+    let shift = 65 - magnitude.leading_zeros();
+    let first = magnitude >> shift;
+    let rest = u128::from(first << shift != magnitude);
+    let value = (first | rest) as i64 as f64 * power_of_two(shift as i32);
+    if fixed < 0 { -value } else { value }
 }
 
 /// A sum that threads add to without a lock: the low limb carries into the high one. It may be
@@ -122,6 +144,45 @@ mod tests {
             );
         }
         assert_eq!(from_f64(f64::NAN, VALUE_SCALE), 0);
+    }
+
+    /// Against the conversions of the language.
+    #[test]
+    fn all_orders_of_magnitude_are_converted_alike() {
+        let mut bits = 1u64;
+        for exponent in -3..=127 {
+            for _ in 0..64 {
+                bits = bits.wrapping_mul(0x9e37_79b9_7f4a_7c15).rotate_left(29) + 1;
+                let value =
+                    (1.0 + (bits >> 12) as f64 * power_of_two(-52)) * power_of_two(exponent);
+                for value in [value, -value] {
+                    assert_eq!(from_f64(value, 0), value as i128, "{value}");
+                }
+                let fixed = (i128::from(bits) << 64 | i128::from(!bits)) >> (127 - exponent.max(0));
+                for fixed in [fixed, -fixed, fixed | 1, fixed & !0xff] {
+                    assert_eq!(
+                        to_f64(fixed, 0).to_bits(),
+                        (fixed as f64).to_bits(),
+                        "{fixed}"
+                    );
+                }
+            }
+        }
+        for fixed in [
+            i128::MIN,
+            i128::MAX,
+            1 << 63,
+            -(1 << 63),
+            (1 << 63) - 1,
+            (1 << 64) - 1,
+        ] {
+            assert_eq!(
+                to_f64(fixed, 0).to_bits(),
+                (fixed as f64).to_bits(),
+                "{fixed}"
+            );
+        }
+        assert_eq!(from_f64(f64::INFINITY, 0), i128::MAX);
     }
 
     #[test]

@@ -49,7 +49,7 @@ impl Arrival {
 
     /// The arrival at `light` of a walk that hit it behind its first `i` vertices, or left the scene there. None:
     /// it did neither.
-    pub fn of(scene: &Scene, camera: &Subpath, i: usize, light: u32) -> Option<Self> {
+    pub fn of(scene: &Scene, camera: &Subpath<'_>, i: usize, light: u32) -> Option<Self> {
         match camera.vertices.get(i) {
             Some(vertex) => Self::at(vertex),
             None => Self::of_escape(scene, camera.escape?).find(|arrival| arrival.light == light),

@@ -44,12 +44,12 @@ pub use mis::{MisHeuristic, mis_weight};
 pub(crate) use proposals::CellDraw;
 pub use proposals::{Connections, LightProposals, PairSums};
 pub use roulette::PathRoulette;
-pub use running::{LightEnd, LightShares, RunningSums};
+pub use running::{LightSums, PathSums, RunningSums, Weights};
 pub use scatter::Turn;
 pub use segment::Segment;
 pub(crate) use shares::Shares;
 pub use vertex::{Vertex, VertexKind};
-pub use walk::{Escape, Subpath, camera_subpath, light_subpath};
+pub use walk::{Escape, Subpath, Subpaths, camera_subpath, light_subpath};
 
 use crate::scene::Scene;
 use crate::spectrum::Wavelengths;

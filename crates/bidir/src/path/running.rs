@@ -10,35 +10,47 @@
 //! [`mis_weight`](super::mis_weight) finds, but for rounding.
 
 use super::densities::{drawn_density, next_event_density, walked_densities};
-use super::{JoinedPath, Junction, PathContext, PathDensities, Subpath, Vertex};
+use super::{JoinedPath, Junction, PathContext, PathDensities, PathSettings, Subpath, Vertex};
 
-/// Sums of shares along a light and a camera subpath, each relative to the strategy it ends with.
+/// Sums of shares along the walks of a batch, each relative to the strategy it ends with.
 #[derive(Debug, Default)]
 pub struct RunningSums {
-    /// L_m, without the last two vertices of the walk.
-    light: Vec<f64>,
-    /// C_m, without the last vertex of the walk; C_0 = 0.
-    camera: Vec<f64>,
-    /// The light's end of all paths with two vertices of the light subpath or more.
-    start: LightEnd,
-    /// The sums hold where both subpaths are as long.
+    /// Beside each vertex of light walks L_m, but for the last one; of camera walks C_m.
+    sums: Vec<f64>,
+    /// For each light walk the light's end of all paths with two of its vertices or more.
+    starts: Vec<LightEnd>,
+}
+
+/// Sums of shares along the subpaths of a path.
+#[derive(Clone, Copy, Debug)]
+pub struct PathSums<'a> {
+    /// Along its light walk.
+    pub light: LightSums<'a>,
+    /// Along its camera walk: C_m; C_0 = 0.
+    pub camera: &'a [f64],
+}
+
+/// Sums of shares along a light walk.
+#[derive(Clone, Copy, Debug)]
+pub struct LightSums<'a> {
+    /// L_m.
+    sums: &'a [f64],
+    /// The light's end of its paths.
+    start: &'a LightEnd,
+}
+
+/// Weights of paths, by sums where these hold.
+#[derive(Debug, Default)]
+pub struct Weights {
+    /// The sums hold where both subpaths have so many vertices.
     shortest: usize,
     /// For the pure form.
     densities: PathDensities,
 }
 
-/// Sums of shares along a light subpath.
-#[derive(Clone, Copy, Debug)]
-pub struct LightShares<'a> {
-    /// L_m, without the last two vertices of the walk.
-    pub sums: &'a [f64],
-    /// The light's end of its paths.
-    pub start: LightEnd,
-}
-
 /// How x_0 is drawn.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct LightEnd {
+#[derive(Clone, Copy, Debug)]
+struct LightEnd {
     /// a_0.
     emission: f64,
     /// e. Never zero: where s = 1 is impossible, the ratios across it must still cancel.
@@ -52,90 +64,130 @@ pub struct LightEnd {
 /// As the number of vertices of a path: its other end is so far that its roulette has begun.
 const FAR: usize = usize::MAX;
 
+impl LightSums<'_> {
+    /// Those of no walk: for paths with one light vertex.
+    pub const NONE: LightSums<'static> = LightSums {
+        sums: &[],
+        start: &LightEnd::NONE,
+    };
+}
+
 impl RunningSums {
-    /// Sums along the two walks of a sample, either of which may be empty.
-    pub fn sum(&mut self, context: &PathContext<'_>, light: &Subpath, camera: &Subpath) {
-        let settings = context.settings;
-        self.light.clear();
-        self.camera.clear();
-        self.shortest = usize::MAX;
-        if settings.strategies.is_all() {
-            self.shortest = settings.roulette.density_start().unwrap_or(0);
-            self.sum_light(context, &light.vertices);
-            self.sum_camera(context, &camera.vertices);
-        }
+    /// Forgets all walks, and keeps the memory.
+    pub fn clear(&mut self) {
+        self.sums.clear();
+        self.starts.clear();
     }
 
-    /// The sums along the light walk.
-    pub fn light_shares(&self) -> LightShares<'_> {
-        LightShares {
-            sums: &self.light,
-            start: self.start,
-        }
-    }
-
-    /// The number that [`JoinedPath::weight`] finds, but for rounding.
-    ///
-    /// Each of the path's subpaths is one vertex, or the beginning of the walk that was summed.
-    ///
-    /// It is the pure form itself where not all strategies take part, and where the roulette of densities begins
-    /// at a later bounce than the shorter subpath has vertices: it is then another for every path length.
-    #[inline]
-    pub fn weight(&mut self, context: &PathContext<'_>, path: &JoinedPath<'_>) -> f32 {
-        let (s, t) = (path.light.len(), path.camera.len());
-        let weight = match path.junction {
-            Junction::Hit if self.shortest == 0 => self.hit(context, path),
-            Junction::Connection if self.shortest <= s.min(t) => {
-                self.connection(context, path, self.light_shares())
-            }
-            _ => return path.weight(context, &mut self.densities),
+    /// Adds the sums along a light walk, which follows the one before.
+    pub fn add_light(&mut self, context: &PathContext<'_>, walk: &Subpath<'_>) {
+        let end = self.sums.len() + walk.vertices.len();
+        let start = match walk.vertices {
+            [x0, x1, ..] => LightEnd::new(context, x0, x1),
+            _ => LightEnd::NONE,
         };
-        weight as f32
+        if walk.vertices.len() > 1 {
+            self.sum_light(context, walk.vertices, &start);
+        }
+        self.starts.push(start);
+        self.sums.resize(end, 0.0);
     }
 
-    /// The same for a path whose light subpath is the beginning of another walk, with these sums.
+    /// Adds the sums along a camera walk, which follows the one before.
+    pub fn add_camera(&mut self, context: &PathContext<'_>, walk: &Subpath<'_>) {
+        let end = self.sums.len() + walk.vertices.len();
+        self.sum_camera(context, walk.vertices);
+        self.sums.resize(end, 0.0);
+    }
+
+    /// Those along light walk number `i`, which begins with the vertex with number `first`; of none where none
+    /// were added.
     #[inline]
-    pub fn weight_of_cached(
-        &mut self,
-        context: &PathContext<'_>,
-        path: &JoinedPath<'_>,
-        shares: LightShares<'_>,
-    ) -> f32 {
-        if self.shortest <= path.light.len().min(path.camera.len()) {
-            self.connection(context, path, shares) as f32
-        } else {
-            path.weight(context, &mut self.densities)
+    pub fn light(&self, i: usize, first: usize) -> LightSums<'_> {
+        LightSums {
+            sums: self.sums.get(first..).unwrap_or_default(),
+            start: self.starts.get(i).unwrap_or(&LightEnd::NONE),
         }
     }
 
-    fn sum_light(&mut self, context: &PathContext<'_>, walk: &[Vertex]) {
-        let [x0, x1, ..] = walk else { return };
+    /// Those along the camera walk that begins with the vertex with this number.
+    #[inline]
+    pub fn camera(&self, first: usize) -> &[f64] {
+        self.sums.get(first..).unwrap_or_default()
+    }
+
+    fn sum_light(&mut self, context: &PathContext<'_>, walk: &[Vertex], start: &LightEnd) {
         let share = |ratio| context.settings.mis.share(ratio);
-        self.start = LightEnd::new(context, x0, x1);
-        let mut sum = self.start.is_hit;
-        self.light.push(sum);
+        let mut sum = start.is_hit;
+        self.sums.push(sum);
         let densities = walked_densities(context, walk, FAR);
         for (i, [a, b]) in densities.take(walk.len() - 2).enumerate() {
             let count = share(context.count(i + 1, 3, [&walk[i], &walk[i + 1]]));
-            let links = count * self.start.links(i + 1) * walk[i].links(&walk[i + 1]);
-            sum = chain(links, share(self.start.down(i, a, b)), sum);
-            self.light.push(sum);
+            let links = count * start.links(i + 1) * walk[i].links(&walk[i + 1]);
+            sum = chain(links, share(start.down(i, a, b)), sum);
+            self.sums.push(sum);
         }
     }
 
     fn sum_camera(&mut self, context: &PathContext<'_>, walk: &[Vertex]) {
         let share = |ratio| context.settings.mis.share(ratio);
         let mut sum = 0.0;
-        self.camera.push(sum);
+        self.sums.push(sum);
         let densities = walked_densities(context, walk, FAR);
-        for (c, [b, a]) in densities.take(walk.len().saturating_sub(1)).enumerate() {
+        for (c, [b, a]) in densities.take(walk.len() - 1).enumerate() {
             let [y, z] = [&walk[c], &walk[c + 1]];
             let links = share(context.count(2, c + 1, [z, y])) * y.links(z);
             sum = chain(links, share(ratio(a, b)), sum);
-            self.camera.push(sum);
+            self.sums.push(sum);
         }
     }
+}
 
+impl Weights {
+    /// Weights by these settings.
+    pub fn new(settings: &PathSettings) -> Self {
+        let mut weights = Self::default();
+        weights.set(settings);
+        weights
+    }
+
+    /// The same memory for other settings.
+    pub fn set(&mut self, settings: &PathSettings) {
+        self.shortest = if settings.strategies.is_all() {
+            settings.roulette.density_start().unwrap_or(0)
+        } else {
+            usize::MAX
+        };
+    }
+
+    /// True where weights need sums.
+    pub fn take_sums(&self) -> bool {
+        self.shortest < usize::MAX
+    }
+
+    /// The number that [`JoinedPath::weight`] finds, but for rounding, by sums along the walks that the path's
+    /// subpaths begin.
+    ///
+    /// It is the pure form itself where not all strategies take part, and where the roulette of densities begins
+    /// at a later bounce than the shorter subpath has vertices: it is then another for every path length.
+    #[inline]
+    pub fn weight(
+        &mut self,
+        context: &PathContext<'_>,
+        path: &JoinedPath<'_>,
+        sums: &PathSums<'_>,
+    ) -> f32 {
+        let (s, t) = (path.light.len(), path.camera.len());
+        let weight = match path.junction {
+            Junction::Hit if self.shortest == 0 => sums.hit(context, path),
+            Junction::Connection if self.shortest <= s.min(t) => sums.connection(context, path),
+            _ => return path.weight(context, &mut self.densities),
+        };
+        weight as f32
+    }
+}
+
+impl PathSums<'_> {
     /// s = 0: all others have more light vertices.
     fn hit(&self, context: &PathContext<'_>, path: &JoinedPath<'_>) -> f64 {
         let (y, t) = (path.y(), path.camera.len());
@@ -158,18 +210,13 @@ impl RunningSums {
     }
 
     /// s ≥ 1: the strategies with fewer light vertices, and those with fewer camera vertices.
-    fn connection(
-        &self,
-        context: &PathContext<'_>,
-        path: &JoinedPath<'_>,
-        shares: LightShares<'_>,
-    ) -> f64 {
+    fn connection(&self, context: &PathContext<'_>, path: &JoinedPath<'_>) -> f64 {
         let JoinedPath { light, camera, .. } = *path;
         let (s, t) = (light.len(), camera.len());
         let share = |ratio| context.settings.mis.share(ratio);
         let end = match s {
             1 => LightEnd::new(context, path.z(), path.y()),
-            _ => shares.start,
+            _ => *self.light.start,
         };
         let reversed = path.reversed(context);
         let fewer_light = {
@@ -178,7 +225,7 @@ impl RunningSums {
                 let links = count * end.links(s - 1) * possible(!before.went_by_delta);
                 let drawn = drawn_density(context, &light[..s - 1]);
                 let down = end.down(s - 2, drawn, reversed.before[0]);
-                chain(links, share(down), shares.sums[s - 2])
+                chain(links, share(down), self.light.sums[s - 2])
             } else {
                 end.is_hit
             };
@@ -205,6 +252,14 @@ impl RunningSums {
 }
 
 impl LightEnd {
+    /// Of no path.
+    const NONE: Self = Self {
+        emission: 0.0,
+        next_event: 0.0,
+        is_drawn: 0.0,
+        is_hit: 0.0,
+    };
+
     #[inline]
     fn new(context: &PathContext<'_>, x0: &Vertex, x1: &Vertex) -> Self {
         let next_event = next_event_density(context, x0, x1);

@@ -27,13 +27,30 @@ pub struct Escape {
     pub pdf_fwd: f32,
 }
 
-/// The vertices of one walk, from its end of the path.
-#[derive(Debug, Default)]
-pub struct Subpath {
+/// One walk, from its end of the path.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Subpath<'a> {
+    /// The number of its first vertex among all of [`Subpaths`].
+    pub first: usize,
     /// The vertices; empty where the walk could not start.
-    pub vertices: Vec<Vertex>,
+    pub vertices: &'a [Vertex],
     /// The walk's escape from the scene, if it left it.
     pub escape: Option<Escape>,
+}
+
+/// The walks of a batch, one behind the other, and behind them single points.
+#[derive(Debug, Default)]
+pub struct Subpaths {
+    vertices: Vec<Vertex>,
+    walks: Vec<Walk>,
+}
+
+/// How a walk ended.
+#[derive(Clone, Copy, Debug)]
+struct Walk {
+    /// The number behind that of its last vertex.
+    end: usize,
+    escape: Option<Escape>,
 }
 
 /// The state of a walk between two vertices.
@@ -52,17 +69,16 @@ struct Walker<'a> {
     max_vertices: usize,
 }
 
-/// Walks a camera subpath that starts with `ray` and the weight `weight` of its film position.
+/// Walks a camera subpath that starts with `ray` and the weight `weight` of its film position, and adds it to
+/// `subpaths`.
 pub fn camera_subpath(
     context: &PathContext<'_>,
     stream: &SampleStream,
     ray: &CameraRay,
     weight: f32,
-    subpath: &mut Subpath,
+    subpaths: &mut Subpaths,
     stats: &mut Stats,
 ) {
-    subpath.clear();
-    subpath.vertices.push(Vertex::camera(&ray.lens));
     let walker = Walker {
         context,
         mode: TransportMode::Radiance,
@@ -74,19 +90,22 @@ pub fn camera_subpath(
         beta: Spectrum::splat(weight),
         pdf_w: context.view.camera().pdf_direction(ray.direction),
     };
-    walker.walk(subpath, ray.origin, step, &mut stats.rays.camera);
+    let first = subpaths.vertices.len();
+    subpaths.vertices.push(Vertex::camera(&ray.lens));
+    let walked = &mut subpaths.vertices;
+    let escape = walker.walk(walked, first, ray.origin, step, &mut stats.rays.camera);
+    subpaths.end(escape);
 }
 
-/// Walks a light subpath.
+/// Walks a light subpath, and adds it to `subpaths`.
 pub fn light_subpath(
     context: &PathContext<'_>,
     stream: &SampleStream,
-    subpath: &mut Subpath,
+    subpaths: &mut Subpaths,
     stats: &mut Stats,
 ) {
-    subpath.clear();
     let Some((start, emission)) = draw_emission(context, stream) else {
-        return;
+        return subpaths.end(None);
     };
     let emitted = context
         .scene
@@ -102,7 +121,6 @@ pub fn light_subpath(
         ..start.locus
     };
     let origin = start_of_ray.ray_origin(emission.direction);
-    subpath.vertices.push(start);
     let walker = Walker {
         context,
         mode: TransportMode::Importance,
@@ -110,7 +128,11 @@ pub fn light_subpath(
         // At least the lens is the camera's.
         max_vertices: context.settings.max_vertices() - 1,
     };
-    walker.walk(subpath, origin, step, &mut stats.rays.light);
+    let first = subpaths.vertices.len();
+    subpaths.vertices.push(start);
+    let walked = &mut subpaths.vertices;
+    let escape = walker.walk(walked, first, origin, step, &mut stats.rays.light);
+    subpaths.end(escape);
 }
 
 /// Draws the start of a light subpath and the ray that leaves it. None: the draw has no density, or
@@ -133,58 +155,118 @@ fn draw_emission(
     (from.coverage > 0.0).then_some((start, emission))
 }
 
-impl Subpath {
-    /// Forgets the walk, and keeps the memory.
-    pub(crate) fn clear(&mut self) {
+impl Subpaths {
+    /// Forgets all, and keeps the memory.
+    pub fn clear(&mut self) {
         self.vertices.clear();
-        self.escape = None;
+        self.walks.clear();
+    }
+
+    /// The number of walks.
+    pub fn count(&self) -> usize {
+        self.walks.len()
+    }
+
+    /// Walk number `i`.
+    #[inline]
+    pub fn get(&self, i: usize) -> Subpath<'_> {
+        let first = if i == 0 { 0 } else { self.walks[i - 1].end };
+        let Walk { end, escape } = self.walks[i];
+        Subpath {
+            first,
+            vertices: &self.vertices[first..end],
+            escape,
+        }
+    }
+
+    /// All vertices, those of the single points last.
+    #[inline]
+    pub fn vertices(&self) -> &[Vertex] {
+        &self.vertices
+    }
+
+    /// The number of vertices of walks, behind which the single points are.
+    #[inline]
+    pub(crate) fn walked(&self) -> usize {
+        self.walks.last().map_or(0, |walk| walk.end)
+    }
+
+    /// Adds a single point; returns its number among all vertices. The next walk begins without any.
+    #[inline]
+    pub(crate) fn add_point(&mut self, point: Vertex) -> usize {
+        self.vertices.push(point);
+        self.vertices.len() - 1
+    }
+
+    /// Forgets the single points.
+    pub(crate) fn forget_points(&mut self) {
+        self.vertices.truncate(self.walked());
+    }
+
+    /// Adds a walk of these vertices.
+    #[cfg(test)]
+    pub(crate) fn add(&mut self, vertices: impl Iterator<Item = Vertex>) {
+        self.vertices.extend(vertices);
+        self.end(None);
+    }
+
+    /// Ends a walk.
+    fn end(&mut self, escape: Option<Escape>) {
+        let end = self.vertices.len();
+        self.walks.push(Walk { end, escape });
     }
 }
 
 impl Walker<'_> {
-    /// Extends the subpath vertex by vertex until it escapes, ends by roulette, or is full.
-    fn walk(&self, subpath: &mut Subpath, origin: Vec3, step: Step, rays: &mut u64) {
+    /// Extends the walk, `vertices` from `first` on, until it escapes, ends by roulette, or is full.
+    fn walk(
+        &self,
+        vertices: &mut Vec<Vertex>,
+        first: usize,
+        origin: Vec3,
+        step: Step,
+        rays: &mut u64,
+    ) -> Option<Escape> {
         let (mut origin, mut step) = (origin, step);
         let start = magnitude(step.beta);
-        while subpath.vertices.len() < self.max_vertices {
+        let mut count = 1;
+        while count < self.max_vertices {
             *rays += 1;
-            let chances = Chances::new(self.stream, subpath.vertices.len());
+            let chances = Chances::new(self.stream, count);
             let hit = self
                 .context
                 .scene
                 .intersect(origin, step.direction, chances);
             let Some(hit) = hit else {
-                subpath.escape = Some(Escape {
+                return Some(Escape {
                     direction: step.direction,
                     beta: step.beta,
                     pdf_fwd: step.pdf_w,
                 });
-                return;
             };
-            let at = Dimension::at(subpath.vertices.len(), Purpose::Mix);
+            let at = Dimension::at(count, Purpose::Mix);
             let u_mix = || self.stream.get_1d(at);
             let wo = -step.direction;
             let mut vertex = Vertex::surface(self.context, &hit, wo, step.beta, u_mix);
-            let last = subpath.vertices.len() - 1;
-            let from = subpath.vertices[last].locus;
+            let from = vertices[vertices.len() - 1].locus;
             let segment = Segment::along(&from, &vertex.locus, step.direction);
             vertex.pdf_fwd = step.pdf_w * segment.to_b;
             vertex.to_previous = segment.to_a;
             // Rounding put the vertex on the one before it, in a corner: no density, no path.
             if vertex.pdf_fwd == 0.0 {
-                return;
+                return None;
             }
-            subpath.vertices.push(vertex);
-            if subpath.vertices.len() == self.max_vertices {
-                return;
+            vertices.push(vertex);
+            count += 1;
+            if count == self.max_vertices {
+                return None;
             }
-            let Some(next) = self.scatter(&mut subpath.vertices, start) else {
-                return;
-            };
-            let vertex = &subpath.vertices[last + 1];
-            origin = vertex.locus.ray_origin(next.direction);
-            step = next;
+            step = self.scatter(&mut vertices[first..], start)?;
+            origin = vertices[vertices.len() - 1]
+                .locus
+                .ray_origin(step.direction);
         }
+        None
     }
 
     /// Scatters at the last of `vertices`. None: the walk ends there.

@@ -1,7 +1,7 @@
 //! π_c = g_c / Σ g over the candidates of its group: one ray for each light vertex, camera vertex
 //! or pair of subpaths [Lafortune95, §3].
 
-use super::{Candidate, Chosen, Draws, LightVertex, Selector};
+use super::{Candidate, Chosen, Draws, Selector};
 
 /// The property that candidates have in common within a group.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -28,14 +28,10 @@ impl OnePerGroup {
     /// The number of a candidate's group, which is that of its draw, too.
     #[inline]
     fn number(self, candidate: &Candidate) -> u32 {
-        match (self.group, candidate.light_vertex) {
-            // Light points have 0; beside a cache no subpath is connected as a sample's own.
-            (Group::LightVertex, LightVertex::Cached(vertex)) => 1 + vertex,
-            (Group::LightVertex, LightVertex::Own | LightVertex::NextEvent(_)) => {
-                u32::from(candidate.term.strategy.s) - 1
-            }
-            (Group::CameraVertex, _) => u32::from(candidate.term.strategy.t) - 2,
-            (Group::Pair, _) => 0,
+        match self.group {
+            Group::LightVertex => candidate.light_vertex,
+            Group::CameraVertex => u32::from(candidate.term.strategy.t) - 2,
+            Group::Pair => 0,
         }
     }
 

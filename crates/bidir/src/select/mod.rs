@@ -21,7 +21,9 @@ pub use grouped::{Group, OnePerGroup};
 pub use simple::{All, RayRoulette};
 
 use crate::contribution::Term;
+use crate::locus::Locus;
 use crate::names::as_text;
+use crate::path::Subpaths;
 use crate::sampler::{Dimension, Purpose, SampleStream};
 use std::fmt;
 use std::str::FromStr;
@@ -34,31 +36,24 @@ pub struct Candidate {
     /// The score that candidates are compared by: the luminance of C w, times the estimated root of the chance
     /// that it arrives. Positive.
     pub score: f32,
-    /// The place of its light vertex.
-    pub light_vertex: LightVertex,
-}
-
-/// The place of the light vertex of a candidate.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum LightVertex {
-    /// The last of the first s of the sample's own light subpath.
-    Own,
-    /// The light point of next-event estimation with this number.
-    NextEvent(u32),
-    /// The vertex of the light cache with this number.
-    Cached(u32),
+    /// The numbers of its light vertex and of its camera vertex among those of a batch.
+    pub vertices: [u32; 2],
+    /// The number of its light vertex in the sample: 0 for all light points of next-event estimation.
+    pub light_vertex: u32,
 }
 
 impl Candidate {
-    /// A candidate for a term that is not black and is compared by `score`.
+    /// The score for this estimate of it: one that underflows must keep a chance.
     #[inline]
-    pub fn new(term: Term, score: f32, light_vertex: LightVertex) -> Self {
-        Self {
-            term,
-            // A score that underflows must keep a chance.
-            score: score.max(f32::MIN_POSITIVE),
-            light_vertex,
-        }
+    pub fn score(estimate: f32) -> f32 {
+        estimate.max(f32::MIN_POSITIVE)
+    }
+
+    /// The ends of its shadow ray, where `light` and `camera` have its vertices.
+    #[inline]
+    pub(crate) fn ends(&self, light: &Subpaths, camera: &Subpaths) -> [Locus; 2] {
+        let [z, y] = self.vertices.map(|vertex| vertex as usize);
+        [light.vertices()[z].locus, camera.vertices()[y].locus]
     }
 }
 

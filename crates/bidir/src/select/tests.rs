@@ -5,9 +5,15 @@ use crate::strategy::Strategy;
 
 fn candidate(s: usize, t: usize, score: f32) -> Candidate {
     Candidate {
-        term: Term::new(Strategy::new(s, t), 0, Spectrum::splat(score), 1.0),
+        term: Term {
+            strategy: Strategy::new(s, t),
+            light: 0,
+            contribution: Spectrum::splat(score),
+            weight: 1.0,
+        },
         score,
-        light_vertex: LightVertex::Own,
+        vertices: [0; 2],
+        light_vertex: s as u32 - 1,
     }
 }
 
@@ -25,14 +31,13 @@ fn candidates() -> Vec<Candidate> {
 /// Two light points, and three vertices of a light cache of which two are as deep, in the order of cells;
 /// two camera vertices share one of them.
 fn cached_candidates() -> Vec<Candidate> {
-    use LightVertex::{Cached, NextEvent};
     let ends = [
-        (NextEvent(0), (1, 2)),
-        (NextEvent(1), (1, 2)),
-        (Cached(7), (2, 2)),
-        (Cached(0), (3, 2)),
-        (Cached(9), (2, 2)),
-        (Cached(7), (2, 3)),
+        (0, (1, 2)),
+        (0, (1, 2)),
+        (8, (2, 2)),
+        (1, (3, 2)),
+        (10, (2, 2)),
+        (8, (2, 3)),
     ];
     let scores = [0.5, 40.0, 2e-3, 3.0, 1.0, 2e-2];
     let all = ends.into_iter().zip(scores);
@@ -133,14 +138,11 @@ fn no_rule_traces_more_rays_than_it_says() {
 #[test]
 fn vertices_of_a_light_cache_have_one_ray_each() {
     let candidates = cached_candidates();
-    let row = |chosen: &Chosen| match candidates[chosen.candidate as usize].light_vertex {
-        LightVertex::Cached(vertex) => Some(vertex),
-        LightVertex::Own | LightVertex::NextEvent(_) => None,
-    };
+    let row = |chosen: &Chosen| candidates[chosen.candidate as usize].light_vertex;
     frequencies(ShadowRays::PerLightVertex, &candidates, 2000, |chosen| {
         let mut rows: Vec<_> = chosen.iter().map(row).collect();
         rows.sort_unstable();
-        assert_eq!(rows, [None, Some(0), Some(7), Some(9)]);
+        assert_eq!(rows, [0, 1, 8, 10]);
     });
 }
 

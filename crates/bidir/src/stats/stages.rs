@@ -10,9 +10,9 @@ use std::time::{Duration, Instant};
 /// no other.
 pub type Clock = fn() -> Instant;
 
-/// A thread measures one of so many of its samples. A prime, so that no width of an image makes
+/// A thread measures one of so many of its batches. A prime, so that no width of an image makes
 /// the same columns be measured in every row.
-const MEASURED_EVERY: u32 = 61;
+const MEASURED_EVERY: u32 = 7;
 
 /// A stage of a sample.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -82,9 +82,9 @@ impl AddAssign<&Self> for StageTimes {
 #[derive(Clone, Debug, Default)]
 pub struct Stopwatch {
     clock: Option<Clock>,
-    /// Samples begun since one was measured.
+    /// Batches begun since one was measured.
     waited: u32,
-    /// The end of the last stage. None: this sample is not measured.
+    /// The end of the last stage. None: this batch is not measured.
     last: Option<Instant>,
     times: StageTimes,
 }
@@ -98,14 +98,16 @@ impl Stopwatch {
         }
     }
 
-    /// A sample begins, and with it its first stage.
+    /// A batch of so many samples begins, and with it its first stage.
     #[inline]
-    pub(crate) fn begin_sample(&mut self) {
+    pub(crate) fn begin_samples(&mut self, samples: usize) {
         self.begin();
-        self.times.samples += u64::from(self.last.is_some());
+        if self.last.is_some() {
+            self.times.samples += samples as u64;
+        }
     }
 
-    /// The light subpath of a sample begins, apart from it: as many are measured as samples are.
+    /// The light subpaths of a batch begin, apart from its samples: as many are measured as batches are.
     #[inline]
     pub(crate) fn begin_light(&mut self) {
         self.begin();
@@ -156,7 +158,7 @@ mod tests {
 
     fn measure(watch: &mut Stopwatch, samples: u32) {
         for _ in 0..samples {
-            watch.begin_sample();
+            watch.begin_samples(1);
             for stage in [Stage::Walk, Stage::Walk, Stage::Film] {
                 watch.end(stage);
             }

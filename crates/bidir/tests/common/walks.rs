@@ -3,7 +3,7 @@
 use super::Shot;
 use bidir::light::LightChoice;
 use bidir::path::{
-    Cells, Connections, LightProposals, PairSums, PathContext, PathSettings, Subpath,
+    Cells, Connections, LightProposals, PairSums, PathContext, PathSettings, Subpath, Subpaths,
     camera_subpath, light_subpath,
 };
 use bidir::sampler::{Dimension, Domain, Purpose, Sampler, SamplerKind};
@@ -13,25 +13,26 @@ use bidir::stats::Stats;
 /// How many pairs a scene gets.
 const PAIRS: u64 = 400;
 
-fn subpaths(context: &PathContext<'_>, index: u64) -> (Subpath, Subpath) {
+/// Walks the light subpath and the camera subpath of a pair.
+fn walk(context: &PathContext<'_>, index: u64, [light, camera]: [&mut Subpaths; 2]) {
     let sampler = Sampler::new(SamplerKind::Independent, 5);
-    let camera = sampler.stream(Domain::Camera, 0, index);
-    let raster = camera.get_2d(Dimension::at(0, Purpose::Film)) * 8.0;
-    let lens = camera.get_2d(Dimension::at(0, Purpose::Lens));
+    let stream = sampler.stream(Domain::Camera, 0, index);
+    let raster = stream.get_2d(Dimension::at(0, Purpose::Film)) * 8.0;
+    let lens = stream.get_2d(Dimension::at(0, Purpose::Lens));
     let ray = context.view.camera().sample_ray(raster, || lens);
-    let (mut light_walk, mut camera_walk) = (Subpath::default(), Subpath::default());
     let mut stats = Stats::default();
-    camera_subpath(context, &camera, &ray, 1.0, &mut camera_walk, &mut stats);
-    let light = sampler.stream(Domain::Light, 0, index);
-    light_subpath(context, &light, &mut light_walk, &mut stats);
-    (light_walk, camera_walk)
+    camera.clear();
+    camera_subpath(context, &stream, &ray, 1.0, camera, &mut stats);
+    light.clear();
+    let stream = sampler.stream(Domain::Light, 0, index);
+    light_subpath(context, &stream, light, &mut stats);
 }
 
 /// Calls `f` with the context of a scene and a number of subpath pairs.
 pub(crate) fn for_each_pair(
     settings: &PathSettings,
     scene: &Shot,
-    f: impl FnMut(&PathContext<'_>, &Subpath, &Subpath),
+    f: impl FnMut(&PathContext<'_>, &Subpath<'_>, &Subpath<'_>),
 ) {
     for_some_pairs(PAIRS, settings, scene, Connections::ONE_SUBPATH, f);
 }
@@ -40,7 +41,7 @@ pub(crate) fn for_each_pair(
 pub(crate) fn some_proposals(scene: &Shot) -> LightProposals {
     let (mut points, settings) = (Vec::new(), PathSettings::default());
     for_each_pair(&settings, scene, |_, light, camera| {
-        let vertices = light.vertices.iter().chain(&camera.vertices);
+        let vertices = light.vertices.iter().chain(camera.vertices);
         points.extend(vertices.map(|vertex| vertex.locus.point));
     });
     // Any numbers, zero among them.
@@ -66,7 +67,7 @@ pub(crate) fn for_some_pairs(
     settings: &PathSettings,
     shot: &Shot,
     connections: Connections<'_>,
-    mut f: impl FnMut(&PathContext<'_>, &Subpath, &Subpath),
+    mut f: impl FnMut(&PathContext<'_>, &Subpath<'_>, &Subpath<'_>),
 ) {
     let context = PathContext {
         scene: &shot.scene,
@@ -75,8 +76,9 @@ pub(crate) fn for_some_pairs(
         wavelengths: Wavelengths::default(),
         connections,
     };
+    let [mut light, mut camera] = [Subpaths::default(), Subpaths::default()];
     for index in 0..pairs {
-        let (light, camera) = subpaths(&context, index);
-        f(&context, &light, &camera);
+        walk(&context, index, [&mut light, &mut camera]);
+        f(&context, &light.get(0), &camera.get(0));
     }
 }

@@ -86,7 +86,7 @@ fn measuring_stages_changes_no_bit_and_no_counter() {
         assert_eq!(plain.stats(), timed.stats(), "{name}");
         assert_eq!(*plain.stage_times(), StageTimes::default(), "{name}");
         let times = timed.stage_times();
-        assert!((1..=10).contains(&times.samples), "{name}: {times:?}");
+        assert!((8..=64).contains(&times.samples), "{name}: {times:?}");
         let of_bdpt = timed.settings().integrator.has_candidates();
         for stage in [Stage::Walk, Stage::Film] {
             assert!(!times.of(stage).is_zero(), "{name}: {times:?}");
@@ -251,10 +251,10 @@ fn check_replays(integrator: IntegratorKind) {
                 .replay(film.crop.pixel(i), pass)
                 .expect("the pixel is inside");
             let rgb = |light: bidir::spectrum::Spectrum| [light[0], light[1], light[2]];
-            buffer.set_camera_sample(i, rgb(replay.workspace.value));
-            for splat in &replay.workspace.splats {
-                let value = rgb(splat.contribution.value());
-                buffer.splat(film, splat.place, value, std::iter::empty());
+            buffer.set_camera_sample(i, rgb(replay.value()));
+            for (contribution, place) in replay.splats() {
+                let value = rgb(contribution.value());
+                buffer.splat(film, place, value, std::iter::empty());
             }
         }
         again.add_pass(pass, &buffer);

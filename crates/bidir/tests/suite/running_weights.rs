@@ -9,8 +9,8 @@ use bidir::light::{DistantLight, InfiniteLight, Light, PointLight};
 use bidir::math::{Affine3A, Vec2, Vec3};
 use bidir::path::{
     Arrival, Connections, JoinedPath, Junction, LightChoiceKind, LightPointChoice, MisHeuristic,
-    PathContext, PathDensities, PathRoulette, PathSettings, RunningSums, Strategies, Subpath,
-    Vertex, sample_next_event,
+    PathContext, PathDensities, PathRoulette, PathSettings, PathSums, RunningSums, Strategies,
+    Subpath, Vertex, Weights, sample_next_event,
 };
 use bidir::shape::Shape;
 
@@ -22,7 +22,8 @@ const SMALL: f32 = 1e-30;
 /// The two computations of weights, and the number of paths compared.
 #[derive(Default)]
 struct Comparison {
-    sums: RunningSums,
+    sums: [RunningSums; 2],
+    weights: Weights,
     densities: PathDensities,
     paths: usize,
     /// Of paths with five vertices or more, whose strategies share.
@@ -41,7 +42,12 @@ impl Comparison {
             return;
         }
         let pure = path.weight(context, &mut self.densities);
-        let running = self.sums.weight(context, path);
+        let [of_light, of_camera] = &self.sums;
+        let sums = PathSums {
+            light: of_light.light(0, 0),
+            camera: of_camera.camera(0),
+        };
+        let running = self.weights.weight(context, path, &sums);
         assert!(
             (running - pure).abs() <= TOLERANCE * pure + SMALL,
             "s = {s}, t = {t}: {running} instead of {pure}; {}",
@@ -52,11 +58,21 @@ impl Comparison {
     }
 
     /// All paths that the two subpaths make.
-    fn compare_pair(&mut self, context: &PathContext<'_>, light: &Subpath, camera: &Subpath) {
-        self.sums.sum(context, light, camera);
+    fn compare_pair(
+        &mut self,
+        context: &PathContext<'_>,
+        light: &Subpath<'_>,
+        camera: &Subpath<'_>,
+    ) {
+        self.weights.set(context.settings);
+        self.sums.iter_mut().for_each(RunningSums::clear);
+        if self.weights.take_sums() {
+            self.sums[0].add_light(context, light);
+            self.sums[1].add_camera(context, camera);
+        }
         self.compare_hits(context, camera);
-        self.compare_light_images(context, &light.vertices);
-        self.compare_next_events(context, &camera.vertices);
+        self.compare_light_images(context, light.vertices);
+        self.compare_next_events(context, camera.vertices);
         let fresh = context.settings.light_point == LightPointChoice::Fresh;
         for t in 2..=camera.vertices.len() {
             for s in 1 + usize::from(fresh)..=light.vertices.len() {
@@ -78,7 +94,7 @@ impl Comparison {
         }
     }
 
-    fn compare_hits(&mut self, context: &PathContext<'_>, camera: &Subpath) {
+    fn compare_hits(&mut self, context: &PathContext<'_>, camera: &Subpath<'_>) {
         for (i, vertex) in camera.vertices.iter().enumerate().skip(1) {
             if let Some(arrival) = Arrival::at(vertex) {
                 let x0 = arrival.vertex(context);
@@ -88,7 +104,7 @@ impl Comparison {
         let Some(escape) = camera.escape else { return };
         for arrival in Arrival::of_escape(context.scene, escape) {
             let x0 = arrival.vertex(context);
-            self.compare(context, &JoinedPath::hit(&x0, &camera.vertices));
+            self.compare(context, &JoinedPath::hit(&x0, camera.vertices));
         }
     }
 

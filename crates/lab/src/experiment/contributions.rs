@@ -10,8 +10,8 @@ use super::loaded_scene::LoadedScene;
 use super::{Experiment, MethodSpec, is_in};
 use crate::results::Contributions;
 use bidir::driver::Settings;
-use bidir::integrator::{IntegratorKind, Journal, Link, LvcSettings, Sample, Workspace};
-use bidir::path::{Connections, PathContext};
+use bidir::integrator::{Batch, Job, Method, Sample};
+use bidir::path::Connections;
 use bidir::sampler::{Domain, Sampler};
 use bidir::select::ShadowRays;
 use rayon::prelude::*;
@@ -144,33 +144,26 @@ fn terms(loaded: &LoadedScene<'_>, settings: &Settings, pass: u64) -> Vec<[f64; 
     let LoadedScene { scene, view, .. } = loaded;
     let film = view.film();
     let sampler = Sampler::new(settings.sampler, settings.seed);
-    let context = PathContext {
+    let job = Job {
         scene,
         view,
         settings: &settings.path,
-        wavelengths: scene.color().sample_wavelengths(0.5),
         connections: Connections::ONE_SUBPATH,
     };
-    let integrator =
-        IntegratorKind::Bdpt.integrator(ShadowRays::All.selector(0.0), &LvcSettings::default());
-    let mut workspace = Workspace::default();
-    workspace.journal = Some(Journal::default());
+    let method = Method::Bdpt(ShadowRays::All.selector(0.0));
+    let mut batch = Batch::default();
     let mut terms = Vec::new();
     for i in 0..film.crop.area() {
+        let pixel = film.crop.pixel(i as usize);
         let camera = sampler.stream(Domain::Camera, i, pass);
-        let sample = Sample {
-            pass,
-            pixel: film.crop.pixel(i as usize),
-            ray: camera,
-            camera,
-            light: sampler.stream(Domain::Light, 0, pass * film.light_paths() + i),
-        };
-        integrator.sample(&context, &sample, &mut workspace);
-        let entries = workspace.journal.iter().flat_map(|j| &j.entries);
-        let connections = entries.filter(|entry| matches!(entry.link, Link::Connection(_)));
-        terms.extend(connections.map(|entry| {
-            let luminance = |value| f64::from(scene.color().luminance(value, &context.wavelengths));
-            [entry.term.contribution, entry.term.value()].map(luminance)
+        let light = sampler.stream(Domain::Light, 0, pass * film.light_paths() + i);
+        let sample = Sample::new(scene, pass, pixel, camera, light);
+        batch.fill([sample]);
+        method.run(&job, &mut batch);
+        terms.extend(batch.candidates.iter().map(|candidate| {
+            let term = &candidate.term;
+            let luminance = |value| f64::from(scene.color().luminance(value, &sample.wavelengths));
+            [term.contribution, term.value()].map(luminance)
         }));
     }
     terms.retain(|term| term.iter().all(|c| *c > 0.0 && c.is_finite()));

@@ -54,12 +54,12 @@ impl Color {
 impl SampleReport {
     /// The report of a repeated sample: that of `pixel` in `pass`.
     pub fn new(session: &Session<'_>, pixel: [u32; 2], pass: u64, replay: &Replay) -> Self {
-        let (scene, workspace) = (session.scene(), &replay.workspace);
+        let (scene, stats) = (session.scene(), &replay.batch.stats);
         let color = Color {
             model: scene.color(),
-            wavelengths: replay.wavelengths,
+            wavelengths: replay.sample().wavelengths,
         };
-        let view = View::new(session, &workspace.camera);
+        let view = View::new(session, &replay.camera());
         let Terms {
             hits,
             candidates,
@@ -73,9 +73,9 @@ impl SampleReport {
             pass,
             settings: SettingsText::from(session.settings()),
             training: TrainingReport::new(session),
-            camera: SubpathReport::new(&color, &view, &workspace.camera),
-            light: SubpathReport::new(&color, &view, replay.light()),
-            value: color.rgb(workspace.value),
+            camera: SubpathReport::new(&color, &view, &replay.camera()),
+            light: SubpathReport::new(&color, &view, &replay.light()),
+            value: color.rgb(replay.value()),
             value_of_hits: sum(hits.iter().map(|hit| hit.added)),
             value_of_candidates: sum(candidates.iter().map(|c| c.term.added)),
             value_of_all_candidates: sum(all.map(CandidateReport::arriving)),
@@ -85,8 +85,8 @@ impl SampleReport {
             light_image,
             light_paths: session.view().film().light_paths(),
             light_subpaths: session.light_subpaths(),
-            rays: workspace.stats.rays.total(),
-            dropped: workspace.stats.dropped,
+            rays: stats.rays.total(),
+            dropped: stats.dropped,
         }
     }
 }

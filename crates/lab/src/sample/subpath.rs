@@ -84,7 +84,7 @@ pub(super) struct View<'a> {
 impl<'a> View<'a> {
     /// From the lens point of `subpath`, so that what its ray hits lies in its pixel; without a
     /// camera subpath, from the middle of the lens.
-    pub(super) fn new(session: &'a Session<'_>, subpath: &Subpath) -> Self {
+    pub(super) fn new(session: &'a Session<'_>, subpath: &Subpath<'_>) -> Self {
         let camera = session.view().camera();
         let middle = || middle_of_lens(camera).locus;
         Self {
@@ -128,7 +128,7 @@ impl<'a> View<'a> {
 }
 
 impl SubpathReport {
-    pub(super) fn new(color: &Color, view: &View<'_>, subpath: &Subpath) -> Self {
+    pub(super) fn new(color: &Color, view: &View<'_>, subpath: &Subpath<'_>) -> Self {
         let vertices = subpath
             .vertices
             .iter()

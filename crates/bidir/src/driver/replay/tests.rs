@@ -140,7 +140,7 @@ fn the_rays_of_a_pass_are_those_of_its_samples() {
     for (name, integrator) in IntegratorKind::NAMES {
         let mut session = session(&scene, integrator, "all");
         let pass = pass(&session, 0);
-        let rays = pass.iter().map(|(_, r)| r.workspace.stats.rays.total());
+        let rays = pass.iter().map(|(_, r)| r.batch.stats.rays.total());
         let rays: u64 = rays.sum();
         session.step(&());
         assert_eq!(rays, session.stats().rays.total(), "{name}");
@@ -169,12 +169,12 @@ fn connections_are_candidates_or_zero() {
     let scene = scene();
     let session = session(&scene, IntegratorKind::Bdpt, "all");
     for (_, replay) in pass(&session, 0) {
-        let [light, camera] = [&replay.workspace.light, &replay.workspace.camera]
-            .map(|subpath| subpath.vertices.len());
+        let [light, camera] =
+            [replay.light(), replay.camera()].map(|subpath| subpath.vertices.len());
         let longest = session.settings().path.max_vertices();
         let pairs = (1..=light).flat_map(|s| (2..=camera).map(move |t| s + t));
         let all = pairs.filter(|n| *n <= longest).count();
-        let candidates = replay.workspace.candidates.iter();
+        let candidates = replay.batch.candidates.iter();
         let own = candidates.filter(|c| usize::from(c.term.strategy.s) <= light);
         assert_eq!(own.count() + replay.zeros.len(), all);
     }

@@ -1,17 +1,23 @@
 //! Groups of samples that share their light subpaths: these are walked before the samples.
 
 use super::Session;
-use crate::integrator::{BroughtLight, SharedLight, Workspace, group_size};
+use crate::integrator::{Batch, Entry, begin_group, end_group, group_size, walk_group};
 use crate::stats::{Stage, Stats};
 use std::ops::Range;
 
 impl Session<'_> {
     /// How many samples there are for one light subpath.
     pub(super) fn samples_per_subpath(&self) -> u64 {
-        match self.integrator.shared_light() {
-            Some(_) => u64::from(self.settings.lvc.samples_per_subpath.get()),
-            None => 1,
+        if self.method.shares_light() {
+            u64::from(self.settings.lvc.samples_per_subpath.get())
+        } else {
+            1
         }
+    }
+
+    /// The places of the group of `size` that begins at `begin`.
+    pub(super) fn group(&self, begin: u64, size: u64) -> Range<u64> {
+        begin..(begin + size).min(self.view.film().crop.area())
     }
 
     /// The members of `places`, the range of a group, that bring a light subpath: as many of each group begin
@@ -20,24 +26,26 @@ impl Session<'_> {
         places.step_by(usize::from(self.settings.lvc.samples_per_subpath.get()))
     }
 
-    /// Walks the light subpaths of the samples at `places`, a group, and keeps their images.
+    /// Walks the light subpaths of the samples at `places`, a group, so many at a time; calls `keep` each time.
     pub(super) fn walk_light(
         &self,
-        shared: &dyn SharedLight,
         places: Range<u64>,
         pass: u64,
-        workspace: &mut Workspace,
+        (batch, size): (&mut Batch, usize),
+        mut keep: impl FnMut(&mut Batch),
     ) {
-        shared.begin(workspace);
-        for place in self.bringers(places) {
-            workspace.stopwatch.begin_light();
-            let sample = self.sample(place, pass);
-            let context = self.context(&sample);
-            shared.walk(&context, &sample, workspace);
-            self.deposit(&context, place).take_light(workspace);
-            workspace.stopwatch.end(Stage::Film);
+        let job = self.job();
+        begin_group(batch);
+        let mut bringers = self.bringers(places).peekable();
+        while bringers.peek().is_some() {
+            batch.stopwatch.begin_light();
+            let places = bringers.by_ref().take(size);
+            batch.fill(places.map(|place| self.sample(place, pass)));
+            walk_group(&job, batch);
+            keep(batch);
+            batch.stopwatch.end(Stage::Film);
         }
-        shared.end(self.connections(), workspace);
+        end_group(&job, batch);
     }
 
     /// How many light subpaths a pass has.
@@ -46,31 +54,26 @@ impl Session<'_> {
         pixels.div_ceil(self.samples_per_subpath())
     }
 
-    /// Walks the light subpaths of the group of `place` again; returns that of `place`, of which alone
-    /// anything is counted. None: another sample brings it.
+    /// Walks the light subpaths of the group of `place` again; returns the one that `place` brings, of which alone
+    /// anything is counted, by its number and its splats. None: another sample brings it.
     pub(super) fn replay_light(
         &self,
-        shared: &dyn SharedLight,
         place: u64,
         pass: u64,
-        workspace: &mut Workspace,
-    ) -> Option<BroughtLight> {
-        let pixels = self.view.film().crop.area();
-        let size = group_size(pixels);
-        let begin = place / size * size;
-        let mut own = None;
-        shared.begin(workspace);
-        for other in self.bringers(begin..(begin + size).min(pixels)) {
-            let sample = self.sample(other, pass);
-            workspace.stats = Stats::default();
-            shared.walk(&self.context(&sample), &sample, workspace);
-            if other == place {
-                own = Some((workspace.take_light(), std::mem::take(&mut workspace.stats)));
+        batch: &mut Batch,
+    ) -> Option<(usize, Vec<Entry>)> {
+        let size = group_size(self.view.film().crop.area());
+        let group = self.group(place / size * size, size);
+        let pixel = self.sample(place, pass).pixel;
+        let (mut own, mut own_stats) = (None, Stats::default());
+        self.walk_light(group, pass, (batch, 1), |batch| {
+            let stats = std::mem::take(&mut batch.stats);
+            if batch.samples[0].pixel == pixel {
+                own = Some((batch.light.count() - 1, batch.splats.clone()));
+                own_stats = stats;
             }
-        }
-        shared.end(self.connections(), workspace);
-        let (light, stats) = own.unzip();
-        workspace.stats = stats.unwrap_or_default();
-        light
+        });
+        batch.stats = own_stats;
+        own
     }
 }

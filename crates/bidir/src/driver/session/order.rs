@@ -2,11 +2,11 @@
 
 use super::super::spread;
 use crate::film::PixelRect;
-use crate::integrator::Integrator;
+use crate::integrator::Method;
 
 /// Which pixel the sample at each place of a pass belongs to.
 ///
-/// Samples at places that follow each other share light subpaths where an integrator shares any, and so
+/// Samples at places that follow each other share light subpaths where a method shares any, and so
 /// part of their error. Errors that neighbours have in common are seen as streaks: they spread over the
 /// film.
 pub(super) enum Order {
@@ -17,10 +17,10 @@ pub(super) enum Order {
 }
 
 impl Order {
-    /// The order of a crop for an integrator. Crops of 2³² pixels or more keep the order of rows.
-    pub(super) fn new(crop: PixelRect, integrator: &dyn Integrator) -> Self {
+    /// The order of a crop for a method. Crops of 2³² pixels or more keep the order of rows.
+    pub(super) fn new(crop: PixelRect, method: &Method) -> Self {
         let fits = u32::try_from(crop.area()).is_ok();
-        if fits && integrator.shared_light().is_some() {
+        if fits && method.shares_light() {
             Self::Spread(spread::permutation(&crop))
         } else {
             Self::Rows

@@ -6,11 +6,10 @@ use super::emission::{self, Connection};
 use super::moments::Counts;
 use super::survey::Survey;
 use super::{Settings, Training};
-use crate::integrator::{LightStart, ProposalKind, Workspace, connectable};
+use crate::integrator::{Batch, Job, LightStart, ProposalKind, connectable};
 use crate::math::Vec3;
-use crate::path::{Cell, Cells, LightProposals, PairSums, PathContext};
+use crate::path::{Cell, Cells, LightProposals, PairSums};
 use crate::scene::Scene;
-use crate::select::LightVertex;
 
 /// A connection that was traced.
 #[derive(Clone, Copy)]
@@ -52,35 +51,27 @@ impl Found {
         }));
     }
 
-    /// Adds the vertices and connections of a sample; `terms` has the numbers of the connections' terms.
-    pub(super) fn keep(
-        &mut self,
-        context: &PathContext<'_>,
-        workspace: &Workspace,
-        terms: &[Option<u32>],
-    ) {
-        let [light, camera] = [&workspace.light, &workspace.camera].map(|walk| &walk.vertices);
+    /// Adds the vertices and connections of the one sample of `batch`; `terms` has the numbers of the connections'
+    /// terms.
+    pub(super) fn keep(&mut self, job: &Job<'_>, batch: &Batch, terms: &[Option<u32>]) {
+        let [walk, camera] = [&batch.light, &batch.camera].map(|walks| walks.get(0).vertices);
         let first = self.places.len();
         let place = |i: usize| (first + i) as u32;
+        let light = batch.light.vertices();
         let camera_place = |i: usize| place(light.len() + i);
-        let all = light.iter().chain(camera).chain(&workspace.next_events);
+        let all = light.iter().chain(camera);
         self.places.extend(all.map(crate::path::Vertex::place));
-        let light_vertex = |i: usize| Some((place(i), light[0].light?));
-        let connectable = connectable(context.settings.light_point, light);
+        let light_vertex = |i: usize| Some((place(i), walk[0].light?));
+        let connectable = connectable(job.settings.light_point, walk);
         self.light.extend(connectable.filter_map(light_vertex));
         let ends = (1..camera.len()).filter(|&i| !camera[i].is_delta());
         self.camera.extend(ends.map(camera_place));
-        for (candidate, &term) in workspace.candidates.iter().zip(terms) {
-            let [s, t] = [candidate.term.strategy.s, candidate.term.strategy.t].map(usize::from);
-            let (z, light) = match candidate.light_vertex {
-                LightVertex::NextEvent(i) => (camera_place(camera.len() + i as usize), None),
-                _ => (place(s - 1), Some(candidate.term.light)),
-            };
-            let [end, _] = workspace.vertices(candidate.term.strategy, candidate.light_vertex);
-            if !end.locus.is_infinite() {
+        for (candidate, &term) in batch.candidates.iter().zip(terms) {
+            let [z, y] = candidate.vertices.map(|vertex| vertex as usize);
+            if !light[z].locus.is_infinite() {
                 self.traced.push(Traced {
-                    places: [z, camera_place(t - 1)],
-                    light,
+                    places: [place(z), camera_place(y)],
+                    light: (z < walk.len()).then_some(candidate.term.light),
                     term,
                 });
             }

@@ -19,9 +19,10 @@ use super::constants::{
 use super::survey::Survey;
 use crate::contribution::Contribution;
 use crate::film::FilmSettings;
-use crate::integrator::{IntegratorKind, Workspace};
+use crate::integrator::{Batch, IntegratorKind, Job};
 use crate::path::{PathContext, PathRoulette, Shares};
-use crate::select::{LightVertex, ShadowRays};
+use crate::select::ShadowRays;
+use crate::strategy::Strategy;
 use std::ops::AddAssign;
 
 /// The first surfaces at which the roulette of a plan may differ from that of the survey.
@@ -136,23 +137,26 @@ fn longer(albedos: [f32; 2]) -> [f64; STARTS] {
 pub(super) struct Work([[f64; 6]; STARTS]);
 
 impl Work {
-    /// Adds a sample that took so many camera rays.
-    pub(super) fn add(&mut self, workspace: &Workspace, rays: usize) {
-        let camera = &workspace.camera.vertices;
-        let albedo = |i: usize| camera.get(i).map_or(1.0, |vertex| vertex.albedo_fwd);
+    /// Adds the one sample of `batch`.
+    pub(super) fn add(&mut self, job: &Job<'_>, batch: &Batch) {
+        let walk = batch.camera.get(0);
+        let rays = walk.vertices.len() - 1 + usize::from(walk.escape.is_some());
+        let albedo = |i: usize| walk.vertices.get(i).map_or(1.0, |vertex| vertex.albedo_fwd);
         let longer = longer([albedo(1), albedo(2)]);
-        for (start, walk) in self.0.iter_mut().enumerate() {
+        for (start, sums) in self.0.iter_mut().enumerate() {
             let rays = (0..rays).map(|before| longer[before.min(start)]);
-            walk[0] += rays.sum::<f64>();
-            for candidate in &workspace.candidates {
-                let t = usize::from(candidate.term.strategy.t);
+            sums[0] += rays.sum::<f64>();
+            for candidate in &batch.candidates {
+                let Strategy { s, t } = candidate.term.strategy;
+                let (s, t) = (usize::from(s), usize::from(t));
                 let deeper = usize::from(t > 2);
-                match candidate.light_vertex {
-                    LightVertex::NextEvent(_) => walk[1 + deeper] += longer[(t - 2).min(start)],
-                    _ => walk[3 + deeper] += 1.0,
+                if s < job.settings.light_point.first_walked() {
+                    sums[1 + deeper] += longer[(t - 2).min(start)];
+                } else {
+                    sums[3 + deeper] += 1.0;
                 }
             }
-            walk[5] += f64::from(u8::from(!workspace.candidates.is_empty()));
+            sums[5] += f64::from(u8::from(!batch.candidates.is_empty()));
         }
     }
 }

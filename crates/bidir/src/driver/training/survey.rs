@@ -8,12 +8,11 @@ use super::extent;
 use super::learning::Found;
 use super::moments::{Term, Work};
 use super::{Settings, Task};
-use crate::contribution::Contribution;
-use crate::integrator::{Integrator, IntegratorKind, LvcSettings, Sample, Workspace};
-use crate::path::{Connections, MisHeuristic, PathContext, PathDensities};
+use crate::integrator::{Batch, Entry, Job, Link, Method, Sample};
+use crate::path::{Connections, MisHeuristic, PathDensities};
 use crate::sampler::{Domain, Sampler};
 use crate::scene::Scene;
-use crate::select::{LightVertex, ShadowRays};
+use crate::select::{Candidate, ShadowRays};
 use crate::stats::Stats;
 use crate::view::View;
 use rayon::prelude::*;
@@ -66,33 +65,36 @@ impl Survey {
         self.stats += &more.stats;
     }
 
-    /// Adds what the last sample left in `workspace`.
-    fn keep(&mut self, taken: (&PathContext<'_>, &Sample), workspace: &Workspace) {
-        let film = taken.0.view.film();
-        let [x, y] = taken.1.pixel.map(i64::from);
+    /// Adds what was made of the one sample of `batch`.
+    fn keep(&mut self, job: &Job<'_>, batch: &Batch) {
+        let sample = &batch.samples[0];
+        let (context, film) = (job.context(sample), job.view.film());
+        let [x, y] = sample.pixel.map(i64::from);
         let own = film.crop.index(x, y).map(|pixel| (pixel, 1.0));
         let mut densities = PathDensities::default();
-        let mut keep = |contribution: &Contribution, by: LightVertex, landed| {
-            let shares = workspace.shares(taken, contribution, by, &mut densities)?;
-            let term = Term::new(taken.0, contribution, landed?, shares);
+        let mut keep = |entry: &Entry, candidate: Option<&Candidate>| {
+            let landed = match entry.link {
+                Link::Walk | Link::Connection(_) => own,
+                Link::LightImage(_, place) => film.pick_pixel(place),
+            };
+            let shares = batch.shares(&context, entry, candidate, &mut densities)?;
+            let term = Term::new(&context, &entry.contribution, landed?, shares);
             self.luminance += term.of_mean_pixel(film);
             self.terms.push(term);
             Some(self.terms.len() as u32 - 1)
         };
-        let hits = workspace.contributions.iter();
-        for hit in hits.filter(|contribution| contribution.term.strategy.s == 0) {
-            keep(hit, LightVertex::Own, own);
+        let entries = batch.entries.iter().chain(&batch.splats);
+        let certain = |entry: &&Entry| !matches!(entry.link, Link::Connection(_));
+        for entry in entries.filter(certain).filter(|entry| entry.is_added()) {
+            keep(entry, None);
         }
-        for splat in &workspace.splats {
-            let landed = film.pick_pixel(splat.place);
-            keep(&splat.contribution, LightVertex::Own, landed);
-        }
-        let connections = workspace.connections();
-        let terms = connections.map(|(candidate, arrived)| {
-            arrived.and_then(|contribution| keep(contribution, candidate.light_vertex, own))
+        let terms = batch.connections().map(|(candidate, entry)| {
+            let added = entry.filter(|entry| entry.is_added())?;
+            keep(added, Some(candidate))
         });
         let terms: Vec<_> = terms.collect();
-        self.found.keep(taken.0, workspace, &terms);
+        self.found.keep(job, batch, &terms);
+        self.work.add(job, batch);
     }
 }
 
@@ -101,7 +103,7 @@ struct Surveyor<'a> {
     scene: &'a Scene,
     view: &'a View,
     settings: Settings,
-    integrator: Box<dyn Integrator>,
+    method: Method,
 }
 
 impl<'a> Surveyor<'a> {
@@ -114,7 +116,7 @@ impl<'a> Surveyor<'a> {
             scene: task.scene,
             view: task.view,
             settings,
-            integrator: IntegratorKind::Bdpt.integrator(all, &LvcSettings::default()),
+            method: Method::Bdpt(all),
         }
     }
 
@@ -123,16 +125,16 @@ impl<'a> Surveyor<'a> {
         let count = numbers.end - numbers.start;
         let size = (count / GROUPS).max(1);
         let groups = (0..count / size).into_par_iter();
-        let found = groups.map_init(Workspace::default, |workspace, group| {
+        let found = groups.map_init(Batch::default, |batch, group| {
             if is_late() {
                 return None;
             }
             let begin = numbers.start + group * size;
             let mut survey = Survey::default();
             for number in begin..begin + size {
-                self.sample(number, workspace, &mut survey);
+                self.sample(number, batch, &mut survey);
             }
-            survey.stats = std::mem::take(&mut workspace.stats);
+            survey.stats = std::mem::take(&mut batch.stats);
             Some(survey)
         });
         let found: Vec<Survey> = found.collect::<Option<_>>()?;
@@ -143,23 +145,20 @@ impl<'a> Surveyor<'a> {
         Some(all)
     }
 
-    fn sample(&self, number: u64, workspace: &mut Workspace, survey: &mut Survey) {
+    fn sample(&self, number: u64, batch: &mut Batch, survey: &mut Survey) {
         let sampler = Sampler::new(self.settings.sampler, self.settings.seed);
         let camera = sampler.stream(Domain::TrainingCamera, number, 0);
-        let sample = Sample {
-            pass: 0,
-            pixel: spread::point(&self.view.film().crop, number),
-            ray: camera,
-            camera,
-            light: sampler.stream(Domain::TrainingLight, 0, number),
+        let light = sampler.stream(Domain::TrainingLight, 0, number);
+        let pixel = spread::point(&self.view.film().crop, number);
+        let job = Job {
+            scene: self.scene,
+            view: self.view,
+            settings: &self.settings.path,
+            connections: Connections::ONE_SUBPATH,
         };
-        let connections = Connections::ONE_SUBPATH;
-        let context = sample.context(self.scene, self.view, &self.settings.path, connections);
-        let before = workspace.stats.rays.camera;
-        self.integrator.sample(&context, &sample, workspace);
-        survey.keep((&context, &sample), workspace);
-        let rays = workspace.stats.rays.camera - before;
-        survey.work.add(workspace, rays as usize);
+        batch.fill([Sample::new(self.scene, 0, pixel, camera, light)]);
+        self.method.run(&job, batch);
+        survey.keep(&job, batch);
     }
 }
 

@@ -1,12 +1,10 @@
 //! Draws from a light cache have the probability that they say.
 
-use super::cache::LightCache;
+use super::*;
 use crate::camera::LensSample;
 use crate::locus::Locus;
 use crate::math::Vec3;
-use crate::path::{
-    Cell, Cells, LightPointChoice, LightProposals, PairSums, RunningSums, Subpath, Vertex,
-};
+use crate::path::PairSums;
 
 const SUBPATHS: usize = 20;
 /// The places of numbers that are drawn with, evenly spaced.
@@ -31,17 +29,13 @@ fn cell(cells: &Cells, i: usize) -> Cell {
 }
 
 fn cache(proposals: Option<&LightProposals>, cells: &Cells) -> LightCache {
-    let mut cache = LightCache::default();
+    let mut walks = Subpaths::default();
     for i in 0..SUBPATHS {
         // x_0 is not connected; some subpaths have nothing else.
-        let vertices = (0..=i % 4).map(|j| vertex(cell(cells, i * j)));
-        let subpath = Subpath {
-            vertices: vertices.collect(),
-            escape: None,
-        };
-        cache.push(LightPointChoice::Fresh, &subpath, &RunningSums::default());
+        walks.add((0..=i % 4).map(|j| vertex(cell(cells, i * j))));
     }
-    cache.sort(proposals);
+    let mut cache = LightCache::default();
+    cache.index(&walks, LightPointChoice::Fresh, proposals);
     cache
 }
 
@@ -50,10 +44,10 @@ fn check(proposals: Option<&LightProposals>, cells: &Cells) {
     let cache = cache(proposals, cells);
     let connectable = (0..SUBPATHS).map(|i| i % 4).sum();
     let mut found = vec![(0u32, 0.0); connectable];
-    let y = vertex(cell(cells, 1));
+    let y = cell(cells, 1);
     for i in 0..DRAWS {
         let u = (f64::from(i) + 0.5) / f64::from(DRAWS);
-        if let Some(draw) = cache.draw(proposals, &y, u) {
+        if let Some(draw) = cache.draw(proposals, y, u) {
             found[draw.entry].0 += 1;
             found[draw.entry].1 = draw.share;
         }

@@ -1,0 +1,266 @@
+//! The samples in flight, and what each stage leaves for the next: arrays that the next batch uses again.
+
+use super::cache::LightCache;
+use super::stages::lens_vertex;
+use super::{Entry, Fate, Link};
+use crate::contribution::{Term, is_summable};
+use crate::path::{
+    Arrival, Connections, JoinedPath, PathContext, PathDensities, PathSettings, RunningSums,
+    Shares, Subpaths, Weights,
+};
+use crate::sampler::{Dimension, Purpose, SampleStream};
+use crate::scene::Scene;
+use crate::select::{Candidate, Chosen};
+use crate::spectrum::{Spectrum, Wavelengths};
+use crate::stats::{Clock, Dropped, Stats, Stopwatch};
+use crate::strategy::Strategy;
+use crate::view::View;
+
+/// One camera sample, with the light subpath that goes with it.
+#[derive(Clone, Copy, Debug)]
+pub struct Sample {
+    /// The pass.
+    pub pass: u64,
+    /// The pixel.
+    pub pixel: [u32; 2],
+    /// Its wavelengths.
+    pub wavelengths: Wavelengths,
+    /// The random numbers of the camera subpath, and of its connections.
+    pub camera: SampleStream,
+    /// The random numbers of the light subpath and of its light image.
+    pub light: SampleStream,
+}
+
+impl Sample {
+    /// The sample of `pixel` in `pass` with the random numbers of its camera subpath and of its light subpath, and
+    /// with the wavelengths that it draws.
+    #[inline]
+    pub fn new(
+        scene: &Scene,
+        pass: u64,
+        pixel: [u32; 2],
+        camera: SampleStream,
+        light: SampleStream,
+    ) -> Self {
+        let u = camera.get_1d(Dimension::at(0, Purpose::Wavelengths));
+        Self {
+            pass,
+            pixel,
+            wavelengths: scene.color().sample_wavelengths(u),
+            camera,
+            light,
+        }
+    }
+}
+
+/// The data of a render that all of its samples have in common.
+#[derive(Clone, Copy)]
+pub struct Job<'a> {
+    /// The scene.
+    pub scene: &'a Scene,
+    /// The camera that sees it, and its film.
+    pub view: &'a View,
+    /// How paths are made and weighted.
+    pub settings: &'a PathSettings,
+    /// How many connections a camera vertex makes.
+    pub connections: Connections<'a>,
+}
+
+impl<'a> Job<'a> {
+    /// The context of a sample.
+    #[inline]
+    pub fn context(&self, sample: &Sample) -> PathContext<'a> {
+        PathContext {
+            scene: self.scene,
+            view: self.view,
+            settings: self.settings,
+            wavelengths: sample.wavelengths,
+            connections: self.connections,
+        }
+    }
+}
+
+/// A light point of next-event estimation.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct NextEvent {
+    /// The sample, by number.
+    pub(super) sample: u32,
+    /// The number of the camera vertex that it was drawn for.
+    pub(super) t: u32,
+    /// Its number among the light vertices.
+    pub(super) z: usize,
+}
+
+/// The samples in flight, with all that was made of them so far.
+#[derive(Debug, Default)]
+pub struct Batch {
+    /// The samples.
+    pub samples: Vec<Sample>,
+    /// The camera subpath of each sample.
+    pub camera: Subpaths,
+    /// Light subpaths: of each sample, or of the group that shares them; and the light points of s = 1.
+    pub light: Subpaths,
+    pub(super) next_events: Vec<NextEvent>,
+    pub(super) camera_sums: RunningSums,
+    pub(super) light_sums: RunningSums,
+    pub(super) weights: Weights,
+    pub(super) cache: LightCache,
+    /// The connections that may be traced, sample by sample.
+    pub candidates: Vec<Candidate>,
+    /// For each sample the number behind that of its last candidate.
+    pub(super) candidates_end: Vec<usize>,
+    /// Connections that are not offered: their value is zero, or no film can sum it.
+    pub(crate) unoffered: Vec<Candidate>,
+    /// The candidates that were chosen; the last of the entries are theirs.
+    pub chosen: Vec<Chosen>,
+    /// The terms for the samples' own pixels.
+    pub entries: Vec<Entry>,
+    /// Their sum for each sample.
+    pub values: Vec<Spectrum>,
+    /// The terms of the light image.
+    pub splats: Vec<Entry>,
+    /// Memory of the driver: the luminance that each sample adds to its own pixel by a strategy.
+    pub(crate) luminances: Vec<((u32, Strategy), f64)>,
+    /// The counters.
+    pub stats: Stats,
+    /// Measures stages, where the host has a clock for it.
+    pub stopwatch: Stopwatch,
+}
+
+impl Batch {
+    /// A batch that measures its stages where there is a clock.
+    pub(crate) fn timed_by(clock: Option<Clock>) -> Self {
+        Self {
+            stopwatch: Stopwatch::new(clock),
+            ..Self::default()
+        }
+    }
+
+    /// Takes other samples, and forgets what was made of the last ones but for light subpaths.
+    pub fn fill(&mut self, samples: impl IntoIterator<Item = Sample>) {
+        self.samples.clear();
+        self.samples.extend(samples);
+        self.camera.clear();
+        self.camera_sums.clear();
+        self.light.forget_points();
+        self.next_events.clear();
+        self.candidates.clear();
+        self.candidates_end.clear();
+        self.unoffered.clear();
+        self.chosen.clear();
+        self.entries.clear();
+        self.splats.clear();
+        self.values.clear();
+        self.values.resize(self.samples.len(), Spectrum::ZERO);
+    }
+
+    /// Forgets the light subpaths.
+    pub(super) fn forget_light(&mut self) {
+        self.light.clear();
+        self.light_sums.clear();
+        self.cache.clear();
+    }
+
+    /// The number of the first sample's light subpath, where each has its own.
+    pub(super) fn first_light(&self) -> usize {
+        self.light.count() - self.samples.len()
+    }
+
+    /// The candidates, each with its entry if it was chosen.
+    pub(crate) fn connections(&self) -> impl Iterator<Item = (&Candidate, Option<&Entry>)> {
+        let mut entries = vec![None; self.candidates.len()];
+        let of_chosen = &self.entries[self.entries.len() - self.chosen.len()..];
+        for (chosen, entry) in self.chosen.iter().zip(of_chosen) {
+            entries[chosen.candidate as usize] = Some(entry);
+        }
+        self.candidates.iter().zip(entries)
+    }
+
+    /// The entry of a candidate that was not chosen, or was not offered.
+    pub(crate) fn untraced(&self, candidate: &Candidate) -> Entry {
+        let fate = if is_summable(candidate.term.value()) {
+            Fate::NotTraced
+        } else {
+            Fate::Dropped
+        };
+        let link = Link::Connection(candidate.ends(&self.light, &self.camera));
+        let entry = Entry::certain(0, candidate.term, link);
+        Entry { fate, ..entry }
+    }
+
+    /// The shares of the path of `entry`, which connects the vertices of `candidate` where that was one. None: there
+    /// is no such path.
+    pub(crate) fn shares(
+        &self,
+        context: &PathContext<'_>,
+        entry: &Entry,
+        candidate: Option<&Candidate>,
+        densities: &mut PathDensities,
+    ) -> Option<Shares> {
+        let (number, term) = (entry.sample as usize, &entry.contribution.term);
+        let (s, t) = (usize::from(term.strategy.s), usize::from(term.strategy.t));
+        let walk = self.camera.get(number);
+        let mut shares = |path: JoinedPath<'_>| path.shares(context, densities);
+        Some(match candidate {
+            Some(candidate) => {
+                let z = candidate.vertices[0] as usize;
+                let light = &self.light.vertices()[z + 1 - s..=z];
+                shares(JoinedPath::connection(light, &walk.vertices[..t]))
+            }
+            None if s == 0 => {
+                let arrival = Arrival::of(context.scene, &walk, t - 1, term.light)?;
+                let x0 = arrival.vertex(context);
+                shares(JoinedPath::hit(&x0, &walk.vertices[..t - 1]))
+            }
+            None => {
+                let lens = lens_vertex(context, &self.samples[number], s);
+                let light = &self.light.get(self.first_light() + number).vertices[..s];
+                shares(JoinedPath::connection(light, std::slice::from_ref(&lens)))
+            }
+        })
+    }
+
+    /// Adds the entries to the values of their samples, but for those that no film can sum.
+    pub(super) fn arrive(&mut self) {
+        for entry in &mut self.entries {
+            if !entry.is_added() {
+                continue;
+            }
+            let value = entry.contribution.value();
+            if is_summable(value) {
+                self.values[entry.sample as usize] += value;
+            } else {
+                entry.fate = Fate::Dropped;
+                let sample = &self.samples[entry.sample as usize];
+                drop_term(&mut self.stats, sample, entry.contribution.term.strategy);
+            }
+        }
+    }
+}
+
+/// Counts a term of sample number `number` that is certain to take part; returns its entry, untraced.
+#[inline]
+pub(super) fn enter(
+    stats: &mut Stats,
+    (number, sample): (usize, &Sample),
+    term: Term,
+    link: Link,
+) -> Entry {
+    stats.count_candidate(term.strategy);
+    let mut entry = Entry::certain(number, term, link);
+    if !is_summable(term.value()) {
+        drop_term(stats, sample, term.strategy);
+        entry.fate = Fate::Dropped;
+    }
+    entry
+}
+
+/// Counts a term of `sample` that no film can sum.
+#[cold]
+pub(super) fn drop_term(stats: &mut Stats, sample: &Sample, strategy: Strategy) {
+    stats.drop_contribution(Dropped {
+        pass: sample.pass,
+        pixel: sample.pixel,
+        strategy,
+    });
+}

@@ -1,0 +1,136 @@
+//! Estimators as lists of stages.
+//!
+//! **Light vertex cache.** ⟨C⟩ = 1/(N M) Σ_m C(y, z_m) / P(z_m | y) [Davidovic14, §4]: a camera vertex y is
+//! connected with M of the K vertices z of N light subpaths, in place of those of one; they are drawn by P
+//! ([`LightProposals`](crate::path::LightProposals)), or evenly, where P = 1/K. For each vertex of the light
+//! subpath of a path, strategy (s, t) takes M N P samples on average. K differs from group to group, and P with
+//! it; weights must not, or the estimate is biased. They take M / κ in place of M N / K, with κ the mean of
+//! K / N in a training render ([`Connections`](crate::path::Connections)), and for a learned P its stand-in
+//! likewise.
+
+use super::stages::{
+    Source, Weighting, connect, direct, hits, light_image, next_events, select, shadow_rays,
+    sum_camera, sum_light, walk_camera, walk_light,
+};
+use super::{Batch, CandidateCount, IntegratorKind, Job, LvcSettings};
+use crate::select::Selector;
+
+/// How many samples share light subpaths where so many pixels are rendered. So few that the subpaths stay
+/// in a processor's cache, that there are some groups for every thread, and that pixels near each other
+/// are in different groups.
+pub(crate) fn group_size(pixels: u64) -> u64 {
+    (pixels / 64).next_power_of_two().clamp(64, 2048)
+}
+
+/// An estimator of the image. Its expectation is the sum over all paths within the limit of length
+/// that its strategies can make.
+pub enum Method {
+    /// Path tracing: at every vertex of a camera subpath the light that is hit and the light that
+    /// next-event estimation finds, combined by multiple importance sampling \[Veach95\].
+    Path,
+    /// Light tracing: strategies t = 1 alone, each with weight 1. Unbiased for every path that does not end by a
+    /// Dirac scattering at the last surface before the lens.
+    Light,
+    /// Bidirectional path tracing [Veach97, §10]: every strategy (s, t), weighted.
+    Bdpt(Box<dyn Selector>),
+    /// Bidirectional path tracing with a light vertex cache.
+    Lvc(Box<dyn Selector>, LvcCounts),
+}
+
+/// How many light vertices a camera vertex is connected with.
+#[derive(Clone, Copy, Debug)]
+pub struct LvcCounts {
+    /// M: how many vertices of the cache.
+    pub candidates: CandidateCount,
+    /// How many light points of its own.
+    pub next_events: CandidateCount,
+}
+
+impl Method {
+    /// The estimator; `selector` chooses the shadow rays of those that have candidates, and `lvc` is for
+    /// those that share light subpaths.
+    pub fn new(kind: IntegratorKind, selector: Box<dyn Selector>, lvc: &LvcSettings) -> Self {
+        match kind {
+            IntegratorKind::Path => Self::Path,
+            IntegratorKind::Light => Self::Light,
+            IntegratorKind::Bdpt => Self::Bdpt(selector),
+            // `Auto` is decided before this; `Lvc` is its most frequent plan.
+            IntegratorKind::Lvc | IntegratorKind::Auto => {
+                let counts = LvcCounts {
+                    candidates: lvc.candidates,
+                    next_events: lvc.next_events,
+                };
+                Self::Lvc(selector, counts)
+            }
+        }
+    }
+
+    /// True where the samples of a group share light subpaths.
+    pub fn shares_light(&self) -> bool {
+        matches!(self, Self::Lvc(..))
+    }
+
+    /// Computes the samples of `batch`: its entries, values and splats.
+    ///
+    /// Of a method that [shares light](Self::shares_light), the subpaths are those between [`begin_group`] and
+    /// [`end_group`].
+    pub fn run(&self, job: &Job<'_>, batch: &mut Batch) {
+        batch.stats.samples += batch.samples.len() as u64;
+        batch.weights.set(job.settings);
+        if !self.shares_light() {
+            batch.forget_light();
+        }
+        match self {
+            Self::Path => {
+                walk_camera(job, batch);
+                direct(job, batch);
+            }
+            Self::Light => {
+                walk_light(job, batch);
+                light_image(job, batch, Weighting::Alone);
+            }
+            Self::Bdpt(selector) => {
+                walk_camera(job, batch);
+                walk_light(job, batch);
+                sum_camera(job, batch);
+                sum_light(job, batch);
+                hits(job, batch);
+                light_image(job, batch, Weighting::Combined);
+                next_events(job, batch, CandidateCount::of(1));
+                connect(job, batch, Source::Own);
+                select(&**selector, batch);
+                shadow_rays(job, batch);
+            }
+            Self::Lvc(selector, counts) => {
+                walk_camera(job, batch);
+                sum_camera(job, batch);
+                hits(job, batch);
+                next_events(job, batch, counts.next_events);
+                connect(job, batch, Source::Cache(counts.candidates));
+                select(&**selector, batch);
+                shadow_rays(job, batch);
+            }
+        }
+        batch.arrive();
+    }
+}
+
+/// Forgets the light subpaths of another group.
+pub fn begin_group(batch: &mut Batch) {
+    batch.forget_light();
+}
+
+/// Walks the light subpaths that the samples of `batch` bring to their group, and makes their light images.
+pub fn walk_group(job: &Job<'_>, batch: &mut Batch) {
+    batch.weights.set(job.settings);
+    walk_light(job, batch);
+    sum_light(job, batch);
+    light_image(job, batch, Weighting::Combined);
+}
+
+/// Makes ready what the samples of a group share, when all of it is walked.
+pub fn end_group(job: &Job<'_>, batch: &mut Batch) {
+    let Batch { light, cache, .. } = batch;
+    let proposals = job.connections.proposals;
+    cache.index(light, job.settings.light_point, proposals);
+}

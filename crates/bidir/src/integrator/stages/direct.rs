@@ -1,0 +1,133 @@
+//! w = p/(p + q) by the balance heuristic, p²/(p² + q²) by the power heuristic \[Veach95\]: path
+//! tracing with next-event estimation. p and q are densities in the same measure, area or solid
+//! angle.
+//!
+//! It shares walks and scattering with the bidirectional estimator, but not its weights: a path's
+//! last vertex x_0 has density p by scattering at x_1 and q by next-event estimation, and nothing
+//! else is asked.
+
+use super::super::batch::enter;
+use super::super::{Batch, Job, Link, Sample};
+use super::trace::trace;
+use crate::bsdf::TransportMode;
+use crate::contribution::Term;
+use crate::light::LightSample;
+use crate::locus::Locus;
+use crate::path::{Arrival, PathContext, Segment, Turn, Vertex, next_event_pdf, sample_next_event};
+use crate::sampler::{Dimension, Purpose};
+use crate::spectrum::Spectrum;
+use crate::stats::Stage;
+use crate::strategy::Strategy;
+
+/// Adds at every vertex of the camera subpaths the light that is hit and the light that next-event estimation
+/// finds, and traces all shadow rays.
+#[inline(never)]
+pub(in super::super) fn direct(job: &Job<'_>, batch: &mut Batch) {
+    let Batch {
+        samples,
+        camera,
+        entries,
+        stats,
+        ..
+    } = batch;
+    for (number, sample) in samples.iter().enumerate() {
+        let context = job.context(sample);
+        let walk = camera.get(number);
+        let mut add = |term, link| entries.push(enter(stats, (number, sample), term, link));
+        for (i, vertex) in walk.vertices.iter().enumerate().skip(1) {
+            if let Some(arrival) = Arrival::at(vertex)
+                && let Some(term) = hit(&context, &walk.vertices[..i], &arrival)
+            {
+                add(term, Link::Walk);
+            }
+            let connects = i + 2 <= context.settings.max_vertices() && !vertex.is_delta();
+            if connects && let Some((term, ends)) = next_event(&context, sample, vertex, i) {
+                add(term, Link::Connection(ends));
+            }
+        }
+        let escape = walk.escape.into_iter();
+        for arrival in escape.flat_map(|escape| Arrival::of_escape(context.scene, escape)) {
+            if let Some(term) = hit(&context, walk.vertices, &arrival) {
+                add(term, Link::Walk);
+            }
+        }
+    }
+    trace(job.scene, entries, stats);
+    batch.stopwatch.end(Stage::Direct);
+}
+
+/// The term of the light that the walk came upon after the vertices `before`. None: it is zero.
+fn hit(context: &PathContext<'_>, before: &[Vertex], arrival: &Arrival) -> Option<Term> {
+    let contribution = arrival.contribution(context);
+    if contribution == Spectrum::ZERO {
+        return None;
+    }
+    let from = &before[before.len() - 1];
+    // Next-event estimation begins at the first surface, and skips Dirac scattering.
+    let weight = if before.len() == 1 || from.went_by_delta {
+        1.0
+    } else {
+        let q = next_event_pdf(context, from, arrival.light, &arrival.at);
+        context.settings.mis.weight_of_two(arrival.pdf, q)
+    };
+    Some(Term {
+        strategy: Strategy::new(0, before.len() + 1),
+        light: arrival.light,
+        contribution,
+        weight,
+    })
+}
+
+/// The term that connects `vertex`, number `i` of its walk, with a light point, and the ends of its shadow ray.
+/// None: it is zero.
+fn next_event(
+    context: &PathContext<'_>,
+    sample: &Sample,
+    vertex: &Vertex,
+    i: usize,
+) -> Option<(Term, [Locus; 2])> {
+    let at = |purpose| Dimension::at(i, purpose);
+    let u_light = || sample.camera.get_1d(at(Purpose::NextEventLight));
+    let u = sample.camera.get_2d(at(Purpose::NextEventPosition));
+    let (light, x0) = sample_next_event(context, vertex, u_light, u)?;
+    let ends = [x0.at.locus, vertex.locus];
+    let segment = Segment::between(&ends[0], &ends[1]);
+    let turn = vertex.turn(vertex.wo, -segment.w);
+    let contribution = arriving(context, &turn, light, &x0, &segment);
+    if contribution == Spectrum::ZERO {
+        return None;
+    }
+    let p = if context.scene.light(light).is_delta() {
+        0.0
+    } else {
+        turn.pdf(context) * segment.to_a
+    };
+    let term = Term {
+        strategy: Strategy::new(1, i + 1),
+        light,
+        contribution,
+        weight: context.settings.mis.weight_of_two(x0.pdf, p),
+    };
+    Some((term, ends))
+}
+
+/// L_e · G · scatter · β / q: the light of the light point x_0, drawn with density q, that arrives by the
+/// vertex of `turn`, before weight and visibility.
+#[inline]
+fn arriving(
+    context: &PathContext<'_>,
+    turn: &Turn<'_>,
+    light: u32,
+    x0: &LightSample,
+    segment: &Segment,
+) -> Spectrum {
+    let factor = segment.geometry_term * x0.coverage / x0.pdf;
+    if factor == 0.0 {
+        return Spectrum::ZERO;
+    }
+    let emitted = context.emitted(light, &x0.at, segment.w);
+    if emitted.is_black() {
+        return Spectrum::ZERO;
+    }
+    emitted * turn.scatter(context, TransportMode::Radiance) * turn.vertex().beta * factor
+}

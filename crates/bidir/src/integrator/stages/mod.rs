@@ -1,0 +1,19 @@
+//! The stages of a batch: each takes arrays that others left in it, and leaves arrays.
+
+mod connect;
+mod direct;
+mod hits;
+mod light_image;
+mod next_event;
+mod pairs;
+mod trace;
+mod walk;
+
+pub(super) use connect::{Source, connect};
+pub(super) use direct::direct;
+pub(super) use hits::hits;
+pub(super) use light_image::{Weighting, lens_vertex, light_image};
+pub(super) use next_event::next_events;
+pub(super) use trace::{select, shadow_rays};
+pub(crate) use walk::camera_ray;
+pub(super) use walk::{sum_camera, sum_light, walk_camera, walk_light};

@@ -1,0 +1,63 @@
+//! s = 1: light points for camera vertices, where these have their own.
+
+use super::super::batch::NextEvent;
+use super::super::{Batch, CandidateCount, Job, Sample};
+use crate::math::ONE_MINUS_EPSILON;
+use crate::path::{LightPointChoice, PathContext, Vertex, sample_next_event};
+use crate::sampler::{Dimension, Purpose, kronecker_point};
+use crate::spectrum::Spectrum;
+
+/// Draws light points for each camera vertex, one of each of as many parts of the lights, at points of a
+/// sequence that fills them evenly.
+#[inline(never)]
+pub(in super::super) fn next_events(job: &Job<'_>, batch: &mut Batch, counts: CandidateCount) {
+    if job.settings.light_point != LightPointChoice::Fresh {
+        return;
+    }
+    let Batch {
+        samples,
+        camera,
+        light,
+        next_events,
+        ..
+    } = batch;
+    for (number, sample) in samples.iter().enumerate() {
+        let context = job.context(sample);
+        let walk = camera.get(number);
+        let longest = walk.vertices.len().min(job.settings.max_vertices() - 1);
+        for t in 2..=longest {
+            let y = &walk.vertices[t - 1];
+            if y.is_delta() || !context.takes(1, t) {
+                continue;
+            }
+            let count = counts.at(t);
+            for k in 0..count {
+                if let Some(x0) = light_point(&context, sample, y, t, [k, count]) {
+                    next_events.push(NextEvent {
+                        sample: number as u32,
+                        t: t as u32,
+                        z: light.add_point(x0),
+                    });
+                }
+            }
+        }
+    }
+}
+
+/// Light point number `k` of `count` for `y`, camera vertex number `t`. Each counts 1 / `count`.
+fn light_point(
+    context: &PathContext<'_>,
+    sample: &Sample,
+    y: &Vertex,
+    t: usize,
+    [k, count]: [u16; 2],
+) -> Option<Vertex> {
+    let at = |purpose| Dimension::at(t - 1, purpose);
+    let part = |u: f32| ((f32::from(k) + u) / f32::from(count)).min(ONE_MINUS_EPSILON);
+    let u_light = || part(sample.camera.get_1d(at(Purpose::NextEventLight)));
+    let u = sample.camera.get_2d(at(Purpose::NextEventPosition));
+    let (light, drawn) = sample_next_event(context, y, u_light, kronecker_point(u, k))?;
+    let mut x0 = Vertex::light(context, light, &drawn.at);
+    x0.beta = Spectrum::splat(drawn.coverage / (drawn.pdf * f32::from(count)));
+    Some(x0)
+}
