@@ -36,7 +36,7 @@ fn record(session: &Session<'_>, pass: u64) -> Vec<Contributions> {
     let pixels = 0..crop.area() as usize;
     let of = |pixel| {
         let replay = session.replay(crop.pixel(pixel), pass)?;
-        let rgb = |value| color.to_rgb(value, &replay.wavelengths);
+        let rgb = |value| color.to_rgb(value, &replay.sample().wavelengths);
         let splats = replay.splats();
         let splats = splats.map(|(contribution, place)| (place, rgb(contribution.value())));
         Some(Contributions {

@@ -20,7 +20,7 @@ MATERIALS = [
     ),
     (
         "the path tracer weighs hits by a Dirac lobe against next-event estimation",
-        "crates/bidir/src/integrator/path.rs",
+        "crates/bidir/src/integrator/stages/direct.rs",
         "from.went_by_delta {",
         "from.is_delta() {",
         materials("a_smooth_varnish"),

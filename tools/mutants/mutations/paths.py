@@ -115,7 +115,7 @@ PATHS = [
     (
         "n_j of the light image is one",
         "crates/bidir/src/path/count.rs",
-        "1 => self.view.film().light_paths() as f64 / samples_per_subpath,",
+        "1 => light_subpaths,",
         "1 => 1.0,",
         PATH,
     ),
@@ -150,38 +150,36 @@ PATHS = [
     # --- integrators ----------------------------------------------------------------------
     (
         "sum of the group in place of C/pi",
-        "crates/bidir/src/integrator/bdpt.rs",
-        "            let contribution = Contribution {\n"
-        "                term,\n"
-        "                prob: chosen.prob,\n"
-        "                transmittance,\n"
-        "            };\n",
-        "            // Right in every grey image, wrong in colour.\n"
-        "            let contribution = {\n"
-        "            let candidates = &workspace.candidates;\n"
-        "            let score = |i: usize| candidates[i].score;\n"
-        "            let all: f32 = (0..candidates.len()).map(score).sum();\n"
-        "            let sum = candidates.iter().fold(Spectrum::ZERO, |sum, c| sum + c.term.value());\n"
-        "            let part = score(chosen.candidate as usize) / chosen.prob as f32 / all;\n"
-        "            let term = Term {\n"
-        "                contribution: sum * part,\n"
-        "                weight: 1.0,\n"
-        "                ..term\n"
-        "            };\n"
-        "            term.certain(transmittance)\n"
-        "        };",
+        "crates/bidir/src/integrator/stages/trace.rs",
+        "                contribution: Contribution {\n"
+        "                    term: of.term,\n"
+        "                    prob: *prob,\n"
+        "                    transmittance: 1.0,\n"
+        "                },\n",
+        "                // Right in every grey image, wrong in colour.\n"
+        "                contribution: {\n"
+        "                    let all: f32 = candidates.iter().map(|c| c.score).sum();\n"
+        "                    let values = candidates.iter().map(|c| c.term.value());\n"
+        "                    let sum = values.fold(crate::spectrum::Spectrum::ZERO, |sum, v| sum + v);\n"
+        "                    let term = crate::contribution::Term {\n"
+        "                        contribution: sum * (of.score / *prob as f32 / all),\n"
+        "                        weight: 1.0,\n"
+        "                        ..of.term\n"
+        "                    };\n"
+        "                    term.certain(1.0)\n"
+        "                },\n",
         estimators("every_choice_of_shadow_rays"),
     ),
     (
         "candidates of a light cache not shared among each other",
-        "crates/bidir/src/integrator/lvc/mod.rs",
-        "draw.share / f64::from(self.candidates.at(t));",
-        "draw.share;",
+        "crates/bidir/src/integrator/stages/connect.rs",
+        "(draw.share / f64::from(count)) as f32,",
+        "draw.share as f32,",
         analytic("a_closed_sphere"),
     ),
     (
         "pairs of long subpaths that do not count for those left out",
-        "crates/bidir/src/integrator/pairs.rs",
+        "crates/bidir/src/integrator/stages/pairs.rs",
         "Some((1.0 / prob) as f32)",
         "Some(1.0)",
         unit("pairs::tests"),
@@ -191,14 +189,14 @@ PATHS = [
         "crates/bidir/src/path/proposals.rs",
         "part / all as f64 + (1.0 - part) * gamma / of_cell as f64",
         "(1.0 - part) * gamma / of_cell as f64",
-        unit("lvc::tests"),
+        unit("cache::tests"),
     ),
     (
         "vertices of a cell proposed by the count of all",
-        "crates/bidir/src/integrator/lvc/cache.rs",
+        "crates/bidir/src/integrator/cache.rs",
         "let counts = [all.len(), self.of_cell(cell).len()];",
         "let counts = [all.len(), all.len()];",
-        unit("lvc::tests"),
+        unit("cache::tests"),
     ),
     (
         "weights that know the proposal the other way round",
@@ -237,7 +235,7 @@ PATHS = [
     ),
     (
         "several light points, each of which counts as the only one",
-        "crates/bidir/src/integrator/bdpt.rs",
+        "crates/bidir/src/integrator/stages/next_event.rs",
         "drawn.coverage / (drawn.pdf * f32::from(count))",
         "drawn.coverage / drawn.pdf",
         analytic("a_closed_sphere"),
@@ -252,8 +250,8 @@ PATHS = [
     (
         "light images beside the film in the trained mean",
         "crates/bidir/src/driver/training/survey.rs",
-        "let landed = film.pick_pixel(splat.place);",
-        "let landed = film.pick_pixel(splat.place).or(Some((0, 1.0)));",
+        "=> film.pick_pixel(place),",
+        "=> film.pick_pixel(place).or(Some((0, 1.0))),",
         unit("the_mean_is_that_of_the_image"),
     ),
     (
@@ -356,9 +354,9 @@ PATHS = [
     ),
     (
         "light images of fewer subpaths not made up for",
-        "crates/bidir/src/integrator/light.rs",
-        "path.contribution(context) * context.connections.samples_per_subpath as f32;",
-        "path.contribution(context);",
+        "crates/bidir/src/integrator/stages/light_image.rs",
+        "path.contribution(context) * share as f32;",
+        "path.contribution(context) * share.min(1.0) as f32;",
         analytic("a_closed_sphere"),
     ),
     (
@@ -370,30 +368,30 @@ PATHS = [
     ),
     (
         "chosen rays not divided by their probability",
-        "crates/bidir/src/integrator/bdpt.rs",
-        "                prob: chosen.prob,\n",
-        "                prob: 1.0,\n",
+        "crates/bidir/src/integrator/stages/trace.rs",
+        "                    prob: *prob,\n",
+        "                    prob: 1.0,\n",
         analytic("selection_keeps"),
     ),
     (
         "paths one vertex too long",
-        "crates/bidir/src/integrator/bdpt.rs",
-        ".min(context.settings.max_vertices() - t);",
-        ".min(context.settings.max_vertices() + 1 - t);",
+        "crates/bidir/src/integrator/stages/connect.rs",
+        ".min(settings.max_vertices() - t);",
+        ".min(settings.max_vertices() + 1 - t);",
         analytic("every_limit_of_depth"),
     ),
     (
         "path tracer's two densities swapped",
-        "crates/bidir/src/integrator/path.rs",
+        "crates/bidir/src/integrator/stages/direct.rs",
         "context.settings.mis.weight_of_two(x0.pdf, p)",
         "context.settings.mis.weight_of_two(p, x0.pdf)",
         analytic("a_ring_light"),
     ),
     (
         "film filter's weight dropped",
-        "crates/bidir/src/integrator/workspace.rs",
-        "camera_subpath(context, &sample.camera, &ray, weight, camera, stats);",
-        "camera_subpath(context, &sample.camera, &ray, 1.0, camera, stats);",
+        "crates/bidir/src/integrator/stages/walk.rs",
+        "camera_subpath(&context, &sample.camera, &ray, weight, camera, stats);",
+        "camera_subpath(&context, &sample.camera, &ray, 1.0, camera, stats);",
         estimators("filters_with"),
     ),
     # --- selection ------------------------------------------------------------------------
@@ -421,8 +419,8 @@ PATHS = [
     (
         "vertices of a light cache in the groups of their depths",
         "crates/bidir/src/select/grouped.rs",
-        "=> 1 + vertex,",
-        "=> 1 + vertex.min(0) + u32::from(candidate.term.strategy.s),",
+        "=> candidate.light_vertex,",
+        "=> u32::from(candidate.term.strategy.s) - 1,",
         unit("select::"),
     ),
     (
@@ -434,14 +432,14 @@ PATHS = [
     ),
     (
         "a cut-out lamp that next-event estimation takes for whole",
-        "crates/bidir/src/integrator/bdpt.rs",
+        "crates/bidir/src/integrator/stages/next_event.rs",
         "Spectrum::splat(drawn.coverage / (drawn.pdf * f32::from(count)))",
         "Spectrum::splat(1.0 / (drawn.pdf * f32::from(count)))",
         coverage("lamps_cut_out"),
     ),
     (
         "a cut-out lamp that the path tracer takes for whole",
-        "crates/bidir/src/integrator/path.rs",
+        "crates/bidir/src/integrator/stages/direct.rs",
         "segment.geometry_term * x0.coverage / x0.pdf",
         "segment.geometry_term / x0.pdf",
         coverage("lamps_cut_out"),
@@ -462,9 +460,11 @@ PATHS = [
     ),
     (
         "splats not weakened by what they pass",
-        "crates/bidir/src/integrator/light.rs",
-        "contribution: term.certain(transmittance),",
-        "contribution: term.certain(transmittance.ceil()),",
+        "crates/bidir/src/integrator/stages/light_image.rs",
+        "    trace(job.scene, splats, stats);\n",
+        "    trace(job.scene, splats, stats);\n"
+        "    let splats = splats.iter_mut().map(|splat| &mut splat.contribution.transmittance);\n"
+        "    splats.for_each(|transmittance| *transmittance = transmittance.ceil());\n",
         coverage("a_half_transparent_plane"),
     ),
 ]

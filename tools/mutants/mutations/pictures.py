@@ -20,15 +20,15 @@ PICTURES = [
     (
         "contributions of one strategy varying one by one",
         "crates/bidir/src/driver/deposit.rs",
-        "sums.iter_mut().find(|(known, _)| *known == strategy)",
+        "sums.iter_mut().find(|(known, _)| *known == place)",
         "sums.iter_mut().find(|_| false)",
         unit("driver::deposit"),
     ),
     (
         "contributions of one strategy varying together where they are neighbours alone",
         "crates/bidir/src/driver/deposit.rs",
-        "sums.iter_mut().find(|(known, _)| *known == strategy)",
-        "sums.last_mut().filter(|(known, _)| *known == strategy)",
+        "sums.iter_mut().find(|(known, _)| *known == place)",
+        "sums.last_mut().filter(|(known, _)| *known == place)",
         unit("driver::deposit"),
     ),
     (
@@ -41,8 +41,8 @@ PICTURES = [
     (
         "variance of the light image as if no samples shared light paths",
         "crates/bidir/src/driver/variance.rs",
-        "(pixels, self.connections().samples_per_subpath)",
-        "(pixels, 1.0)",
+        "(pixels, self.connections().light_subpaths)",
+        "(pixels, pixels)",
         layers("light_images_of_one_path"),
     ),
     (

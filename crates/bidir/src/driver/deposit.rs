@@ -252,7 +252,7 @@ mod tests {
             scene: &scene,
             view: &view,
             settings: &PathSettings::default(),
-            connections: Connections::ONE_SUBPATH,
+            connections: Connections::of_own_subpaths(view.film()),
         };
         Deposit {
             job: &job,

@@ -259,14 +259,9 @@ impl<'a> Session<'a> {
     pub(super) fn connections(&self) -> Connections<'_> {
         match (self.settings.integrator, &self.training) {
             (IntegratorKind::Lvc, Some(training)) => {
-                let pixels = self.view.film().light_paths();
-                let subpaths = pixels.div_ceil(self.samples_per_subpath());
-                Connections {
-                    samples_per_subpath: pixels as f64 / subpaths as f64,
-                    ..training.connections(self.settings.lvc)
-                }
+                training.connections(self.settings.lvc, self.light_subpaths())
             }
-            _ => Connections::ONE_SUBPATH,
+            _ => Connections::of_own_subpaths(self.view.film()),
         }
     }
 

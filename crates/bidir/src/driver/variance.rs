@@ -59,15 +59,14 @@ impl Session<'_> {
         let exposure = f64::from(film.exposure);
         let squares = self.stats().strategy_images.get(strategy).squares();
         let of_sample = squares * exposure * exposure / samples as f64;
-        let (pixels, samples_per_path) = match strategy.t {
+        let (pixels, paths) = match strategy.t {
             1 => {
                 let pixels = film.light_paths().max(1) as f64;
-                (pixels, self.connections().samples_per_subpath)
+                (pixels, self.connections().light_subpaths)
             }
             _ => (1.0, 1.0),
         };
-        let paths = pixels / samples_per_path;
-        let variance = (of_sample / (pixels * samples_per_path) - mean_square) / paths;
+        let variance = (of_sample * paths / (pixels * pixels) - mean_square) / paths;
         let of_estimate = 1.0 - 1.0 / (passes as f64 * paths);
         Some((variance / of_estimate).max(0.0))
     }

@@ -18,12 +18,12 @@ impl PathContext<'_> {
             per_vertex,
             next_events,
             proposals,
-            samples_per_subpath,
+            light_subpaths,
             ..
         } = self.connections;
         match t {
             _ if !self.takes(s, t) => 0.0,
-            1 => self.view.film().light_paths() as f64 / samples_per_subpath,
+            1 => light_subpaths,
             _ if s >= self.settings.light_point.first_walked() => {
                 let relative = |all: &LightProposals| all.relative(z.cell, y.cell);
                 per_vertex[usize::from(t > 2)] * proposals.map_or(1.0, relative)

@@ -19,6 +19,7 @@
 //! they are compared by, V̂ being the part of the connections of two cells that arrived in training.
 
 use super::cells::{Cell, Cells};
+use crate::film::FilmSettings;
 use crate::light::LightChoice;
 
 /// ε: the fraction of uniform proposals. Connections that training did not see cost at most 1/ε times as much as
@@ -222,19 +223,21 @@ pub struct Connections<'a> {
     pub proposals: Option<&'a LightProposals>,
     /// How light subpaths choose the light that they begin on. None: by power.
     pub emission: Option<&'a LightChoice>,
-    /// How many samples there are for each light subpath.
-    pub samples_per_subpath: f64,
+    /// How many light subpaths a pass has, each with one light image.
+    pub light_subpaths: f64,
 }
 
 impl Connections<'_> {
-    /// With every vertex of one light subpath.
-    pub const ONE_SUBPATH: Self = Self {
-        per_vertex: [1.0; 2],
-        next_events: [1.0; 2],
-        proposals: None,
-        emission: None,
-        samples_per_subpath: 1.0,
-    };
+    /// With every vertex of one light subpath; each sample of `film` has its own.
+    pub fn of_own_subpaths(film: &FilmSettings) -> Self {
+        Self {
+            per_vertex: [1.0; 2],
+            next_events: [1.0; 2],
+            proposals: None,
+            emission: None,
+            light_subpaths: film.light_paths() as f64,
+        }
+    }
 }
 
 #[cfg(test)]

@@ -193,8 +193,8 @@ impl Subpaths {
 
     /// Adds a single point; returns its number among all vertices. The next walk begins without any.
     #[inline]
-    pub(crate) fn add_point(&mut self, point: Vertex) -> usize {
-        self.vertices.push(point);
+    pub(crate) fn add_point(&mut self, point: &Vertex) -> usize {
+        self.vertices.push(*point);
         self.vertices.len() - 1
     }
 

@@ -34,7 +34,8 @@ pub(crate) fn for_each_pair(
     scene: &Shot,
     f: impl FnMut(&PathContext<'_>, &Subpath<'_>, &Subpath<'_>),
 ) {
-    for_some_pairs(PAIRS, settings, scene, Connections::ONE_SUBPATH, f);
+    let connections = Connections::of_own_subpaths(scene.view.film());
+    for_some_pairs(PAIRS, settings, scene, connections, f);
 }
 
 /// Proposals for cells of the scene that say something else of every pair, and nothing of some.

@@ -133,7 +133,7 @@ fn stored_quantities_are_those_of_a_walk_from_scratch() {
     for_each_pair(&settings, &common::room(0.05), |context, light, camera| {
         let modes = [TransportMode::Importance, TransportMode::Radiance];
         for (subpath, mode) in [light, camera].into_iter().zip(modes) {
-            let stored = &subpath.vertices[..];
+            let stored = subpath.vertices;
             let (fresh, _) = rewalk(context, stored, mode);
             for i in 1..stored.len() {
                 if is_fragile(&fresh[i - 1], &fresh[i]) {
@@ -240,16 +240,16 @@ fn strategies(context: &PathContext<'_>, path: &[Vertex]) -> Vec<(usize, f32, Sp
     result
 }
 
-/// n_s of the film of the rooms, which has 64 pixels.
+/// n_s of these connections.
 fn count(context: &PathContext<'_>, s: usize, path: &[Vertex]) -> f64 {
     let Connections {
         next_events,
         proposals,
-        samples_per_subpath,
+        light_subpaths,
         ..
     } = context.connections;
     match (s, path.len() - s) {
-        (_, 1) => 64.0 / samples_per_subpath,
+        (_, 1) => light_subpaths,
         (1, t) => next_events[usize::from(t > 2)],
         (s, t) if s > 0 && proposals.is_some() => context.count(s, t, [&path[s - 1], &path[s]]),
         _ => 1.0,
@@ -257,7 +257,8 @@ fn count(context: &PathContext<'_>, s: usize, path: &[Vertex]) -> f64 {
 }
 
 fn check_paths(mis: MisHeuristic, light_point: LightPointChoice, scene: &Shot) {
-    check_paths_with(&settings(mis, light_point), scene, Connections::ONE_SUBPATH);
+    let connections = Connections::of_own_subpaths(scene.view.film());
+    check_paths_with(&settings(mis, light_point), scene, connections);
 }
 
 fn check_paths_with(settings: &PathSettings, scene: &Shot, connections: Connections<'_>) {
@@ -344,7 +345,8 @@ fn lamps_are_one_function_of_the_path_however_they_are_chosen() {
                 light_choice,
                 ..settings(mis, LightPointChoice::Fresh)
             };
-            check_paths_with(&settings, &scene, Connections::ONE_SUBPATH);
+            let connections = Connections::of_own_subpaths(scene.view.film());
+            check_paths_with(&settings, &scene, connections);
         }
     }
 }
@@ -360,7 +362,7 @@ fn proposals_are_one_function_of_the_path() {
             next_events: [3.0, 2.0],
             proposals: Some(&proposals),
             emission: Some(&emission),
-            samples_per_subpath: 4.0,
+            light_subpaths: 16.0,
         };
         for mis in [MisHeuristic::Balance, MisHeuristic::Power] {
             let settings = settings(mis, LightPointChoice::Fresh);
@@ -380,7 +382,7 @@ fn densities_of_points_in_front_of_each_other_are_reciprocal() {
         );
         let [there, back] = [z.segment_to(y), y.segment_to(z)];
         assert_close(there.geometry_term, back.geometry_term, "G");
-        if let [lens, first, ..] = &camera.vertices[..] {
+        if let [lens, first, ..] = camera.vertices {
             let raster = context
                 .view
                 .camera()

@@ -179,7 +179,7 @@ fn a_point_looks_the_same_to_every_walk() {
         view: &floor.view,
         settings: &PathSettings::default(),
         wavelengths: Wavelengths::default(),
-        connections: Connections::ONE_SUBPATH,
+        connections: Connections::of_own_subpaths(floor.view.film()),
     };
     for i in 0..64 {
         let along = Vec2::new(

@@ -194,15 +194,16 @@ fn check(scene: &Shot, pairs: u64) {
         next_events: [3.0, 2.0],
         proposals: Some(&proposals),
         emission: Some(&emission),
-        samples_per_subpath: 4.0,
+        light_subpaths: 16.0,
     };
+    let own = Connections::of_own_subpaths(scene.view.film());
     let uniform = Connections {
         proposals: None,
         ..shared
     };
     for settings in all_settings() {
         for_some_pairs(pairs, &settings, scene, shared, |context, light, camera| {
-            for connections in [Connections::ONE_SUBPATH, uniform, shared] {
+            for connections in [own, uniform, shared] {
                 let context = PathContext {
                     connections,
                     ..*context
@@ -312,7 +313,7 @@ fn long_paths() {
             4,
             &settings,
             &scene,
-            Connections::ONE_SUBPATH,
+            Connections::of_own_subpaths(scene.view.film()),
             |context, light, camera| {
                 comparison.compare_pair(context, light, camera);
             },

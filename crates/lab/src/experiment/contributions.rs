@@ -148,7 +148,7 @@ fn terms(loaded: &LoadedScene<'_>, settings: &Settings, pass: u64) -> Vec<[f64; 
         scene,
         view,
         settings: &settings.path,
-        connections: Connections::ONE_SUBPATH,
+        connections: Connections::of_own_subpaths(film),
     };
     let method = Method::Bdpt(ShadowRays::All.selector(0.0));
     let mut batch = Batch::default();

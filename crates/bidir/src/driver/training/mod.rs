@@ -126,7 +126,11 @@ impl Training {
     }
 
     /// The numbers of connections of camera vertices, where each sample has a light subpath.
-    pub(super) fn connections(&self, settings: LvcSettings) -> Connections<'_> {
+    pub(super) fn connections(
+        &self,
+        settings: LvcSettings,
+        light_subpaths: u64,
+    ) -> Connections<'_> {
         let each = |count: u16| match self.light_vertices {
             0.0 => 1.0,
             vertices => f64::from(count) / vertices,
@@ -136,7 +140,7 @@ impl Training {
             next_events: settings.next_events.get().map(f64::from),
             proposals: self.proposals.as_ref(),
             emission: self.emission.as_ref(),
-            samples_per_subpath: 1.0,
+            light_subpaths: light_subpaths as f64,
         }
     }
 }

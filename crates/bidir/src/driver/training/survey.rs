@@ -154,7 +154,7 @@ impl<'a> Surveyor<'a> {
             scene: self.scene,
             view: self.view,
             settings: &self.settings.path,
-            connections: Connections::ONE_SUBPATH,
+            connections: Connections::of_own_subpaths(self.view.film()),
         };
         batch.fill([Sample::new(self.scene, 0, pixel, camera, light)]);
         self.method.run(&job, batch);

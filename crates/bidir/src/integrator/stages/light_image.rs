@@ -107,8 +107,9 @@ impl<'a> LightImage<'a> {
         if !reaches_film(context, raster) {
             return None;
         }
-        let contribution =
-            path.contribution(context) * context.connections.samples_per_subpath as f32;
+        // The film divides by its number of light paths.
+        let share = context.view.film().light_paths() as f64 / context.connections.light_subpaths;
+        let contribution = path.contribution(context) * share as f32;
         (contribution != Spectrum::ZERO).then_some(Self {
             light: light[0].light?,
             camera_end: camera_end(context, lens, end),

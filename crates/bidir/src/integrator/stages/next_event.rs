@@ -36,7 +36,7 @@ pub(in super::super) fn next_events(job: &Job<'_>, batch: &mut Batch, counts: Ca
                     next_events.push(NextEvent {
                         sample: number as u32,
                         t: t as u32,
-                        z: light.add_point(x0),
+                        z: light.add_point(&x0),
                     });
                 }
             }
