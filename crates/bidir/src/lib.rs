@@ -86,7 +86,7 @@ pub mod settings;
 pub mod shape;
 pub mod spectrum;
 pub mod stats;
-pub mod strategy;
+mod strategy;
 pub mod texture;
 pub mod view;
 

@@ -4,7 +4,7 @@ use crate::names::{as_text, named};
 use std::fmt;
 use std::str::FromStr;
 
-/// The settings of [`Lvc`](super::Lvc).
+/// The settings of [`Method::Lvc`](super::Method::Lvc).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LvcSettings {
     /// M: how many vertices of the cache are candidates for each camera vertex.
