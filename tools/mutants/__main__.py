@@ -1,7 +1,7 @@
 """A test of the tests: applies faults one by one; each must make a test fail.
 
     python3 tools/mutants                 all of them; exits with 1 if one survives
-    python3 tools/mutants --only TEXT     those whose name or test contains TEXT
+    python3 tools/mutants --only TEXT     those whose name, file or test contains TEXT
     python3 tools/mutants --share 1/4     the second of four shares of them
     python3 tools/mutants --list          names, files and tests
     python3 tools/mutants --check         only that every fault still applies to the sources
@@ -249,10 +249,10 @@ def main():
     parser.add_argument("--list", action="store_true")
     parser.add_argument("--check", action="store_true")
     arguments = parser.parse_args()
-    mutations = [m for m in MUTATIONS if arguments.only in m[0] + " " + describe(m[4])]
+    mutations = [m for m in MUTATIONS if arguments.only in " ".join((m[0], m[1], describe(m[4])))]
     mutations = mutations[arguments.share]
     if not mutations:
-        sys.exit("no mutant has a name or a test with `%s`" % arguments.only)
+        sys.exit("no mutant has a name, a file or a test with `%s`" % arguments.only)
     if arguments.list:
         for name, file, _, _, test in mutations:
             print("%-60s %-44s %s" % (name, file, describe(test)))
