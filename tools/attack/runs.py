@@ -96,7 +96,8 @@ def wait(process, limits, kill_after=None):
             process.returncode = os.waitstatus_to_exitcode(status)
             return status, usage, seconds
         if seconds > patience:
-            process.kill()
+            # `Popen.kill` waits for a process that has just ended, and `wait4` would find none.
+            os.kill(process.pid, signal.SIGKILL)
             pid, status, usage = os.wait4(process.pid, 0)
             process.returncode = os.waitstatus_to_exitcode(status)
             return status, usage, seconds
