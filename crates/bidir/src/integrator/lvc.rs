@@ -132,6 +132,12 @@ impl SamplesPerSubpath {
         Self::power_of_two(count.max(self.0.into()).ilog2())
     }
 
+    /// The most that is neither above this one nor above `count`, which is positive.
+    #[must_use]
+    pub fn or_fewer(self, count: u64) -> Self {
+        Self::power_of_two(count.min(self.0.into()).ilog2())
+    }
+
     /// The number.
     #[inline]
     pub fn get(self) -> u16 {

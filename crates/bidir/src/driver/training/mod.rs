@@ -114,14 +114,15 @@ impl Training {
         }
     }
 
-    /// Lets so few light subpaths be in a cache that it has [`MOST_CACHED`] vertices on average.
+    /// Lets so few light subpaths be in a cache that it has [`MOST_CACHED`] vertices on average, but each group of
+    /// samples one.
     fn bound_cache(&self, film: &FilmSettings, settings: &mut Settings) {
         if settings.integrator == IntegratorKind::Lvc {
             let pixels = film.crop.area();
-            let group = group_size(pixels).min(pixels) as f64;
+            let size = group_size(pixels);
+            let rays = size.min(pixels) as f64 * self.subpath_rays;
             let wanted = settings.lvc.samples_per_subpath;
-            settings.lvc.samples_per_subpath =
-                wanted.or_more(group * self.subpath_rays / MOST_CACHED);
+            settings.lvc.samples_per_subpath = wanted.or_more(rays / MOST_CACHED).or_fewer(size);
         }
     }
 

@@ -2,6 +2,7 @@ use super::*;
 use crate::camera::{Camera, Perspective, PerspectiveSettings};
 use crate::driver::{Resources, Session};
 use crate::film::{FilmSettings, Filter, FilterKind, PixelRect};
+use crate::integrator::SamplesPerSubpath;
 use crate::light::EmissionSides;
 use crate::material::Material;
 use crate::math::{Affine3A, Vec2, Vec3};
@@ -110,6 +111,24 @@ fn long_light_subpaths_are_few() {
         assert_eq!(samples, expected, "{rays}");
         assert!(2048.0 / f64::from(expected) * rays <= MOST_CACHED);
     }
+}
+
+/// A light image is as bright however many samples there are for a light subpath, also more than a group has.
+#[test]
+fn every_group_has_a_light_subpath() {
+    let scene = room();
+    let brightness = |exponent| {
+        let mut settings = Settings::new(IntegratorKind::Lvc);
+        settings.path.strategies = "t1".parse().expect("a strategy");
+        settings.lvc.samples_per_subpath = SamplesPerSubpath::power_of_two(exponent);
+        let session = Session::new(&scene, &view(WHOLE), settings, &Resources::default());
+        let mut session = session.expect("the film is small");
+        (0..256).for_each(|_| assert!(session.step(&())));
+        let pixels = session.film().develop().pixels;
+        pixels.iter().map(|pixel| f64::from(pixel[1])).sum::<f64>()
+    };
+    let (many, few) = (brightness(0), brightness(8));
+    assert!((few / many - 1.0).abs() < 0.2, "{few} instead of {many}");
 }
 
 /// A pass of a sphere with some effort, and the samples of training.
