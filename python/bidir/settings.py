@@ -221,6 +221,6 @@ class Lvc(_Bidirectional):
 class Auto(Lvc):
     """:class:`Path`, :class:`Bdpt` or :class:`Lvc`, chosen by a short survey before the first pass.
 
-    It tries several values of ``samples_per_subpath`` and ignores the setting.
+    It decides ``samples_per_subpath`` and ignores the setting.
     ``film.settings["plan"]`` has the choice.
     """

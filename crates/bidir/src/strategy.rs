@@ -60,7 +60,7 @@ impl Rule {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Strategies {
     rules: Vec<Rule>,
-    /// The rules for short subpaths, because every weight asks: bit t of number s.
+    /// Bit t of number s is the answer for (s, t), because every weight asks.
     short: [u64; SHORT],
 }
 
@@ -82,7 +82,7 @@ impl Strategies {
         }
     }
 
-    /// True where the list says so of every strategy, by its last word.
+    /// True where the last rule is `all`: every strategy takes part.
     #[inline]
     pub(crate) fn is_all(&self) -> bool {
         self.rules.last() == Some(&Rule::ALL)

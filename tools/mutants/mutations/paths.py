@@ -243,7 +243,7 @@ PATHS = [
     (
         "the first vertex's candidates counted for those behind it",
         "crates/bidir/src/path/running.rs",
-        "share(context.count(i + 1, 3, [&walk[i], &walk[i + 1]]));",
+        "share(context.count(i + 1, ANY_DEEPER, [&walk[i], &walk[i + 1]]));",
         "share(context.count(i + 1, 2, [&walk[i], &walk[i + 1]]));",
         RUNNING,
     ),
@@ -362,7 +362,7 @@ PATHS = [
     (
         "shared light subpaths counted as one in sums",
         "crates/bidir/src/path/running.rs",
-        "let count = share(context.count(i + 1, 3, [&walk[i], &walk[i + 1]]));",
+        "let count = share(context.count(i + 1, ANY_DEEPER, [&walk[i], &walk[i + 1]]));",
         "let count = 1.0;",
         RUNNING,
     ),

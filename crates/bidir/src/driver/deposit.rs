@@ -29,11 +29,11 @@ impl Deposit<'_> {
                 self.part_of_pixel(sample, &entry.contribution);
             }
         }
-        self.take_light(batch);
+        self.take_splats(batch);
     }
 
-    /// Adds what comes from light subpaths, where these are not walked for one sample.
-    pub(super) fn take_light(&self, batch: &mut Batch) {
+    /// Adds the splats of `batch`, and images of single strategies.
+    pub(super) fn take_splats(&self, batch: &mut Batch) {
         for (sample, contribution, place) in splats(&batch.samples, &batch.splats) {
             let value = self.rgb(sample, contribution.value());
             let parts = self.parts_of(contribution);
@@ -91,7 +91,7 @@ impl Deposit<'_> {
             samples,
             entries,
             luminances,
-            splats: images,
+            splats: of_light,
             stats,
             ..
         } = batch;
@@ -105,7 +105,7 @@ impl Deposit<'_> {
         for ((_, strategy), luminance) in luminances.drain(..) {
             stats.add_square(strategy, luminance);
         }
-        for (sample, contribution, place) in splats(samples, images) {
+        for (sample, contribution, place) in splats(samples, of_light) {
             self.splat(sample, contribution, place, stats);
         }
     }

@@ -229,7 +229,7 @@ impl<'a> Session<'a> {
             }
             let places = self.group(begin, run);
             if shares_light {
-                let keep = |batch: &mut Batch| self.deposit(&self.job()).take_light(batch);
+                let keep = |batch: &mut Batch| self.deposit(&self.job()).take_splats(batch);
                 self.walk_light(places.clone(), pass, (batch, BATCH), keep);
             }
             self.render_run(places.clone(), pass, batch, progress);
@@ -237,7 +237,7 @@ impl<'a> Session<'a> {
         }
     }
 
-    /// The destination of contributions.
+    /// Adds contributions to the pass.
     fn deposit<'d>(&'d self, job: &'d Job<'d>) -> Deposit<'d> {
         Deposit {
             job,
@@ -255,7 +255,7 @@ impl<'a> Session<'a> {
         }
     }
 
-    /// How many connections a camera vertex makes.
+    /// How many samples strategies take, and what they learned.
     pub(super) fn connections(&self) -> Connections<'_> {
         match (self.settings.integrator, &self.training) {
             (IntegratorKind::Lvc, Some(training)) => {
@@ -275,7 +275,7 @@ impl<'a> Session<'a> {
     ) {
         let job = self.job();
         let layers = self.film.layers();
-        // Features are of one sample.
+        // Features are measured of one sample at a time.
         let size = if layers.features() > 0 { 1 } else { BATCH };
         while !places.is_empty() {
             let samples = places.by_ref().take(size);

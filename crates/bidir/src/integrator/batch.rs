@@ -62,7 +62,7 @@ pub struct Job<'a> {
     pub view: &'a View,
     /// How paths are made and weighted.
     pub settings: &'a PathSettings,
-    /// How many connections a camera vertex makes.
+    /// How many samples strategies take, and what they learned.
     pub connections: Connections<'a>,
 }
 
@@ -107,7 +107,7 @@ pub struct Batch {
     pub(super) cache: LightCache,
     /// The connections that may be traced, sample by sample.
     pub candidates: Vec<Candidate>,
-    /// For each sample the number behind that of its last candidate.
+    /// For each sample the end of its candidates.
     pub(super) candidates_end: Vec<usize>,
     /// Connections that are not offered: their value is zero, or no film can sum it.
     pub(crate) unoffered: Vec<Candidate>,
@@ -136,7 +136,7 @@ impl Batch {
         }
     }
 
-    /// Takes other samples, and forgets what was made of the last ones but for light subpaths.
+    /// Replaces the samples, and clears the output of all stages but light subpaths.
     pub fn fill(&mut self, samples: impl IntoIterator<Item = Sample>) {
         self.samples.clear();
         self.samples.extend(samples);
@@ -154,7 +154,7 @@ impl Batch {
         self.values.resize(self.samples.len(), Spectrum::ZERO);
     }
 
-    /// Forgets the light subpaths.
+    /// Clears the light subpaths, with their sums and the cache.
     pub(super) fn forget_light(&mut self) {
         self.light.clear();
         self.light_sums.clear();

@@ -53,14 +53,18 @@ pub struct Entry {
 }
 
 impl Entry {
-    /// A term that is certain to take part, and of which all arrives until its shadow ray is traced.
+    /// A term that is certain to take part; its shadow ray is not traced yet.
     #[inline]
     pub(super) fn certain(sample: usize, term: Term, link: Link) -> Self {
+        let fate = match link {
+            Link::Walk => Fate::Added,
+            Link::Connection(_) | Link::LightImage(..) => Fate::NotTraced,
+        };
         Self {
             sample: sample as u32,
             contribution: term.certain(1.0),
             link,
-            fate: Fate::Added,
+            fate,
         }
     }
 

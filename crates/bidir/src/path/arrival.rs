@@ -66,8 +66,6 @@ impl Arrival {
     /// direction.
     pub fn vertex(&self, context: &PathContext<'_>) -> Vertex {
         Vertex {
-            wo: self.wo,
-            beta: self.beta,
             pdf_rev: self.pdf,
             ..Vertex::light(context, self.light, &self.at)
         }

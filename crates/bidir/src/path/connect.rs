@@ -104,6 +104,7 @@ impl<'a> JoinedPath<'a> {
     /// of a pixel's radiance.
     #[inline]
     pub fn contribution(&self, context: &PathContext<'_>) -> Spectrum {
+        debug_assert_eq!(self.junction, Junction::Connection);
         let (z, y) = (self.z(), self.y());
         let geometry_term = self.segment.geometry_term;
         if geometry_term == 0.0 || z.is_delta() || y.is_delta() {

@@ -33,7 +33,7 @@ pub struct PathDensities {
 impl PathDensities {
     /// Collects the densities of `path`.
     ///
-    /// Stored densities hold but next to the junction, where each end has a new neighbour: the two
+    /// Stored densities hold except next to the junction, where each end has a new neighbour: the two
     /// ends and the vertices before them are evaluated again.
     pub fn gather(&mut self, context: &PathContext<'_>, path: &JoinedPath<'_>) {
         let JoinedPath {
@@ -44,8 +44,8 @@ impl PathDensities {
         } = *path;
         let (s, n) = (light.len(), path.len());
         self.vertices.clear();
-        // A vertex between two of its walk does on this path what the walk did; an end that is
-        // connected scatters by its other lobes.
+        // An inner vertex of a walk scatters by the lobe that the walk drew; an end that is connected
+        // scatters by lobes that are not Dirac.
         let lobes = |subpath: &[Vertex], walked: usize, i: usize| VertexDensities {
             from_light: 0.0,
             from_camera: 0.0,

@@ -16,7 +16,7 @@
 //!   light vertex. Everything else is a connection.
 //! - Path length is limited by the number of vertices n, the same for all strategies.
 //!
-//! Nothing here knows the film, and no ray is traced but those of the walks.
+//! Nothing here adds to a film, and no ray is traced but those of the walks.
 
 mod arrival;
 mod cells;
@@ -110,6 +110,6 @@ pub struct PathContext<'a> {
     pub settings: &'a PathSettings,
     /// The wavelengths of the sample.
     pub wavelengths: Wavelengths,
-    /// How many connections a camera vertex makes.
+    /// How many samples strategies take, and what they learned.
     pub connections: Connections<'a>,
 }

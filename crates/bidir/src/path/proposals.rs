@@ -211,7 +211,7 @@ fn accumulate(kappa: &[f64], squares: &[f64], sums: &mut Vec<f32>) {
     }
 }
 
-/// How many connections camera vertices make.
+/// How many samples strategies take of a path, and what training learned for drawing them.
 #[derive(Clone, Copy, Debug)]
 pub struct Connections<'a> {
     /// In a pass, on average, for each light vertex of a path: the first vertex of a camera subpath (t = 2), and

@@ -15,7 +15,8 @@ use super::{JoinedPath, Junction, PathContext, PathDensities, PathSettings, Subp
 /// Sums of shares along the walks of a batch, each relative to the strategy it ends with.
 #[derive(Debug, Default)]
 pub struct RunningSums {
-    /// Beside each vertex of light walks L_m, but for the last one; of camera walks C_m.
+    /// A number for each vertex of the walks: L_m of light walks, C_m of camera walks; the last ones of a walk
+    /// may be padding.
     sums: Vec<f64>,
     /// For each light walk the light's end of all paths with two of its vertices or more.
     starts: Vec<LightEnd>,
@@ -42,7 +43,7 @@ pub struct LightSums<'a> {
 /// Weights of paths, by sums where these hold.
 #[derive(Debug, Default)]
 pub struct Weights {
-    /// The sums hold where both subpaths have so many vertices.
+    /// How many vertices both subpaths need for the sums to hold.
     shortest: usize,
     /// For the pure form.
     densities: PathDensities,
@@ -61,8 +62,13 @@ struct LightEnd {
     is_hit: f64,
 }
 
-/// As the number of vertices of a path: its other end is so far that its roulette has begun.
+/// The length of a path whose roulette has begun at every bounce of both directions.
 const FAR: usize = usize::MAX;
+
+/// s of any strategy that connects with a vertex of a light walk, and t of any behind the first camera vertex:
+/// counts are the same for all of them.
+const ANY_WALKED: usize = 2;
+const ANY_DEEPER: usize = 3;
 
 impl LightSums<'_> {
     /// Those of no walk: for paths with one light vertex.
@@ -122,7 +128,7 @@ impl RunningSums {
         self.sums.push(sum);
         let densities = walked_densities(context, walk, FAR);
         for (i, [a, b]) in densities.take(walk.len() - 2).enumerate() {
-            let count = share(context.count(i + 1, 3, [&walk[i], &walk[i + 1]]));
+            let count = share(context.count(i + 1, ANY_DEEPER, [&walk[i], &walk[i + 1]]));
             let links = count * start.links(i + 1) * walk[i].links(&walk[i + 1]);
             sum = chain(links, share(start.down(i, a, b)), sum);
             self.sums.push(sum);
@@ -136,7 +142,7 @@ impl RunningSums {
         let densities = walked_densities(context, walk, FAR);
         for (c, [b, a]) in densities.take(walk.len() - 1).enumerate() {
             let [y, z] = [&walk[c], &walk[c + 1]];
-            let links = share(context.count(2, c + 1, [z, y])) * y.links(z);
+            let links = share(context.count(ANY_WALKED, c + 1, [z, y])) * y.links(z);
             sum = chain(links, share(ratio(a, b)), sum);
             self.sums.push(sum);
         }
@@ -160,16 +166,16 @@ impl Weights {
         };
     }
 
-    /// True where weights need sums.
-    pub fn take_sums(&self) -> bool {
+    /// True where some weights use sums.
+    pub fn uses_sums(&self) -> bool {
         self.shortest < usize::MAX
     }
 
     /// The number that [`JoinedPath::weight`] finds, but for rounding, by sums along the walks that the path's
     /// subpaths begin.
     ///
-    /// It is the pure form itself where not all strategies take part, and where the roulette of densities begins
-    /// at a later bounce than the shorter subpath has vertices: it is then another for every path length.
+    /// It is the pure form itself where not all strategies take part, and where a subpath is so short that the
+    /// roulette of densities begins behind its end: roulette then depends on the length of the path.
     #[inline]
     pub fn weight(
         &mut self,

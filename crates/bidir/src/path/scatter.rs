@@ -118,8 +118,8 @@ impl<'a> Turn<'a> {
     }
 
     /// Density of drawing `wi` by a walk that came along -`wo`. Measure: solid angle, 1/sr; from a
-    /// light at infinity area of the disk that its rays cross, 1/m². Dirac lobes are no part of it but
-    /// for the probability that they take.
+    /// light at infinity area of the disk that its rays cross, 1/m². Without Dirac lobes: it integrates
+    /// to the probability of the others.
     #[inline]
     pub fn pdf(&self, context: &PathContext<'_>) -> f32 {
         let (scene, vertex) = (context.scene, self.vertex);

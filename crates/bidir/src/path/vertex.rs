@@ -41,7 +41,8 @@ pub struct Vertex {
     pub bsdf: Bsdf,
     /// Throughput up to this vertex, without the scattering at it.
     pub beta: Spectrum,
-    /// The density of this vertex as its walk drew it, without roulette.
+    /// The density with which a walk from this end of the path draws this vertex, without roulette; on a light
+    /// that of beginning there, however the point was drawn.
     pub pdf_fwd: f32,
     /// The density of this vertex drawn from its successor by a walk in the other direction,
     /// without roulette; set when the successor scatters.
@@ -175,8 +176,8 @@ impl Vertex {
         [self.locus.point, n]
     }
 
-    /// The vertex as what a light is chosen for, on a path that goes on along `w` from here, of any
-    /// length: towards the light, or towards the camera. If nothing is transmitted both are on one side.
+    /// The vertex as a receiver of light, on a path that goes on along `w`, of any length: towards the light, or
+    /// towards the camera. Both give the same receiver, as both are on one side of an opaque surface.
     #[inline]
     pub fn receiver(&self, w: Vec3) -> Receiver {
         let n = self.shading.z;

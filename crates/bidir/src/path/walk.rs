@@ -85,6 +85,7 @@ pub fn camera_subpath(
         stream,
         max_vertices: context.settings.max_vertices(),
     };
+    // Cameras draw rays in proportion to their importance: its weight leaves the film's alone.
     let step = Step {
         direction: ray.direction,
         beta: Spectrum::splat(weight),
@@ -135,8 +136,8 @@ pub fn light_subpath(
     subpaths.end(escape);
 }
 
-/// Draws the start of a light subpath and the ray that leaves it. None: the draw has no density, or
-/// nothing of the light is there.
+/// Draws the start of a light subpath and the ray that leaves it. None: the draw has no density, or the light
+/// is cut out there.
 fn draw_emission(
     context: &PathContext<'_>,
     stream: &SampleStream,

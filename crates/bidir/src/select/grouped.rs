@@ -105,7 +105,7 @@ impl Selector for OnePerGroup {
     fn select(&self, candidates: &[Candidate], draws: Draws<'_>, chosen: &mut Vec<Chosen>) {
         let mut kept = chosen.len();
         self.append_sorted(candidates, chosen);
-        // If members were sorted, the chosen ones move to the front.
+        // Members are sorted by group: the chosen one of each moves to the front.
         let mut next = kept;
         while next < chosen.len() {
             let group = self.groups(candidates, &chosen[next..]).next();

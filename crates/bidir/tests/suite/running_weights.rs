@@ -66,7 +66,7 @@ impl Comparison {
     ) {
         self.weights.set(context.settings);
         self.sums.iter_mut().for_each(RunningSums::clear);
-        if self.weights.take_sums() {
+        if self.weights.uses_sums() {
             self.sums[0].add_light(context, light);
             self.sums[1].add_camera(context, camera);
         }

@@ -20,13 +20,13 @@ impl Session<'_> {
         begin..(begin + size).min(self.view.film().crop.area())
     }
 
-    /// The members of `places`, the range of a group, that bring a light subpath: as many of each group begin
-    /// with one.
+    /// Every k-th of `places`, the range of a group: the samples that bring it a light subpath.
     fn bringers(&self, places: Range<u64>) -> impl Iterator<Item = u64> {
         places.step_by(usize::from(self.settings.lvc.samples_per_subpath.get()))
     }
 
-    /// Walks the light subpaths of the samples at `places`, a group, so many at a time; calls `keep` each time.
+    /// Walks the light subpaths of the group at `places`, `size` at a time, and calls `keep` after each batch of
+    /// them.
     pub(super) fn walk_light(
         &self,
         places: Range<u64>,

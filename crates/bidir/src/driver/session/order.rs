@@ -7,8 +7,8 @@ use crate::integrator::Method;
 /// Which pixel the sample at each place of a pass belongs to.
 ///
 /// Samples at places that follow each other share light subpaths where a method shares any, and so
-/// part of their error. Errors that neighbours have in common are seen as streaks: they spread over the
-/// film.
+/// part of their error. Neighbours with a common error would be seen as streaks: such places are spread over
+/// the film.
 pub(super) enum Order {
     /// Row order of the crop.
     Rows,

@@ -26,6 +26,10 @@ pub(in super::super) enum Source {
 /// Evaluates the connections of all camera vertices.
 #[inline(never)]
 pub(in super::super) fn connect(job: &Job<'_>, batch: &mut Batch, source: Source) {
+    let first = match source {
+        Source::Own => batch.first_light(),
+        Source::Cache(_) => 0,
+    };
     let Batch {
         samples,
         camera,
@@ -46,6 +50,7 @@ pub(in super::super) fn connect(job: &Job<'_>, batch: &mut Batch, source: Source
         sums: light_sums,
         cache,
     };
+    // They are in the order in which camera vertices are visited.
     let mut next_events = next_events.iter().peekable();
     for (number, sample) in samples.iter().enumerate() {
         let walk = camera.get(number);
@@ -69,12 +74,13 @@ pub(in super::super) fn connect(job: &Job<'_>, batch: &mut Batch, source: Source
                 connector.offer(t, &lights.point(event.z));
             }
             match source {
-                Source::Own => connector.offer_own(t, &lights, number, &mut pairs),
+                Source::Own => connector.offer_own(t, &lights, first + number, &mut pairs),
                 Source::Cache(counts) => connector.offer_cached(t, &lights, counts.at(t)),
             }
         }
         candidates_end.push(candidates.len());
     }
+    debug_assert!(next_events.next().is_none());
     batch.stopwatch.end(Stage::Candidates);
 }
 

@@ -1,5 +1,5 @@
-//! The light image, t = 1: every light vertex is connected to a lens point of its own, and lands wherever on
-//! the film that is. A splat is divided by the number of light paths by the film, not here.
+//! The light image, t = 1: every light vertex is connected to a lens point of its own, and splatted where that
+//! sees it. The film divides by its number of pixels; where there are fewer light subpaths, each counts more.
 
 use super::super::batch::enter;
 use super::super::{Batch, Job, Link, Sample};
@@ -107,7 +107,6 @@ impl<'a> LightImage<'a> {
         if !reaches_film(context, raster) {
             return None;
         }
-        // The film divides by its number of light paths.
         let share = context.view.film().light_paths() as f64 / context.connections.light_subpaths;
         let contribution = path.contribution(context) * share as f32;
         (contribution != Spectrum::ZERO).then_some(Self {

@@ -1,8 +1,7 @@
 //! Which pairs of a light and a camera vertex are connected, where there are more than a sample can afford:
 //! two subpaths of k vertices have k² pairs.
 //!
-//! Of paths of n vertices, which as many strategies make, all pairs are connected up to n = N, and beyond
-//! each with the probability
+//! All pairs that make paths of n ≤ N vertices are connected, and those of longer paths each with the probability
 //!
 //! π(n) = (N / n)²,
 //!

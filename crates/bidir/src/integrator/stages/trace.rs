@@ -34,7 +34,7 @@ pub(in super::super) fn select(rule: &dyn Selector, batch: &mut Batch) {
                     transmittance: 1.0,
                 },
                 link: Link::Connection(of.ends(light, camera)),
-                fate: Fate::Added,
+                fate: Fate::NotTraced,
             });
         }
         begin = end;
@@ -59,6 +59,7 @@ pub(super) fn trace(scene: &Scene, entries: &mut [Entry], stats: &mut Stats) {
         if entry.fate == Fate::Dropped {
             continue;
         }
+        entry.fate = Fate::Added;
         let strategy = entry.contribution.term.strategy;
         stats.count_shadow_ray(strategy);
         entry.contribution.transmittance = scene.transmittance(a, b);

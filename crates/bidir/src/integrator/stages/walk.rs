@@ -42,7 +42,7 @@ pub(in super::super) fn walk_light(job: &Job<'_>, batch: &mut Batch) {
 /// Prepares the weights of paths with the camera subpaths.
 #[inline(never)]
 pub(in super::super) fn sum_camera(job: &Job<'_>, batch: &mut Batch) {
-    if batch.weights.take_sums() {
+    if batch.weights.uses_sums() {
         for (i, sample) in batch.samples.iter().enumerate() {
             let walk = batch.camera.get(i);
             batch.camera_sums.add_camera(&job.context(sample), &walk);
@@ -54,7 +54,7 @@ pub(in super::super) fn sum_camera(job: &Job<'_>, batch: &mut Batch) {
 /// Prepares the weights of paths with the samples' light subpaths.
 #[inline(never)]
 pub(in super::super) fn sum_light(job: &Job<'_>, batch: &mut Batch) {
-    if batch.weights.take_sums() {
+    if batch.weights.uses_sums() {
         let first = batch.first_light();
         for (i, sample) in batch.samples.iter().enumerate() {
             let walk = batch.light.get(first + i);
