@@ -121,7 +121,7 @@ pub(crate) struct OutputArgs {
     pub(crate) output: Option<PathBuf>,
     /// Write settings, ray counts and timings as JSON.
     ///
-    /// `stages` has the share of each stage in the time of a sample, measured on one sample in 61:
+    /// `stages` has the share of each stage in the time of a sample, measured on one sample in 7:
     /// walk, hits (s=0), light_image (t=1 with its shadow rays), candidates (s>=1, t>=2), select,
     /// shadow, direct (path tracing without the walk), film. Timings are those of one thread and
     /// differ from run to run.
