@@ -131,7 +131,7 @@ impl Deposit<'_> {
         }
     }
 
-    /// The same for a splat, where it reaches the film.
+    /// Adds a splat to its raw image, and counts its square, where it reaches the film.
     fn splat(
         &self,
         sample: &Sample,

@@ -16,12 +16,12 @@ use crate::spectrum::Spectrum;
 pub struct Replay {
     /// The one sample, with what its stages left.
     pub batch: Batch,
-    /// The number of its light subpath. None: it has that of another.
+    /// The number of its light subpath. None: it uses that of another sample, or none was walked.
     light: Option<usize>,
     /// The terms that are not zero: hits, connections, the light image.
     pub terms: Vec<ReplayedTerm>,
-    /// The connections of the two subpaths that are zero: for a Dirac distribution, for sides that
-    /// face away, or because they take no part.
+    /// The connections of the two subpaths without a term: they are zero, for a Dirac distribution or for sides
+    /// that face away, take no part, or were not asked for.
     pub zeros: Vec<Strategy>,
 }
 

@@ -85,6 +85,9 @@ pub struct Session<'a> {
     /// No pass before this one is rendered.
     first_pass: u64,
     buffer: PassBuffer,
+    /// True from the beginning of a pass to its end: what a pass left that a panic of the host ended is
+    /// forgotten.
+    is_in_pass: bool,
     stats: Stats,
     stage_times: StageTimes,
     workers: Workers,
@@ -139,6 +142,7 @@ impl<'a> Session<'a> {
             film,
             first_pass: 0,
             buffer,
+            is_in_pass: false,
             stats: Stats::default(),
             stage_times: StageTimes::default(),
             workers,
@@ -169,6 +173,10 @@ impl<'a> Session<'a> {
 
     /// Renders the next pass. False: `progress` asked to stop, and the pass is forgotten.
     pub fn step(&mut self, progress: &dyn Progress) -> bool {
+        if std::mem::replace(&mut self.is_in_pass, true) {
+            self.buffer.clear();
+            self.take_counts();
+        }
         let pass = self.next_pass();
         let next = AtomicU64::new(0);
         let given_up = AtomicBool::new(false);
@@ -185,14 +193,7 @@ impl<'a> Session<'a> {
                 given_up.store(true, Ordering::Relaxed);
             }
         });
-        let (mut stats, mut stage_times) = (Stats::default(), StageTimes::default());
-        for batch in &mut self.batches {
-            let batch = batch
-                .get_mut()
-                .unwrap_or_else(std::sync::PoisonError::into_inner);
-            stats += &std::mem::take(&mut batch.stats);
-            stage_times += &batch.stopwatch.take();
-        }
+        let (stats, stage_times) = self.take_counts();
         let finished = !given_up.into_inner();
         if finished {
             self.stats += &stats;
@@ -201,7 +202,21 @@ impl<'a> Session<'a> {
             self.workers.install(|| film.add_pass(pass, buffer));
         }
         self.buffer.clear();
+        self.is_in_pass = false;
         finished
+    }
+
+    /// The counters and times of all threads since the last call.
+    fn take_counts(&mut self) -> (Stats, StageTimes) {
+        let (mut stats, mut stage_times) = (Stats::default(), StageTimes::default());
+        for batch in &mut self.batches {
+            let batch = batch
+                .get_mut()
+                .unwrap_or_else(std::sync::PoisonError::into_inner);
+            stats += &std::mem::take(&mut batch.stats);
+            stage_times += &batch.stopwatch.take();
+        }
+        (stats, stage_times)
     }
 
     /// Renders runs of pixels until none is left. False: a run was given up.

@@ -11,7 +11,7 @@ pub enum Link {
     Walk,
     /// A shadow ray for the sample's own pixel: s ≥ 1 and t ≥ 2.
     Connection([Locus; 2]),
-    /// A shadow ray for a splat there: t = 1.
+    /// A shadow ray to the lens, and the place on the film that it is splatted to: t = 1.
     LightImage([Locus; 2], SplatPlace),
 }
 

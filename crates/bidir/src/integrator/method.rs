@@ -34,16 +34,7 @@ pub enum Method {
     /// Bidirectional path tracing [Veach97, §10]: every strategy (s, t), weighted.
     Bdpt(Box<dyn Selector>),
     /// Bidirectional path tracing with a light vertex cache.
-    Lvc(Box<dyn Selector>, LvcCounts),
-}
-
-/// How many light vertices a camera vertex is connected with.
-#[derive(Clone, Copy, Debug)]
-pub struct LvcCounts {
-    /// M: how many vertices of the cache.
-    pub candidates: CandidateCount,
-    /// How many light points of its own.
-    pub next_events: CandidateCount,
+    Lvc(Box<dyn Selector>, LvcSettings),
 }
 
 impl Method {
@@ -55,13 +46,7 @@ impl Method {
             IntegratorKind::Light => Self::Light,
             IntegratorKind::Bdpt => Self::Bdpt(selector),
             // `Auto` is decided before this; `Lvc` is its most frequent plan.
-            IntegratorKind::Lvc | IntegratorKind::Auto => {
-                let counts = LvcCounts {
-                    candidates: lvc.candidates,
-                    next_events: lvc.next_events,
-                };
-                Self::Lvc(selector, counts)
-            }
+            IntegratorKind::Lvc | IntegratorKind::Auto => Self::Lvc(selector, *lvc),
         }
     }
 
@@ -101,12 +86,12 @@ impl Method {
                 select(&**selector, batch);
                 shadow_rays(job, batch);
             }
-            Self::Lvc(selector, counts) => {
+            Self::Lvc(selector, lvc) => {
                 walk_camera(job, batch);
                 sum_camera(job, batch);
                 hits(job, batch);
-                next_events(job, batch, counts.next_events);
-                connect(job, batch, Source::Cache(counts.candidates));
+                next_events(job, batch, lvc.next_events);
+                connect(job, batch, Source::Cache(lvc.candidates));
                 select(&**selector, batch);
                 shadow_rays(job, batch);
             }

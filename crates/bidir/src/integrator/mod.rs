@@ -1,7 +1,7 @@
 //! Estimators: how samples are computed.
 //!
 //! A [`Batch`] holds the samples in flight; a [`Method`] is the list of stages that fill its arrays, one
-//! behind the other. Neither knows a film: the driver takes what a batch holds at the end. The size of a
+//! after the other. Neither knows a film: the driver takes what a batch holds at the end. The size of a
 //! batch changes no bit.
 //!
 //! **Adding one**: a variant of [`Method`] and of [`IntegratorKind`], and the stages that are missing.
@@ -21,7 +21,7 @@ pub(crate) use cache::connectable;
 pub use journal::{Entry, Fate, Link};
 pub use lvc::*;
 pub(crate) use method::group_size;
-pub use method::{LvcCounts, Method, begin_group, end_group, walk_group};
+pub use method::{Method, begin_group, end_group, walk_group};
 pub(crate) use stages::camera_ray;
 
 use crate::names::named;

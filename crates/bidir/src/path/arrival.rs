@@ -47,7 +47,7 @@ impl Arrival {
         })
     }
 
-    /// The arrival at `light` of a walk that hit it behind its first `i` vertices, or left the scene there. None:
+    /// The arrival at `light` of a walk that hit it after its first `i` vertices, or left the scene there. None:
     /// it did neither.
     pub fn of(scene: &Scene, camera: &Subpath<'_>, i: usize, light: u32) -> Option<Self> {
         match camera.vertices.get(i) {

@@ -48,7 +48,7 @@ pub struct Subpaths {
 /// How a walk ended.
 #[derive(Clone, Copy, Debug)]
 struct Walk {
-    /// The number behind that of its last vertex.
+    /// One past the number of its last vertex.
     end: usize,
     escape: Option<Escape>,
 }
@@ -192,7 +192,7 @@ impl Subpaths {
         self.walks.last().map_or(0, |walk| walk.end)
     }
 
-    /// Adds a single point; returns its number among all vertices. The next walk begins without any.
+    /// Adds a single point; returns its number among all vertices. Points are forgotten before the next walk.
     #[inline]
     pub(crate) fn add_point(&mut self, point: &Vertex) -> usize {
         self.vertices.push(*point);

@@ -43,7 +43,7 @@ pub struct Candidate {
 }
 
 impl Candidate {
-    /// The score for this estimate of it: one that underflows must keep a chance.
+    /// Keeps an estimate away from zero: every candidate has a chance to be chosen.
     #[inline]
     pub fn score(estimate: f32) -> f32 {
         estimate.max(f32::MIN_POSITIVE)
@@ -83,7 +83,7 @@ impl Draws<'_> {
 /// A rule that chooses shadow rays. One call serves a whole sample.
 pub trait Selector: Sync + Send {
     /// Appends the chosen ones of `candidates` to `chosen`, each with its inclusion probability.
-    /// A candidate may be appended once.
+    /// Each is appended at most once.
     fn select(&self, candidates: &[Candidate], draws: Draws<'_>, chosen: &mut Vec<Chosen>);
 
     /// π of every one of `candidates`, chosen or not, for those who look into a selection.

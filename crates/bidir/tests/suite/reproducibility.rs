@@ -148,6 +148,29 @@ fn a_pass_that_is_given_up_leaves_no_trace() {
     assert!(*session.film() == whole);
 }
 
+/// A host whose code panics.
+struct Panics;
+
+impl Progress for Panics {
+    fn advance(&self, _samples: u64) {
+        panic!("the host panics, as this test wants");
+    }
+}
+
+#[test]
+fn a_pass_that_the_host_ends_by_a_panic_leaves_no_trace() {
+    let scene = common::room(0.0);
+    let settings = settings(IntegratorKind::Bdpt, "all");
+    let resources = with_threads(2);
+    let session = || Session::new(&scene.scene, &scene.view, settings.clone(), &resources);
+    let [mut session, mut other] = [session(), session()].map(|it| it.expect("the film is small"));
+    let step = std::panic::AssertUnwindSafe(|| session.step(&Panics));
+    assert!(std::panic::catch_unwind(step).is_err());
+    assert!(session.step(&()) && other.step(&()));
+    assert!(session.film() == other.film());
+    assert_eq!(session.stats(), other.stats());
+}
+
 /// Asks to stop once, and never again.
 struct StopOnce(AtomicU64);
 

@@ -69,7 +69,7 @@ impl Session<'_> {
         self.walk_light(group, pass, (batch, 1), |batch| {
             let stats = std::mem::take(&mut batch.stats);
             if batch.samples[0].pixel == pixel {
-                own = Some((batch.light.count() - 1, batch.splats.clone()));
+                own = Some((batch.light.count() - 1, std::mem::take(&mut batch.splats)));
                 own_stats = stats;
             }
         });

@@ -114,8 +114,8 @@ impl Training {
         }
     }
 
-    /// Lets so few light subpaths be in a cache that it has [`MOST_CACHED`] vertices on average, but each group of
-    /// samples one.
+    /// Raises the number of samples per subpath until the cache of a group has no more than [`MOST_CACHED`]
+    /// vertices on average, but leaves each group a subpath.
     fn bound_cache(&self, film: &FilmSettings, settings: &mut Settings) {
         if settings.integrator == IntegratorKind::Lvc {
             let pixels = film.crop.area();
@@ -126,7 +126,7 @@ impl Training {
         }
     }
 
-    /// The numbers of connections of camera vertices, where each sample has a light subpath.
+    /// The counts of the strategies of `lvc`, with `light_subpaths` subpaths in a pass.
     pub(super) fn connections(
         &self,
         settings: LvcSettings,

@@ -41,7 +41,7 @@ pub(in super::super) fn light_image(job: &Job<'_>, batch: &mut Batch, weighting:
         let walk = light.get(first + number);
         let sums = PathSums {
             light: light_sums.light(first + number, walk.first),
-            camera: &[0.0],
+            camera: &[],
         };
         for s in 1..=walk.vertices.len() {
             if weighting == Weighting::Combined && !context.takes(s, 1) {
