@@ -238,11 +238,9 @@ fn shown(text: &str, marked: Range<usize>) -> (String, Range<usize>) {
     let end = marked.end.min(text.len());
     let is_between = text[..end].ends_with('\r') && text[end..].starts_with('\n');
     let end = end - usize::from(is_between);
-    let parts = [
-        &text[..marked.start],
-        &text[marked.start..end],
-        &text[end..],
-    ];
+    // The mark may be at the carriage return that is removed.
+    let start = marked.start.min(end);
+    let parts = [&text[..start], &text[start..end], &text[end..]];
     let [before, mark, after] =
         parts.map(|part| printable_lines(&part.replace("\r\n", "\n")).into_owned());
     let place = before.len()..before.len() + mark.len();
@@ -338,6 +336,24 @@ mod tests {
         let lines: Vec<_> = excerpt.text.split('\n').collect();
         assert_eq!(lines, [r"Film \u{1b}[2J", r#"Shape "\u{202e}ab""#, "next"]);
         assert_eq!(&excerpt.text[excerpt.marked], r#""\u{202e}ab""#);
+    }
+
+    #[test]
+    fn a_mark_at_a_carriage_return_is_where_the_line_ends() {
+        for (text, at) in [
+            ("a\r", 1..2),
+            ("a\r", 2..2),
+            ("a\r\nb", 1..2),
+            ("a\r\nb", 2..2),
+        ] {
+            let excerpt = Excerpt::new(Path::new("a"), text, 1, at);
+            assert_eq!(excerpt.marked, 1..1, "{text:?}");
+        }
+        // A file of carriage returns that ends in the middle of a directive.
+        let text = "a ci\r\r\r\n\r\r";
+        for i in 0..=text.len() {
+            Excerpt::new(Path::new("a"), text, 1, i..text.len());
+        }
     }
 
     #[test]
