@@ -88,7 +88,7 @@ impl Features {
 }
 
 impl FirstSurface {
-    /// That of the one sample of `batch`. None: the ray escapes.
+    /// Finds the first surface of the one sample of `batch`. None: the ray escapes.
     fn find(job: &Job<'_>, batch: &mut Batch) -> Option<Self> {
         let sample = &batch.samples[0];
         let context = job.context(sample);

@@ -188,8 +188,8 @@ impl Batch {
         Entry { fate, ..entry }
     }
 
-    /// The shares of the path of `entry`, which connects the vertices of `candidate` where that was one. None: there
-    /// is no such path.
+    /// The shares of the path of `entry`; `candidate` is the candidate that it was, if it was one. None: the sample
+    /// has no such path.
     pub(crate) fn shares(
         &self,
         context: &PathContext<'_>,

@@ -8,9 +8,9 @@ use std::ops::Range;
 /// An index of the light vertices that can be connected.
 #[derive(Debug, Default)]
 pub(super) struct LightCache {
-    /// Those of a cell beside each other.
+    /// The vertices that can be connected, in the order of their cells.
     entries: Vec<Entry>,
-    /// The same, in the order of the subpaths.
+    /// The same vertices, in the order of the subpaths.
     unsorted: Vec<Entry>,
     /// The number of subpaths.
     subpaths: usize,

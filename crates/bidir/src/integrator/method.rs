@@ -57,8 +57,8 @@ impl Method {
 
     /// Computes the samples of `batch`: its entries, values and splats.
     ///
-    /// Of a method that [shares light](Self::shares_light), the subpaths are those between [`begin_group`] and
-    /// [`end_group`].
+    /// A method that [shares light](Self::shares_light) uses the subpaths that [`walk_group`] added between
+    /// [`begin_group`] and [`end_group`].
     pub fn run(&self, job: &Job<'_>, batch: &mut Batch) {
         batch.stats.samples += batch.samples.len() as u64;
         batch.weights.set(job.settings);

@@ -71,7 +71,7 @@ const ANY_WALKED: usize = 2;
 const ANY_DEEPER: usize = 3;
 
 impl LightSums<'_> {
-    /// Those of no walk: for paths with one light vertex.
+    /// No sums: paths with one light vertex need none.
     pub const NONE: LightSums<'static> = LightSums {
         sums: &[],
         start: &LightEnd::NONE,
@@ -106,8 +106,8 @@ impl RunningSums {
         self.sums.resize(end, 0.0);
     }
 
-    /// Those along light walk number `i`, which begins with the vertex with number `first`; of none where none
-    /// were added.
+    /// The sums along light walk number `i`, whose first vertex has the number `first`; empty where none were
+    /// added.
     #[inline]
     pub fn light(&self, i: usize, first: usize) -> LightSums<'_> {
         LightSums {
@@ -116,7 +116,7 @@ impl RunningSums {
         }
     }
 
-    /// Those along the camera walk that begins with the vertex with this number.
+    /// The sums along the camera walk whose first vertex has the number `first`.
     #[inline]
     pub fn camera(&self, first: usize) -> &[f64] {
         self.sums.get(first..).unwrap_or_default()
@@ -150,14 +150,7 @@ impl RunningSums {
 }
 
 impl Weights {
-    /// Weights by these settings.
-    pub fn new(settings: &PathSettings) -> Self {
-        let mut weights = Self::default();
-        weights.set(settings);
-        weights
-    }
-
-    /// The same memory for other settings.
+    /// Takes other settings, and keeps the memory.
     pub fn set(&mut self, settings: &PathSettings) {
         self.shortest = if settings.strategies.is_all() {
             settings.roulette.density_start().unwrap_or(0)
@@ -258,7 +251,7 @@ impl PathSums<'_> {
 }
 
 impl LightEnd {
-    /// Of no path.
+    /// The end of no path.
     const NONE: Self = Self {
         emission: 0.0,
         next_event: 0.0,

@@ -19,7 +19,7 @@ use crate::strategy::Strategy;
 pub(in super::super) enum Weighting {
     /// 1: no other strategy makes its paths.
     Alone,
-    /// Those of all strategies that take part.
+    /// MIS weights of all strategies that take part.
     Combined,
 }
 
