@@ -114,7 +114,7 @@ fn roulette_shows_the_results_of_training() {
     Workplace::new()
         .run("render room.pbrt --replay 12,12,1 --shadow-rays ray-roulette --spp 1000")
         .expect(0)
-        .prints("training: 16384 samples");
+        .prints("training: 4096 samples");
 }
 
 #[test]

@@ -4,6 +4,10 @@
 /// The most samples of the survey: the mean luminance is then within a few percent in most scenes, and four
 /// times as many change variances by 3 % at most. Unit: samples, a power of two.
 pub(super) const MOST_SAMPLES: u64 = 1 << 14;
+/// The most samples for each pixel of films for which these are [`ENOUGH_SAMPLES`]. Unit: samples.
+pub(super) const MOST_OF_PIXEL: u64 = 16;
+/// The smallest films have as many. Unit: samples, a power of two.
+pub(super) const ENOUGH_SAMPLES: u64 = 1 << 10;
 /// Nothing is learned about connections from fewer. Unit: samples, a power of two.
 pub(super) const LEAST_SAMPLES: u64 = 1 << 6;
 /// The first samples, whose work decides how many follow. Unit: samples, a power of two.

@@ -5,18 +5,22 @@
 //! 2¹⁴ (w₀ / w)²,
 //!
 //! and not below 2⁶: the longer subpaths are, the less time training takes, which is then the least of it.
+//! Films of fewer than 2¹⁰ pixels get no more than 16 samples for each pixel, but no fewer than 2¹⁰ for that
+//! reason: training does not take much longer than their render, and a crop of four pixels is spread evenly.
 //!
 //! Training only estimates what estimators choose by, so fewer samples add no bias. Work is counted and
 //! not timed: a scene is trained alike on every machine.
 
-use super::constants::{LEAST_SAMPLES, MOST_SAMPLES, USUAL_WORK};
+use super::constants::{ENOUGH_SAMPLES, LEAST_SAMPLES, MOST_OF_PIXEL, MOST_SAMPLES, USUAL_WORK};
 use crate::stats::Stats;
 
-/// The number of samples where one makes so much work: a power of two. Unit of work: as [`work`].
-pub(super) fn samples(work: f64) -> u64 {
+/// The number of samples for so many pixels where a sample makes so much work: a power of two. Unit of work: as
+/// [`work`].
+pub(super) fn samples(pixels: u64, work: f64) -> u64 {
     let ratio = USUAL_WORK / work.max(USUAL_WORK);
-    let samples = MOST_SAMPLES as f64 * ratio * ratio;
-    1 << (samples as u64).max(LEAST_SAMPLES).ilog2()
+    let affordable = MOST_SAMPLES as f64 * ratio * ratio;
+    let most = pixels.saturating_mul(MOST_OF_PIXEL).max(ENOUGH_SAMPLES);
+    1 << (affordable as u64).min(most).max(LEAST_SAMPLES).ilog2()
 }
 
 /// The mean cost of a sample. Unit: rays and connections.
@@ -39,7 +43,19 @@ mod tests {
             (1e9, LEAST_SAMPLES),
             (f64::INFINITY, LEAST_SAMPLES),
         ] {
-            assert_eq!(samples(work), expected, "{work}");
+            assert_eq!(samples(u64::MAX, work), expected, "{work}");
+        }
+    }
+
+    #[test]
+    fn small_films_have_fewer_samples() {
+        for (pixels, expected) in [
+            (1, ENOUGH_SAMPLES),
+            (127, ENOUGH_SAMPLES),
+            (128, 2048),
+            (1024, MOST_SAMPLES),
+        ] {
+            assert_eq!(samples(pixels, 0.0), expected, "{pixels}");
         }
     }
 }

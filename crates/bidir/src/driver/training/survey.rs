@@ -38,7 +38,8 @@ impl Survey {
         let surveyor = Surveyor::new(task);
         let first = surveyor.round(0..FIRST_SAMPLES, &|| false);
         let mut survey = first.unwrap_or_default();
-        let wanted = extent::samples(extent::work(&survey.stats));
+        let pixels = task.view.film().crop.area();
+        let wanted = extent::samples(pixels, extent::work(&survey.stats));
         loop {
             let count = survey.stats.samples;
             survey.is_short = count < wanted;
@@ -231,13 +232,25 @@ mod tests {
             ..Settings::default()
         };
         settings.path.strategies = strategies.parse().expect("a list of strategies");
+        let trainings = (0..16).map(|seed| {
+            let settings = Settings {
+                seed,
+                ..settings.clone()
+            };
+            let task = Task {
+                scene: &scene,
+                view: &view,
+                settings: &settings,
+            };
+            let survey = Survey::run(task, Effort::WHOLE);
+            survey.luminance / survey.samples()
+        });
+        let trained = trainings.sum::<f64>() as f32 / 16.0;
         let mut session = Session::new(&scene, &view, settings, &Resources::default())
             .expect("the film is small");
-        let trained = session.training().map(|training| training.mean_luminance);
         while session.film().passes().len() < 4096 && session.step(&()) {}
         let pixels = session.film().develop().pixels;
         let mean = pixels.iter().copied().map(luminance).sum::<f32>() / pixels.len() as f32;
-        let trained = trained.expect("roulette is trained");
         let difference = (trained / mean - 1.0).abs();
         assert!(difference < tolerance, "{strategies}: {trained} for {mean}");
     }

@@ -147,7 +147,7 @@ fn rendered(integrator: IntegratorKind, effort: Effort<'_>) -> (Vec<[u32; 3]>, u
     let pixels = session.film().develop().pixels;
     let bits = pixels.iter().map(|pixel| pixel.map(f32::to_bits));
     let training = session.training().expect("there is some");
-    assert_eq!(training.is_short, training.samples < 1 << 14);
+    assert_eq!(training.is_short, training.samples < 1 << 12);
     (bits.collect(), training.samples)
 }
 
@@ -156,7 +156,7 @@ fn rendered(integrator: IntegratorKind, effort: Effort<'_>) -> (Vec<[u32; 3]>, u
 fn training_that_ends_late_is_training_with_as_many_samples() {
     let asked = AtomicU64::new(0);
     for integrator in [IntegratorKind::Lvc, IntegratorKind::Auto] {
-        for (questions, expected) in [(0, 16), (70, 64), (1 << 20, 1 << 14)] {
+        for (questions, expected) in [(0, 16), (70, 64), (1 << 20, 1 << 12)] {
             asked.store(0, Ordering::Relaxed);
             let effort = Effort {
                 samples: u64::MAX,
