@@ -5,8 +5,8 @@ use super::stages::lens_vertex;
 use super::{Entry, Fate, Link};
 use crate::contribution::{Term, is_summable};
 use crate::path::{
-    Arrival, Connections, JoinedPath, PathContext, PathDensities, PathSettings, RunningSums,
-    Shares, Subpaths, Weights,
+    Arrival, ConnectionPart, Connections, JoinedPath, PathContext, PathDensities, PathSettings,
+    RunningSums, Shares, Subpaths, Weights,
 };
 use crate::sampler::{Dimension, Purpose, SampleStream};
 use crate::scene::Scene;
@@ -189,18 +189,19 @@ impl Batch {
     }
 
     /// The shares of the path of `entry`; `candidate` is the candidate that it was, if it was one. None: the sample
-    /// has no such path.
+    /// has no such path. `each` gets the parts of single connections.
     pub(crate) fn shares(
         &self,
         context: &PathContext<'_>,
         entry: &Entry,
         candidate: Option<&Candidate>,
         densities: &mut PathDensities,
+        each: &mut Vec<ConnectionPart>,
     ) -> Option<Shares> {
         let (number, term) = (entry.sample as usize, &entry.contribution.term);
         let (s, t) = (usize::from(term.strategy.s), usize::from(term.strategy.t));
         let walk = self.camera.get(number);
-        let mut shares = |path: JoinedPath<'_>| path.shares(context, densities);
+        let mut shares = |path: JoinedPath<'_>| path.shares(context, densities, each);
         Some(match candidate {
             Some(candidate) => {
                 let z = candidate.vertices[0] as usize;

@@ -47,7 +47,7 @@ pub use roulette::PathRoulette;
 pub use running::{LightSums, PathSums, RunningSums, Weights};
 pub use scatter::Turn;
 pub use segment::Segment;
-pub(crate) use shares::Shares;
+pub(crate) use shares::{ConnectionPart, Shares};
 pub use vertex::{Vertex, VertexKind};
 pub use walk::{Escape, Subpath, Subpaths, camera_subpath, light_subpath};
 

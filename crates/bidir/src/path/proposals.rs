@@ -5,7 +5,9 @@
 //! With X the contribution of a connection, weighted and behind what is in its way, the variance of
 //! one candidate is least where Γ(c | r) ∝ κ_c √E[X² | r, c], κ_c the mean of K_c for a light subpath.
 //! In a training render whose candidates are uniform, pairs of cells come up in proportion to κ_c, so
-//! that this is √(κ_c Σ X²), the sum over the candidates of the pair.
+//! that this is √(κ_c Σ X²), the sum over the candidates of the pair. A path that any strategy finds tells
+//! of all the connections that could have made it: by the balance heuristic, strategy k has the part
+//! n_k p_k / Σ_j n_j p_j of its X², which adds up to the same sum on average, with less noise.
 //!
 //! **Weights** need the number of samples that a strategy takes of a path, as a function of the path
 //! alone: K and K_c are of the group at hand, and κ and κ_c stand in for them,
@@ -71,13 +73,12 @@ impl PairSums {
         }
     }
 
-    /// Adds a connection of pair number `pair`, by the square of what arrived. None: it was blocked.
-    pub(crate) fn add(&mut self, pair: usize, square: Option<f64>) {
-        self.see(pair, square.is_some());
-        self.squares[pair] += square.unwrap_or(0.0);
+    /// Adds to Σ X² of pair number `pair`.
+    pub(crate) fn add(&mut self, pair: usize, square: f64) {
+        self.squares[pair] += square;
     }
 
-    /// Adds to what is known of the visibility of pair number `pair` alone.
+    /// Adds a connection of pair number `pair` that was traced.
     pub(crate) fn see(&mut self, pair: usize, has_arrived: bool) {
         let [traced, arrived] = &mut self.arrived[pair];
         *traced += 1;
@@ -252,8 +253,8 @@ mod tests {
             [Vec3::X, Vec3::Y, Vec3::Z, -Vec3::Z].map(|n| cells.of(Vec3::ZERO, n));
         let mut sums = PairSums::uniform(vec![1.0; Cells::COUNT]);
         for i in 0..99 {
-            sums.add(Cells::pair(seen, y), (i % 4 == 0).then_some(1.0));
-            sums.add(Cells::pair(hidden, y), None);
+            sums.see(Cells::pair(seen, y), i % 4 == 0);
+            sums.see(Cells::pair(hidden, y), false);
         }
         let proposals = LightProposals::new(cells, &sums);
         let root = |light| f64::from(proposals.root_visibility(light, y));
@@ -263,11 +264,11 @@ mod tests {
     }
 
     #[test]
-    fn what_is_seen_of_light_points_changes_visibility_alone() {
+    fn traced_connections_change_visibility_alone() {
         let cells = Cells::new(&mut []);
         let mut sums = PairSums::uniform(vec![1.0; Cells::COUNT]);
         let [z, y] = [3, 5].map(Cells::cell);
-        sums.add(Cells::pair(y, y), Some(1.0));
+        sums.add(Cells::pair(y, y), 1.0);
         let before = LightProposals::new(cells.clone(), &sums);
         for i in 0..99 {
             sums.see(Cells::pair(z, y), i % 4 == 0);
@@ -286,7 +287,7 @@ mod tests {
         // Some cells take most of the numbers, others none.
         for light in (0..Cells::COUNT).filter(|light| light % 7 > 2) {
             let square = (light % 7 * light % 11) as f64;
-            sums.add(Cells::pair(Cells::cell(light), y), Some(square));
+            sums.add(Cells::pair(Cells::cell(light), y), square);
         }
         let proposals = LightProposals::new(cells, &sums);
         let row = proposals.row(y);

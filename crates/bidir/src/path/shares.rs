@@ -5,6 +5,9 @@
 use super::mis::for_each_other;
 use super::{JoinedPath, MisHeuristic, PathContext, PathDensities};
 
+/// The number of light vertices of a connection with a vertex of a light walk, and its part of D.
+pub(crate) type ConnectionPart = (u16, f32);
+
 /// The parts of D of a path by kinds of strategies, which sum to 1. Pairs are of t = 2 and of t > 2.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Shares {
@@ -24,12 +27,14 @@ pub(crate) struct Shares {
 }
 
 impl JoinedPath<'_> {
-    /// The shares of the path, by the balance heuristic.
+    /// The shares of the path, by the balance heuristic. `each` gets those of single connections.
     pub(crate) fn shares(
         &self,
         context: &PathContext<'_>,
         densities: &mut PathDensities,
+        each: &mut Vec<ConnectionPart>,
     ) -> Shares {
+        each.clear();
         densities.gather(context, self);
         let n = self.len();
         let first_walked = context.settings.light_point.first_walked();
@@ -37,12 +42,16 @@ impl JoinedPath<'_> {
         let [mut next_events, mut connections] = [[0.0; 2]; 2];
         let mut add = |j: usize, ratio: f64| {
             let deeper = usize::from(n - j > 2);
+            let samples = self.count(context, j) * ratio;
             *match (j, n - j) {
                 (0, _) => &mut hits,
                 (_, 1) => &mut light_images,
                 _ if j < first_walked => &mut next_events[deeper],
-                _ => &mut connections[deeper],
-            } += self.count(context, j) * ratio;
+                _ => {
+                    each.push((j as u16, samples as f32));
+                    &mut connections[deeper]
+                }
+            } += samples;
         };
         add(self.strategy(), 1.0);
         for_each_other(densities, self.strategy(), add);
@@ -52,6 +61,9 @@ impl JoinedPath<'_> {
         let pairs = next_events.iter().chain(&connections);
         let all = hits + light_images + pairs.sum::<f64>();
         let part = |part: f64| (part / all) as f32;
+        for (_, samples) in each.iter_mut() {
+            *samples = part(f64::from(*samples));
+        }
         Shares {
             hits: part(hits),
             next_events: next_events.map(part),

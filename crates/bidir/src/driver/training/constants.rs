@@ -18,6 +18,10 @@ pub(super) const GROUPS: u64 = 64;
 /// connections.
 pub(super) const USUAL_WORK: f64 = 256.0;
 
+/// The most connections that a path tells of: longer paths only of the one that made it. Bounds memory where
+/// subpaths are long.
+pub(super) const MOST_PARTS: usize = 16;
+
 /// Blocks along each side of the film, of each of which variances are relative to the mean.
 pub(super) const BLOCKS_PER_SIDE: usize = 16;
 /// ε relative to the square of the image's mean: bounds what dark blocks count.

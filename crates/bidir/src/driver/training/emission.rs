@@ -10,15 +10,23 @@ use super::constants::{LIGHT_PRIOR, POWER_FRACTION};
 use crate::light::LightChoice;
 use crate::path::{Cell, Cells};
 
-/// A connection that was traced.
+/// A connection of two cells.
 #[derive(Clone, Copy)]
 pub(super) struct Connection {
     /// The light that its light subpath begins on. None: it is with a light point of next-event estimation.
     pub(super) light: Option<u32>,
     /// The cells of its light vertex and of its camera vertex.
     pub(super) cells: [Cell; 2],
-    /// The square of what arrived. None: it was blocked.
-    pub(super) square: Option<f64>,
+    pub(super) evidence: Evidence,
+}
+
+/// What is known of a connection.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Evidence {
+    /// It was traced, and arrived or not.
+    Traced(bool),
+    /// It could have made a path, of whose square this is its part.
+    Square(f64),
 }
 
 /// The choice that suits what `found` connections contribute, whose `subpaths` chose by `power`. None: it is
@@ -64,13 +72,17 @@ fn relative_moments(lights: usize, found: &[Connection]) -> Vec<f64> {
     let mut of_cells = vec![[0.0, 0.0]; Cells::COUNT];
     for (connection, _) in walked() {
         let [sum, count] = &mut of_cells[connection.cells[1].index()];
-        *sum += connection.square.unwrap_or(0.0);
-        *count += 1.0;
+        match connection.evidence {
+            Evidence::Traced(_) => *count += 1.0,
+            Evidence::Square(square) => *sum += square,
+        }
     }
     let mut moments = vec![0.0; lights];
     for (connection, light) in walked() {
         let [sum, count] = of_cells[connection.cells[1].index()];
-        if let Some(square) = connection.square.filter(|square| *square > 0.0) {
+        if let Evidence::Square(square) = connection.evidence
+            && square > 0.0
+        {
             moments[light] += square * count / sum;
         }
     }
@@ -87,12 +99,14 @@ mod tests {
         LightChoice::with_weights(weights.iter().copied())
     }
 
-    fn connection(light: u32, camera: usize, square: Option<f64>) -> Connection {
-        Connection {
+    /// A connection, by the square of what arrived. None: it was blocked.
+    fn connection(light: u32, camera: usize, square: Option<f64>) -> [Connection; 2] {
+        let traced = Evidence::Traced(square.is_some());
+        [traced, Evidence::Square(square.unwrap_or(0.0))].map(|evidence| Connection {
             light: Some(light),
             cells: [0, camera].map(Cells::cell),
-            square,
-        }
+            evidence,
+        })
     }
 
     fn probs(power: &LightChoice, found: &[Connection]) -> Vec<f64> {
@@ -109,7 +123,8 @@ mod tests {
             connection(0, 3, Some(2.0)),
             connection(1, 3, None),
             connection(1, 3, Some(0.0)),
-        ];
+        ]
+        .concat();
         let probs = probs(&power, &seen);
         // Of 8192 subpaths none brought anything: as if 16 of all had.
         let hidden = libm::sqrt(16.0 / (16384.0 + 16.0));
@@ -122,21 +137,21 @@ mod tests {
     #[test]
     fn a_dark_corner_counts_as_much_as_what_is_bright() {
         let power = by_power(&[1.0, 1.0]);
-        let seen = [connection(0, 3, Some(1e6)), connection(1, 5, Some(1e-6))];
+        let seen = [connection(0, 3, Some(1e6)), connection(1, 5, Some(1e-6))].concat();
         assert!((probs(&power, &seen)[0] - 0.5).abs() < 1e-6);
     }
 
     #[test]
     fn of_a_light_that_hardly_began_a_subpath_nothing_is_known() {
         let power = by_power(&[1.0, 1e-4]);
-        let probs = probs(&power, &[connection(0, 3, Some(1.0))]);
+        let probs = probs(&power, &connection(0, 3, Some(1.0)));
         assert!((0.9e-4..1.0e-4).contains(&probs[1]), "{probs:?}");
     }
 
     #[test]
     fn where_there_is_no_choice_nothing_is_learned() {
-        assert!(learned(&by_power(&[1.0]), &[connection(0, 3, Some(1.0))], SUBPATHS).is_none());
-        assert!(learned(&by_power(&[1.0, 1.0]), &[connection(0, 3, None)], SUBPATHS).is_none());
+        assert!(learned(&by_power(&[1.0]), &connection(0, 3, Some(1.0)), SUBPATHS).is_none());
+        assert!(learned(&by_power(&[1.0, 1.0]), &connection(0, 3, None), SUBPATHS).is_none());
         assert!((gain(&by_power(&[1.0]), None, 0) - 1.0).abs() < 1e-12);
     }
 }

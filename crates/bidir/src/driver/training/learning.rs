@@ -1,25 +1,36 @@
 //! Learns from the connections of the survey, before the first pass: which light vertices to propose to camera
 //! vertices, which of them are visible, and where light subpaths begin.
 
-use super::constants::LEAST_SAMPLES;
-use super::emission::{self, Connection};
+use super::constants::{LEAST_SAMPLES, MOST_PARTS};
+use super::emission::{self, Connection, Evidence};
 use super::moments::Counts;
 use super::survey::Survey;
-use super::{Settings, Training};
+use super::{Settings, Task, Training};
+use crate::contribution;
+use crate::film::FilmSettings;
 use crate::integrator::{Batch, Job, LightStart, ProposalKind, connectable};
 use crate::math::Vec3;
-use crate::path::{Cell, Cells, LightProposals, PairSums};
-use crate::scene::Scene;
+use crate::path::{Cell, Cells, ConnectionPart, LightProposals, PairSums};
+use crate::select::Candidate;
+use crate::strategy::Strategy;
 
-/// A connection that was traced.
+/// The ends of a connection.
 #[derive(Clone, Copy)]
-struct Traced {
+struct Ends {
     /// The places of its light vertex and of its camera vertex, by number.
     places: [u32; 2],
     /// The light that its light subpath begins on. None: it is with a light point of next-event estimation.
     light: Option<u32>,
-    /// The number of its term. None: it was blocked.
-    term: Option<u32>,
+}
+
+/// A connection that could have made a path.
+#[derive(Clone, Copy)]
+struct Possible {
+    ends: Ends,
+    /// The number of the path's term.
+    term: u32,
+    /// Its part of D.
+    part: f32,
 }
 
 /// Vertices and connections of samples.
@@ -31,7 +42,37 @@ pub(super) struct Found {
     light: Vec<(u32, u32)>,
     /// The camera vertices that can be connected, by place.
     camera: Vec<u32>,
-    traced: Vec<Traced>,
+    /// The connections that were traced, and if they arrived.
+    traced: Vec<(Ends, bool)>,
+    possible: Vec<Possible>,
+    /// Of the sample that was begun last.
+    sample: Places,
+}
+
+/// The numbers of the first places of a sample's light vertices and camera vertices.
+#[derive(Clone, Copy, Default)]
+struct Places {
+    light: u32,
+    camera: u32,
+}
+
+impl Places {
+    /// Of light vertex number `z` and of camera vertex number `y`.
+    fn of(self, [z, y]: [u32; 2]) -> [u32; 2] {
+        [self.light + z, self.camera + y]
+    }
+
+    /// Of the vertices x_{j-1} and x_j of a path of `strategy`, whose light vertices end before number `end`.
+    fn of_edge(self, strategy: Strategy, end: u32, j: u16) -> [u32; 2] {
+        let (s, t) = (u32::from(strategy.s), u32::from(strategy.t));
+        [j - 1, j].map(u32::from).map(|i| {
+            if i < s {
+                self.light + end + i - s
+            } else {
+                self.camera + s + t - 1 - i
+            }
+        })
+    }
 }
 
 impl Found {
@@ -44,38 +85,79 @@ impl Found {
             .extend(light.map(|&(place, light)| (place + places, light)));
         let camera = more.camera.iter().map(|place| place + places);
         self.camera.extend(camera);
-        self.traced.extend(more.traced.iter().map(|traced| Traced {
-            places: traced.places.map(|place| place + places),
-            term: traced.term.map(|term| term + terms),
-            ..*traced
+        let moved = |ends: Ends| Ends {
+            places: ends.places.map(|place| place + places),
+            ..ends
+        };
+        let traced = more.traced.iter();
+        self.traced
+            .extend(traced.map(|&(ends, has_arrived)| (moved(ends), has_arrived)));
+        let possible = more.possible.iter();
+        self.possible.extend(possible.map(|possible| Possible {
+            ends: moved(possible.ends),
+            term: possible.term + terms,
+            ..*possible
         }));
     }
 
-    /// Adds the vertices and connections of the one sample of `batch`; `terms` has the numbers of the connections'
-    /// terms.
-    pub(super) fn keep(&mut self, job: &Job<'_>, batch: &Batch, terms: &[Option<u32>]) {
+    /// Adds the vertices of the one sample of `batch`. The connections that follow are of this sample.
+    pub(super) fn begin(&mut self, job: &Job<'_>, batch: &Batch) {
         let [walk, camera] = [&batch.light, &batch.camera].map(|walks| walks.get(0).vertices);
-        let first = self.places.len();
-        let place = |i: usize| (first + i) as u32;
         let light = batch.light.vertices();
-        let camera_place = |i: usize| place(light.len() + i);
+        let first = self.places.len() as u32;
+        self.sample = Places {
+            light: first,
+            camera: first + light.len() as u32,
+        };
         let all = light.iter().chain(camera);
         self.places.extend(all.map(crate::path::Vertex::place));
-        let light_vertex = |i: usize| Some((place(i), walk[0].light?));
+        let [z, y] = self.sample.of([0; 2]);
+        let light_vertex = |i: usize| Some((z + i as u32, walk[0].light?));
         let connectable = connectable(job.settings.light_point, walk);
         self.light.extend(connectable.filter_map(light_vertex));
         let ends = (1..camera.len()).filter(|&i| !camera[i].is_delta());
-        self.camera.extend(ends.map(camera_place));
-        for (candidate, &term) in batch.candidates.iter().zip(terms) {
-            let [z, y] = candidate.vertices.map(|vertex| vertex as usize);
-            if !light[z].locus.is_infinite() {
-                self.traced.push(Traced {
-                    places: [place(z), camera_place(y)],
-                    light: (z < walk.len()).then_some(candidate.term.light),
-                    term,
-                });
-            }
+        self.camera.extend(ends.map(|i| y + i as u32));
+    }
+
+    /// Adds a connection that was traced.
+    pub(super) fn trace(&mut self, batch: &Batch, candidate: &Candidate, has_arrived: bool) {
+        let z = candidate.vertices[0] as usize;
+        if !batch.light.vertices()[z].locus.is_infinite() {
+            let is_walked = z < batch.light.get(0).vertices.len();
+            let ends = Ends {
+                places: self.sample.of(candidate.vertices),
+                light: is_walked.then_some(candidate.term.light),
+            };
+            self.traced.push((ends, has_arrived));
         }
+    }
+
+    /// Adds the connections, by their `parts`, that could have made the path of `made`, the term with number
+    /// `term`; `candidate` is the candidate that it was, if it was one.
+    pub(super) fn path(
+        &mut self,
+        made: &contribution::Term,
+        candidate: Option<&Candidate>,
+        parts: &[ConnectionPart],
+        term: u32,
+    ) {
+        let s = u32::from(made.strategy.s);
+        let end = candidate.map_or(s, |candidate| candidate.vertices[0] + 1);
+        let (sample, count) = (self.sample, self.places.len() as u32);
+        let is_long = parts.len() > MOST_PARTS;
+        let is_own = |j: u16| candidate.is_some() && u32::from(j) == s;
+        let counted = parts.iter().filter(|&&(j, _)| !is_long || is_own(j));
+        let possible = counted.map(|&(j, part)| Possible {
+            ends: Ends {
+                places: sample.of_edge(made.strategy, end, j),
+                light: Some(made.light),
+            },
+            term,
+            part: if is_long { 1.0 } else { part },
+        });
+        // A walk that escaped to the light has no vertex there.
+        let exists = |possible: &Possible| possible.ends.places[0] < count;
+        self.possible.extend(possible.filter(exists));
     }
 
     /// Cells that suit the vertices.
@@ -98,18 +180,21 @@ impl Survey {
         self.found.light.len() as f64 / self.samples()
     }
 
-    /// The connections, by what they contribute where the numbers of samples are `counts`.
-    fn connections(&self, cells: &Cells, counts: &Counts) -> Vec<Connection> {
-        let square = |term: u32| {
-            let value = self.terms[term as usize].value_by(counts);
-            value * value
+    /// What is known of connections; squares are those where the numbers of samples are `counts`.
+    fn connections(&self, film: &FilmSettings, cells: &Cells, counts: &Counts) -> Vec<Connection> {
+        let connection = |ends: Ends, evidence| Connection {
+            light: ends.light,
+            cells: ends.places.map(|place| self.found.cell(cells, place)),
+            evidence,
         };
-        let connection = |traced: &Traced| Connection {
-            light: traced.light,
-            cells: traced.places.map(|place| self.found.cell(cells, place)),
-            square: traced.term.map(square),
-        };
-        self.found.traced.iter().map(connection).collect()
+        let traced = self.found.traced.iter();
+        let traced = traced.map(|&(ends, arrived)| connection(ends, Evidence::Traced(arrived)));
+        let possible = self.found.possible.iter().map(|possible| {
+            let value = self.terms[possible.term as usize].value_by(film, counts);
+            let square = value * value * f64::from(possible.part);
+            connection(possible.ends, Evidence::Square(square))
+        });
+        traced.chain(possible).collect()
     }
 
     /// Sums without connections, with the light vertices of each cell where a light begins `gain` times as many
@@ -126,14 +211,15 @@ impl Survey {
 
 impl Training {
     /// Learns for the estimator of `settings`, where that learns and `survey` has enough samples.
-    pub(super) fn learn(&mut self, scene: &Scene, settings: &Settings, survey: &Survey) {
+    pub(super) fn learn(&mut self, task: Task<'_>, settings: &Settings, survey: &Survey) {
         let is_enough = survey.stats.samples >= LEAST_SAMPLES && self.light_vertices > 0.0;
         if !settings.learns() || !is_enough {
             return;
         }
-        let (power, cells) = (scene.light_choice(), survey.found.cells());
+        let (power, cells) = (task.scene.light_choice(), survey.found.cells());
+        let film = task.view.film();
         let counts = Counts::new(settings, settings.path.roulette, self.light_vertices);
-        let connections = survey.connections(&cells, &counts);
+        let connections = survey.connections(film, &cells, &counts);
         if settings.lvc.light_start == LightStart::Learned {
             self.emission = emission::learned(power, &connections, survey.samples());
         }
@@ -143,10 +229,11 @@ impl Training {
         if settings.lvc.proposal == ProposalKind::Learned {
             for connection in &connections {
                 let pair = Cells::pair(connection.cells[0], connection.cells[1]);
-                match connection.light {
+                match (connection.evidence, connection.light) {
+                    (Evidence::Traced(has_arrived), _) => sums.see(pair, has_arrived),
                     // Of a light that begins g times as many subpaths each contributes 1/g.
-                    Some(light) => sums.add(pair, connection.square.map(|x| x / gain(light))),
-                    None => sums.see(pair, connection.square.is_some()),
+                    (Evidence::Square(square), Some(light)) => sums.add(pair, square / gain(light)),
+                    (Evidence::Square(_), None) => {}
                 }
             }
             self.proposals = Some(LightProposals::new(cells, &sums));
@@ -159,6 +246,7 @@ mod tests {
     use super::*;
     use crate::driver::training::{
         Effort, Task,
+        moments::Term,
         tests::{WHOLE, room, view},
     };
     use crate::integrator::IntegratorKind;
@@ -178,6 +266,8 @@ mod tests {
             light,
             camera,
             traced,
+            possible,
+            ..
         } = &survey.found;
         // The walls and the balls, by the distance from their centres.
         let is_on_surface = |place: u32| {
@@ -190,18 +280,44 @@ mod tests {
         };
         assert!(camera.iter().all(|&place| is_on_surface(place)));
         assert!(light.iter().all(|&(place, _)| is_on_surface(place)));
+        let is_walked = |z: u32| light.binary_search_by_key(&z, |&(place, _)| place).is_ok();
         let mut arrived = [0; 2];
-        for connection in traced {
-            let [z, y] = connection.places;
+        for &(ends, has_arrived) in traced {
+            let [z, y] = ends.places;
             assert!(camera.binary_search(&y).is_ok() && is_on_surface(z));
-            let is_walked = light.binary_search_by_key(&z, |&(place, _)| place).is_ok();
-            assert_eq!(is_walked, connection.light.is_some());
-            if let Some(term) = connection.term {
-                arrived[usize::from(is_walked)] += 1;
-                // The strategy that made the path has a share of it.
-                assert!(survey.terms[term as usize].has_share_of(is_walked));
-            }
+            assert_eq!(is_walked(z), ends.light.is_some());
+            arrived[usize::from(is_walked(z))] += usize::from(has_arrived);
         }
         assert!(arrived.iter().all(|&count| count > 1000), "{arrived:?}");
+        for possible in possible {
+            let [z, y] = possible.ends.places;
+            assert!(is_on_surface(z) && is_on_surface(y));
+            // Strategies that could have made the path have a share of it.
+            assert!(survey.terms[possible.term as usize].has_share_of_connections());
+        }
+    }
+
+    /// Two estimates of the second moment of connections: by the paths that they made, and by their parts of all
+    /// paths.
+    #[test]
+    fn all_strategies_tell_the_second_moment_of_connections() {
+        let (scene, view) = (room(), view(WHOLE));
+        let settings = Settings::new(IntegratorKind::Bdpt);
+        let task = Task {
+            scene: &scene,
+            view: &view,
+            settings: &settings,
+        };
+        let survey = Survey::run(task, Effort::WHOLE);
+        let counts = Counts::new(&settings, settings.path.roulette, survey.light_vertices());
+        let square = |term: &Term| term.value_by(view.film(), &counts).powi(2);
+        let own = survey.terms.iter().filter(|term| term.is_connection());
+        let own: f64 = own.map(square).sum();
+        let all = survey.found.possible.iter().map(|possible| {
+            let term = &survey.terms[possible.term as usize];
+            square(term) * f64::from(possible.part)
+        });
+        let all: f64 = all.sum();
+        assert!((all / own - 1.0).abs() < 0.02, "{all} for {own}");
     }
 }

@@ -81,7 +81,7 @@ pub(super) fn prepare(
     let plan = is_open.then(|| Plan::best(task, &survey));
     let mut decided = plan.map_or_else(|| settings.clone(), |plan| plan.apply(&settings));
     let mut training = Training::new(&survey);
-    training.learn(scene, &decided, &survey);
+    training.learn(task, &decided, &survey);
     training.bound_cache(view.film(), &mut decided);
     training.plan = plan.map(|plan| Plan {
         samples_per_subpath: decided.lvc.samples_per_subpath,

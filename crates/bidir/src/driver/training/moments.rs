@@ -33,7 +33,7 @@ const STARTS: usize = 3;
 pub(super) struct Term {
     /// The number of its pixel in the crop.
     pixel: u32,
-    is_light_image: bool,
+    strategy: Strategy,
     /// v. Unit: luminance.
     value: f32,
     shares: Shares,
@@ -49,24 +49,28 @@ impl Term {
     ) -> Self {
         Self {
             pixel: pixel as u32,
-            is_light_image: contribution.term.strategy.t == 1,
+            strategy: contribution.term.strategy,
             value: context.luminance(contribution.value()) * part,
             shares,
         }
     }
 
+    fn is_light_image(&self) -> bool {
+        self.strategy.t == 1
+    }
+
     /// Its part of the mean of `film`: there is a sample for each pixel, and a light image for the film.
     pub(super) fn of_mean_pixel(&self, film: &FilmSettings) -> f64 {
-        if self.is_light_image {
+        if self.is_light_image() {
             f64::from(self.value) / film.light_paths() as f64
         } else {
             self.value.into()
         }
     }
 
-    /// f / D_k: the value where the numbers of samples are `counts`.
-    pub(super) fn value_by(&self, counts: &Counts) -> f64 {
-        f64::from(self.value) / counts.share(&self.shares)
+    /// f / D_k: what it is of the value of a pixel of `film` where the numbers of samples are `counts`.
+    pub(super) fn value_by(&self, film: &FilmSettings, counts: &Counts) -> f64 {
+        self.of_mean_pixel(film) / counts.share(&self.shares)
     }
 }
 
@@ -205,7 +209,7 @@ impl Survey {
         // The block of a term, and s of (4).
         let place = |term: &Term| {
             let block = blocks.of(term.pixel as usize);
-            let count = if term.is_light_image {
+            let count = if term.is_light_image() {
                 self.samples() * blocks.size(block)
             } else {
                 samples[block]
@@ -221,7 +225,7 @@ impl Survey {
         let square = |term: &Term| {
             let (block, scale) = place(term);
             let value = f64::from(term.value);
-            let in_pass = if term.is_light_image {
+            let in_pass = if term.is_light_image() {
                 blocks.pixels()
             } else {
                 1.0
@@ -250,15 +254,14 @@ mod tests {
     };
 
     impl Term {
-        /// True where connections with light walks, or else light points, can make the path.
-        pub(in crate::driver::training) fn has_share_of(&self, walks: bool) -> bool {
-            let Shares {
-                connections,
-                next_events,
-                ..
-            } = self.shares;
-            let parts = if walks { connections } else { next_events };
-            parts.iter().sum::<f32>() > 0.0 && !self.is_light_image
+        /// True where a connection with a light walk made the path.
+        pub(in crate::driver::training) fn is_connection(&self) -> bool {
+            self.strategy.s > 1 && self.strategy.t > 1
+        }
+
+        /// True where connections with light walks can make the path.
+        pub(in crate::driver::training) fn has_share_of_connections(&self) -> bool {
+            self.shares.connections.iter().sum::<f32>() > 0.0
         }
     }
 

@@ -72,29 +72,35 @@ impl Survey {
         let (context, film) = (job.context(sample), job.view.film());
         let [x, y] = sample.pixel.map(i64::from);
         let own = film.crop.index(x, y).map(|pixel| (pixel, 1.0));
-        let mut densities = PathDensities::default();
+        let (mut densities, mut parts) = (PathDensities::default(), Vec::new());
+        self.found.begin(job, batch);
         let mut keep = |entry: &Entry, candidate: Option<&Candidate>| {
             let landed = match entry.link {
                 Link::Walk | Link::Connection(_) => own,
                 Link::LightImage(_, place) => film.pick_pixel(place),
             };
-            let shares = batch.shares(&context, entry, candidate, &mut densities)?;
+            let shares = batch.shares(&context, entry, candidate, &mut densities, &mut parts)?;
             let term = Term::new(&context, &entry.contribution, landed?, shares);
             self.luminance += term.of_mean_pixel(film);
+            let (made, number) = (&entry.contribution.term, self.terms.len() as u32);
+            self.found.path(made, candidate, &parts, number);
             self.terms.push(term);
-            Some(self.terms.len() as u32 - 1)
+            Some(())
         };
         let entries = batch.entries.iter().chain(&batch.splats);
         let certain = |entry: &&Entry| !matches!(entry.link, Link::Connection(_));
         for entry in entries.filter(certain).filter(|entry| entry.is_added()) {
             keep(entry, None);
         }
-        let terms = batch.connections().map(|(candidate, entry)| {
-            let added = entry.filter(|entry| entry.is_added())?;
-            keep(added, Some(candidate))
-        });
-        let terms: Vec<_> = terms.collect();
-        self.found.keep(job, batch, &terms);
+        for (candidate, entry) in batch.connections() {
+            if let Some(added) = entry.filter(|entry| entry.is_added()) {
+                keep(added, Some(candidate));
+            }
+        }
+        for (candidate, entry) in batch.connections() {
+            let has_arrived = entry.is_some_and(Entry::is_added);
+            self.found.trace(batch, candidate, has_arrived);
+        }
         self.work.add(job, batch);
     }
 }
