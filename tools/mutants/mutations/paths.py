@@ -292,9 +292,23 @@ PATHS = [
     (
         "connections of later rounds with vertices of the first",
         "crates/bidir/src/driver/training/learning.rs",
-        "places: traced.places.map(|place| place + places),",
-        "places: traced.places.map(|place| place + 0 * places),",
+        "places: ends.places.map(|place| place + places),",
+        "places: ends.places.map(|place| place + 0 * places),",
         unit("connections_know_their_vertices"),
+    ),
+    (
+        "second moments of connections as if each pixel had all light images",
+        "crates/bidir/src/driver/training/moments.rs",
+        "self.of_mean_pixel(film) / counts.share",
+        "f64::from(self.value) / counts.share",
+        unit("all_strategies_tell_the_second_moment_of_connections"),
+    ),
+    (
+        "paths that tell of the connection that made them twice",
+        "crates/bidir/src/driver/training/learning.rs",
+        "part: if is_long { 1.0 } else { part },",
+        "part: if is_long || is_own(j) { 1.0 } else { part },",
+        unit("all_strategies_tell_the_second_moment_of_connections"),
     ),
     (
         "a round that is late and counts",
@@ -350,7 +364,7 @@ PATHS = [
         "crates/bidir/src/path/proposals.rs",
         "        *arrived += u32::from(has_arrived);\n",
         "        *arrived += u32::from(has_arrived);\n        self.squares[pair] += 1.0;\n",
-        unit("what_is_seen_of_light_points_changes_visibility_alone"),
+        unit("traced_connections_change_visibility_alone"),
     ),
     (
         "light images of fewer subpaths not made up for",

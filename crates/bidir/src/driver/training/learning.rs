@@ -310,7 +310,10 @@ mod tests {
         };
         let survey = Survey::run(task, Effort::WHOLE);
         let counts = Counts::new(&settings, settings.path.roulette, survey.light_vertices());
-        let square = |term: &Term| term.value_by(view.film(), &counts).powi(2);
+        let square = |term: &Term| {
+            let value = term.value_by(view.film(), &counts);
+            value * value
+        };
         let own = survey.terms.iter().filter(|term| term.is_connection());
         let own: f64 = own.map(square).sum();
         let all = survey.found.possible.iter().map(|possible| {
