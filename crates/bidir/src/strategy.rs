@@ -23,6 +23,14 @@ impl Strategy {
             t: t as u16,
         }
     }
+
+    /// The strategy of `s` light vertices for paths of as many vertices.
+    pub(crate) fn with_light_vertices(self, s: u16) -> Self {
+        Self {
+            s,
+            t: self.s + self.t - s,
+        }
+    }
 }
 
 impl fmt::Display for Strategy {

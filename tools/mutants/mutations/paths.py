@@ -304,6 +304,13 @@ PATHS = [
         unit("all_strategies_tell_the_second_moment_of_connections"),
     ),
     (
+        "proposals that count the second camera vertex like those behind it",
+        "crates/bidir/src/driver/training/moments.rs",
+        "self.connections[usize::from(strategy.t > 2)]",
+        "self.connections[usize::from(strategy.t > 1)]",
+        unit("all_strategies_tell_the_second_moment_of_connections"),
+    ),
+    (
         "paths that tell of the connection that made them twice",
         "crates/bidir/src/driver/training/learning.rs",
         "part: if is_long { 1.0 } else { part },",

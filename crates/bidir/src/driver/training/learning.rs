@@ -27,6 +27,8 @@ struct Ends {
 #[derive(Clone, Copy)]
 struct Possible {
     ends: Ends,
+    /// The strategy.
+    strategy: Strategy,
     /// The number of the path's term.
     term: u32,
     /// Its part of D.
@@ -152,6 +154,7 @@ impl Found {
                 places: sample.of_edge(made.strategy, end, j),
                 light: Some(made.light),
             },
+            strategy: made.strategy.with_light_vertices(j),
             term,
             part: if is_long { 1.0 } else { part },
         });
@@ -191,7 +194,8 @@ impl Survey {
         let traced = traced.map(|&(ends, arrived)| connection(ends, Evidence::Traced(arrived)));
         let possible = self.found.possible.iter().map(|possible| {
             let value = self.terms[possible.term as usize].value_by(film, counts);
-            let square = value * value * f64::from(possible.part);
+            let count = counts.of_connection(possible.strategy);
+            let square = count * value * value * f64::from(possible.part);
             connection(possible.ends, Evidence::Square(square))
         });
         traced.chain(possible).collect()
@@ -246,7 +250,6 @@ mod tests {
     use super::*;
     use crate::driver::training::{
         Effort, Task,
-        moments::Term,
         tests::{WHOLE, room, view},
     };
     use crate::integrator::IntegratorKind;
@@ -302,25 +305,31 @@ mod tests {
     #[test]
     fn all_strategies_tell_the_second_moment_of_connections() {
         let (scene, view) = (room(), view(WHOLE));
-        let settings = Settings::new(IntegratorKind::Bdpt);
+        let settings = Settings::new(IntegratorKind::Lvc);
         let task = Task {
             scene: &scene,
             view: &view,
             settings: &settings,
         };
         let survey = Survey::run(task, Effort::WHOLE);
-        let counts = Counts::new(&settings, settings.path.roulette, survey.light_vertices());
-        let square = |term: &Term| {
+        let light_vertices = survey.light_vertices();
+        let counts = Counts::new(&settings, settings.path.roulette, light_vertices);
+        let own = survey.terms.iter().map(|term| {
+            let candidates = match (term.strategy.s, term.strategy.t) {
+                (0 | 1, _) | (_, 1) => 0.0,
+                (_, 2) => 12.0,
+                _ => 1.0,
+            };
             let value = term.value_by(view.film(), &counts);
-            value * value
-        };
-        let own = survey.terms.iter().filter(|term| term.is_connection());
-        let own: f64 = own.map(square).sum();
-        let all = survey.found.possible.iter().map(|possible| {
-            let term = &survey.terms[possible.term as usize];
-            square(term) * f64::from(possible.part)
+            candidates / light_vertices * value * value
         });
-        let all: f64 = all.sum();
+        let own: f64 = own.sum();
+        let all = survey.connections(view.film(), &survey.found.cells(), &counts);
+        let square = |connection: &Connection| match connection.evidence {
+            Evidence::Square(square) => square,
+            Evidence::Traced(_) => 0.0,
+        };
+        let all: f64 = all.iter().map(square).sum();
         assert!((all / own - 1.0).abs() < 0.02, "{all} for {own}");
     }
 }

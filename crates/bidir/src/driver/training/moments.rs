@@ -33,7 +33,7 @@ const STARTS: usize = 3;
 pub(super) struct Term {
     /// The number of its pixel in the crop.
     pixel: u32,
-    strategy: Strategy,
+    pub(super) strategy: Strategy,
     /// v. Unit: luminance.
     value: f32,
     shares: Shares,
@@ -109,6 +109,11 @@ impl Counts {
             light_images,
             start: start.min(STARTS - 1),
         }
+    }
+
+    /// The number of samples of a connection with a light walk.
+    pub(super) fn of_connection(&self, strategy: Strategy) -> f64 {
+        self.connections[usize::from(strategy.t > 2)]
     }
 
     /// D_k / D of a path.
@@ -254,11 +259,6 @@ mod tests {
     };
 
     impl Term {
-        /// True where a connection with a light walk made the path.
-        pub(in crate::driver::training) fn is_connection(&self) -> bool {
-            self.strategy.s > 1 && self.strategy.t > 1
-        }
-
         /// True where connections with light walks can make the path.
         pub(in crate::driver::training) fn has_share_of_connections(&self) -> bool {
             self.shares.connections.iter().sum::<f32>() > 0.0
