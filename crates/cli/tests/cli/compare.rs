@@ -61,6 +61,10 @@ fn other_sizes_are_an_error_unless_averaged() {
         .says("`a.exr` is 24x16, `b.exr` is 12x8")
         .says("--resample");
     place
+        .run("compare a.exr b.exr --reference a.exr --resample")
+        .expect(4)
+        .says("`a.exr` is compared at 24x16, `b.exr` at 12x8");
+    place
         .run("compare a.exr b.exr --resample")
         .expect(0)
         .prints("resampled    A to 12x8");

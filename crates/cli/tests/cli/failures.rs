@@ -122,6 +122,10 @@ fn errors_of_numbers_out_of_range_name_the_range() {
             "error: --strategy-layers: `1` is not a whole number from 2 to",
         ),
         (
+            "--strategy-layers 17",
+            "error: --strategy-layers: `17` is not a whole number from 2 to 16",
+        ),
+        (
             "--shadow-rays budget",
             "`budget` needs a number of rays, such as budget:4",
         ),

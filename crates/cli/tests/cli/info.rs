@@ -106,6 +106,9 @@ fn a_render_warns_of_missing_light() {
     let path = render("--integrator path");
     assert_eq!(path.matches(&missed).count(), 1, "{path}");
     assert_eq!(path.matches(&dark).count(), 1, "{path}");
+    let reference = "reference glass.pbrt --size 12x8 --spp 16 --estimator path --against bdpt -o glass.reference";
+    let reference = place.run(reference).stderr;
+    assert_eq!(reference.matches(&missed).count(), 1, "{reference}");
     // Paths of one scattering event are no caustics.
     let short = render("--integrator path --max-depth 1");
     assert!(!short.contains("misses"), "{short}");

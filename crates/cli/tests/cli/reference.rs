@@ -85,13 +85,19 @@ fn a_difference_is_tested_if_both_images_have_variances() {
         .prints("z_blocks     p ")
         .prints(" standard errors");
     // There is a warning about the test of blocks only if pixels share light subpaths.
-    image("e.exr", &format!("{layers} --seed 3 --integrator lvc"));
-    let is_warned = |images: &str| {
-        let run = place.run(&format!("compare {images}")).expect(0);
-        run.stderr.contains("`e.exr` share light subpaths by `lvc`")
-    };
-    assert!(is_warned("e.exr a.exr") && is_warned("a.exr e.exr"));
-    assert!(!is_warned("a.exr b.exr") && !is_warned("e.exr d.exr"));
+    for (name, integrator) in [("e.exr", "lvc"), ("f.exr", "auto")] {
+        image(
+            name,
+            &format!("{layers} --seed 3 --integrator {integrator}"),
+        );
+        let shared = format!("`{name}` share light subpaths by `{integrator}`");
+        let is_warned = |images: &str| {
+            let run = place.run(&format!("compare {images}")).expect(0);
+            run.stderr.contains(&shared)
+        };
+        assert!(is_warned(&format!("{name} a.exr")) && is_warned(&format!("a.exr {name}")));
+        assert!(!is_warned("a.exr b.exr") && !is_warned(&format!("{name} d.exr")));
+    }
 }
 
 #[test]

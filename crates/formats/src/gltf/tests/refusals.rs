@@ -235,6 +235,7 @@ fn broken_images_and_numbers_are_refused() {
         (&b"BM1234"[..], "neither png, jpg nor webp"),
         (b"\xabKTX 20\xbb\r\n\x1a\n", "it is a KTX2 file"),
         (b"\0\0\0\x20ftypavif", "it is an AVIF file"),
+        (b"DDS |\0\0\0", "it is a DDS file"),
     ] {
         let view = draft.view(bytes);
         draft.json["images"] = json!([{ "bufferView": view }]);
