@@ -311,6 +311,13 @@ PATHS = [
         unit("all_strategies_tell_the_second_moment_of_connections"),
     ),
     (
+        "a path whose edges begin one vertex later",
+        "crates/bidir/src/driver/training/learning.rs",
+        "self.camera + s + t - 1 - i",
+        "self.camera + s + t - i",
+        unit("edges_of_a_path_have_the_places_of_its_vertices"),
+    ),
+    (
         "paths that tell of the connection that made them twice",
         "crates/bidir/src/driver/training/learning.rs",
         "part: if is_long { 1.0 } else { part },",

@@ -5,9 +5,9 @@
 //! With X the contribution of a connection, weighted and behind what is in its way, the variance of
 //! one candidate is least where Γ(c | r) ∝ κ_c √E[X² | r, c], κ_c the mean of K_c for a light subpath.
 //! In a training render whose candidates are uniform, pairs of cells come up in proportion to κ_c, so
-//! that this is √(κ_c Σ X²), the sum over the candidates of the pair. A path that any strategy finds tells
-//! of all the connections that could have made it: by the balance heuristic, strategy k has the part
-//! n_k p_k / Σ_j n_j p_j of its X², which adds up to the same sum on average, with less noise.
+//! that this is √(κ_c Σ X²), the sum over the candidates of the pair. A path that any strategy finds adds to
+//! the sums of all connections that could have made it (docs/derivations/mis-weights.md): the same sum on
+//! average, with less noise.
 //!
 //! **Weights** need the number of samples that a strategy takes of a path, as a function of the path
 //! alone: K and K_c are of the group at hand, and κ and κ_c stand in for them,

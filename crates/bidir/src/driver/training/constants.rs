@@ -6,7 +6,7 @@
 pub(super) const MOST_SAMPLES: u64 = 1 << 14;
 /// The most samples for each pixel of films for which these are [`ENOUGH_SAMPLES`]. Unit: samples.
 pub(super) const MOST_OF_PIXEL: u64 = 16;
-/// The smallest films have as many. Unit: samples, a power of two.
+/// Small films have at least as many, if work allows it. Unit: samples, a power of two.
 pub(super) const ENOUGH_SAMPLES: u64 = 1 << 10;
 /// Nothing is learned about connections from fewer. Unit: samples, a power of two.
 pub(super) const LEAST_SAMPLES: u64 = 1 << 6;
@@ -18,9 +18,9 @@ pub(super) const GROUPS: u64 = 64;
 /// connections.
 pub(super) const USUAL_WORK: f64 = 256.0;
 
-/// The most connections that a path tells of: longer paths only of the one that made it. Bounds memory where
-/// subpaths are long.
-pub(super) const MOST_PARTS: usize = 16;
+/// A path of more possible connections than these adds only the one that made it, if one did: this bounds memory
+/// where subpaths are long.
+pub(super) const MOST_PARTS: usize = 8;
 
 /// Blocks along each side of the film, of each of which variances are relative to the mean.
 pub(super) const BLOCKS_PER_SIDE: usize = 16;

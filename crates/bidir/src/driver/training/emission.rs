@@ -20,7 +20,7 @@ pub(super) struct Connection {
     pub(super) evidence: Evidence,
 }
 
-/// What is known of a connection.
+/// Knowledge of a connection.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Evidence {
     /// It was traced, and arrived or not.

@@ -31,7 +31,7 @@ struct Possible {
     strategy: Strategy,
     /// The number of the path's term.
     term: u32,
-    /// Its part of D.
+    /// Its part of the survey's D.
     part: f32,
 }
 
@@ -158,8 +158,10 @@ impl Found {
             term,
             part: if is_long { 1.0 } else { part },
         });
-        // A walk that escaped to the light has no vertex there.
-        let exists = |possible: &Possible| possible.ends.places[0] < count;
+        // A walk that escaped to the light has no vertex there, and a light of no power begins no subpath.
+        let exists = |possible: &Possible| {
+            possible.ends.places[0] < count && possible.part > 0.0 && possible.part.is_finite()
+        };
         self.possible.extend(possible.filter(exists));
     }
 
@@ -183,7 +185,7 @@ impl Survey {
         self.found.light.len() as f64 / self.samples()
     }
 
-    /// What is known of connections; squares are those where the numbers of samples are `counts`.
+    /// The knowledge of connections; squares are those where the numbers of samples are `counts`.
     fn connections(&self, film: &FilmSettings, cells: &Cells, counts: &Counts) -> Vec<Connection> {
         let connection = |ends: Ends, evidence| Connection {
             light: ends.light,
@@ -297,6 +299,29 @@ mod tests {
             assert!(is_on_surface(z) && is_on_surface(y));
             // Strategies that could have made the path have a share of it.
             assert!(survey.terms[possible.term as usize].has_share_of_connections());
+        }
+    }
+
+    /// Vertices of a path lie in the light walk before the camera walk, backwards.
+    #[test]
+    fn edges_of_a_path_have_the_places_of_its_vertices() {
+        let sample = Places {
+            light: 100,
+            camera: 200,
+        };
+        for (s, t, end, j, expected) in [
+            // The connection itself, and its neighbours on both sides.
+            (3, 3, 3, 3, [102, 202]),
+            (3, 3, 3, 2, [101, 102]),
+            (3, 3, 3, 4, [202, 201]),
+            // A hit, a light image, and a light point behind a walk of four vertices.
+            (0, 5, 0, 2, [203, 202]),
+            (5, 1, 5, 3, [102, 103]),
+            (1, 4, 5, 1, [104, 203]),
+            (1, 4, 5, 2, [203, 202]),
+        ] {
+            let strategy = Strategy::new(s, t);
+            assert_eq!(sample.of_edge(strategy, end, j), expected, "{strategy} {j}");
         }
     }
 
