@@ -189,19 +189,19 @@ impl Batch {
     }
 
     /// The shares of the path of `entry`; `candidate` is the candidate that it was, if it was one. None: the sample
-    /// has no such path. `each` gets the parts of single connections.
+    /// has no such path. `parts` gets those of single connections.
     pub(crate) fn shares(
         &self,
         context: &PathContext<'_>,
         entry: &Entry,
         candidate: Option<&Candidate>,
         densities: &mut PathDensities,
-        each: &mut Vec<ConnectionPart>,
+        parts: &mut Vec<ConnectionPart>,
     ) -> Option<Shares> {
         let (number, term) = (entry.sample as usize, &entry.contribution.term);
         let (s, t) = (usize::from(term.strategy.s), usize::from(term.strategy.t));
         let walk = self.camera.get(number);
-        let mut shares = |path: JoinedPath<'_>| path.shares(context, densities, each);
+        let mut shares = |path: JoinedPath<'_>| path.shares(context, densities, parts);
         Some(match candidate {
             Some(candidate) => {
                 let z = candidate.vertices[0] as usize;

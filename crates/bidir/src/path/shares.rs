@@ -27,14 +27,14 @@ pub(crate) struct Shares {
 }
 
 impl JoinedPath<'_> {
-    /// The shares of the path, by the balance heuristic. `each` gets those of single connections.
+    /// The shares of the path, by the balance heuristic. `parts` gets those of single connections.
     pub(crate) fn shares(
         &self,
         context: &PathContext<'_>,
         densities: &mut PathDensities,
-        each: &mut Vec<ConnectionPart>,
+        parts: &mut Vec<ConnectionPart>,
     ) -> Shares {
-        each.clear();
+        parts.clear();
         densities.gather(context, self);
         let n = self.len();
         let first_walked = context.settings.light_point.first_walked();
@@ -48,7 +48,7 @@ impl JoinedPath<'_> {
                 (_, 1) => &mut light_images,
                 _ if j < first_walked => &mut next_events[deeper],
                 _ => {
-                    each.push((j as u16, samples as f32));
+                    parts.push((j as u16, samples as f32));
                     &mut connections[deeper]
                 }
             } += samples;
@@ -61,7 +61,7 @@ impl JoinedPath<'_> {
         let pairs = next_events.iter().chain(&connections);
         let all = hits + light_images + pairs.sum::<f64>();
         let part = |part: f64| (part / all) as f32;
-        for (_, samples) in each.iter_mut() {
+        for (_, samples) in parts.iter_mut() {
             *samples = part(f64::from(*samples));
         }
         Shares {

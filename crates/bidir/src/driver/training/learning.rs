@@ -27,7 +27,7 @@ struct Ends {
 #[derive(Clone, Copy)]
 struct Possible {
     ends: Ends,
-    /// The strategy.
+    /// The strategy that has this connection.
     strategy: Strategy,
     /// The number of the path's term.
     term: u32,
@@ -47,7 +47,7 @@ pub(super) struct Found {
     /// The connections that were traced, and if they arrived.
     traced: Vec<(Ends, bool)>,
     possible: Vec<Possible>,
-    /// Of the sample that was begun last.
+    /// The first places of the sample that was begun last.
     sample: Places,
 }
 
@@ -59,12 +59,12 @@ struct Places {
 }
 
 impl Places {
-    /// Of light vertex number `z` and of camera vertex number `y`.
+    /// The places of light vertex number `z` and of camera vertex number `y`.
     fn of(self, [z, y]: [u32; 2]) -> [u32; 2] {
         [self.light + z, self.camera + y]
     }
 
-    /// Of the vertices x_{j-1} and x_j of a path of `strategy`, whose light vertices end before number `end`.
+    /// The places of the vertices x_{j-1} and x_j of a path of `strategy`, whose light vertices end before number `end`.
     fn of_edge(self, strategy: Strategy, end: u32, j: u16) -> [u32; 2] {
         let (s, t) = (u32::from(strategy.s), u32::from(strategy.t));
         [j - 1, j].map(u32::from).map(|i| {
@@ -235,11 +235,12 @@ impl Training {
         if settings.lvc.proposal == ProposalKind::Learned {
             for connection in &connections {
                 let pair = Cells::pair(connection.cells[0], connection.cells[1]);
-                match (connection.evidence, connection.light) {
-                    (Evidence::Traced(has_arrived), _) => sums.see(pair, has_arrived),
+                match connection.evidence {
+                    Evidence::Traced(has_arrived) => sums.see(pair, has_arrived),
                     // Of a light that begins g times as many subpaths each contributes 1/g.
-                    (Evidence::Square(square), Some(light)) => sums.add(pair, square / gain(light)),
-                    (Evidence::Square(_), None) => {}
+                    Evidence::Square(square) => {
+                        sums.add(pair, square / connection.light.map_or(1.0, &gain));
+                    }
                 }
             }
             self.proposals = Some(LightProposals::new(cells, &sums));
