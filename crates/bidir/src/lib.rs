@@ -67,11 +67,13 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+pub mod analysis;
 pub mod bsdf;
 pub mod camera;
 pub mod contribution;
 pub mod driver;
 pub mod film;
+pub mod guide;
 pub mod integrator;
 pub mod light;
 pub mod locus;

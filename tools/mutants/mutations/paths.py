@@ -52,8 +52,8 @@ PATHS = [
     (
         "roulette forgotten in densities",
         "crates/bidir/src/path/densities.rs",
-        "context.settings.roulette.density_factor(index - 2, albedo)",
-        "context.settings.roulette.density_factor(index - 2, || 1.0)",
+        "context.job.settings.roulette.density_factor(index - 2, albedo)",
+        "context.job.settings.roulette.density_factor(index - 2, || 1.0)",
         PATH,
     ),
     (
@@ -186,7 +186,7 @@ PATHS = [
     ),
     (
         "proposals that forget their uniform part",
-        "crates/bidir/src/path/proposals.rs",
+        "crates/bidir/src/guide/proposals.rs",
         "part / all as f64 + (1.0 - part) * gamma / of_cell as f64",
         "(1.0 - part) * gamma / of_cell as f64",
         unit("cache::tests"),
@@ -201,8 +201,8 @@ PATHS = [
     (
         "weights that know the proposal the other way round",
         "crates/bidir/src/path/count.rs",
-        "all.relative(z.cell, y.cell);",
-        "all.relative(if s > t { z.cell } else { y.cell }, y.cell);",
+        "self.job.guide.count_factor(z.cell, y.cell)",
+        "self.job.guide.count_factor(if s > t { z.cell } else { y.cell }, y.cell)",
         RUNNING,
     ),
     (
@@ -361,21 +361,21 @@ PATHS = [
     ),
     (
         "blocked connections counted as those that arrive",
-        "crates/bidir/src/path/proposals.rs",
+        "crates/bidir/src/guide/proposals.rs",
         "*arrived += u32::from(has_arrived);",
         "*arrived += 1;",
         unit("visibility_is_what_arrives"),
     ),
     (
         "draws of a cell that begin behind it",
-        "crates/bidir/src/path/proposals.rs",
+        "crates/bidir/src/guide/proposals.rs",
         "let begin = part as f64 / PARTS as f64;",
         "let begin = (part as f64 + 0.5) / PARTS as f64;",
         unit("every_number_leads_to_the_cell_that_holds_it"),
     ),
     (
         "light points that teach which cells to propose",
-        "crates/bidir/src/path/proposals.rs",
+        "crates/bidir/src/guide/proposals.rs",
         "        *arrived += u32::from(has_arrived);\n",
         "        *arrived += u32::from(has_arrived);\n        self.squares[pair] += 1.0;\n",
         unit("traced_connections_change_visibility_alone"),
@@ -411,8 +411,8 @@ PATHS = [
     (
         "path tracer's two densities swapped",
         "crates/bidir/src/integrator/stages/direct.rs",
-        "context.settings.mis.weight_of_two(x0.pdf, p)",
-        "context.settings.mis.weight_of_two(p, x0.pdf)",
+        "context.job.settings.mis.weight_of_two(x0.pdf, p)",
+        "context.job.settings.mis.weight_of_two(p, x0.pdf)",
         analytic("a_ring_light"),
     ),
     (

@@ -41,7 +41,7 @@ PICTURES = [
     (
         "variance of the light image as if no samples shared light paths",
         "crates/bidir/src/driver/variance.rs",
-        "(pixels, self.connections().light_subpaths)",
+        "(pixels, self.counts().light_subpaths)",
         "(pixels, pixels)",
         layers("light_images_of_one_path"),
     ),
@@ -62,7 +62,7 @@ PICTURES = [
     (
         "depth as the distance from the lens",
         "crates/bidir/src/driver/features.rs",
-        "space.world_length(context.view.camera().depth(surface.locus.point))",
+        "space.world_length(context.job.view.camera().depth(surface.locus.point))",
         "space.world_length(surface.locus.point.length())",
         layers("features"),
     ),

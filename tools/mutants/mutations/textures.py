@@ -8,10 +8,10 @@ RELIEF = "crates/bidir/src/material/relief/mod.rs"
 TEXTURES = [
     # --- textures and relief ------------------------------------------------------------------
     (
-        "what a pixel covers told by where the walk came from",
+        "a pixel's footprint by where the walk came from",
         "crates/bidir/src/path/vertex.rs",
-        "context.view.footprint(surface.point)",
-        "context.view.footprint(surface.point + wo)",
+        "context.job.view.footprint(surface.point)",
+        "context.job.view.footprint(surface.point + wo)",
         relief("a_point_looks_the_same"),
     ),
     (

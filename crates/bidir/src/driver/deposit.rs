@@ -3,8 +3,8 @@
 use super::features::Features;
 use crate::contribution::Contribution;
 use crate::film::{Layers, PassBuffer, SplatPlace};
-use crate::integrator::{Batch, Entry, Job, Sample};
-use crate::path::Strategy;
+use crate::integrator::{Batch, Entry, Sample};
+use crate::path::{Job, Strategy};
 use crate::spectrum::{Rgb, Spectrum, luminance};
 use crate::stats::Stats;
 
@@ -203,7 +203,7 @@ mod tests {
     use crate::light::{InfiniteLight, Light};
     use crate::locus::Locus;
     use crate::math::{Vec2, Vec3};
-    use crate::path::{Connections, PathSettings};
+    use crate::path::PathSettings;
     use crate::sampler::{Domain, Sampler, SamplerKind};
     use crate::scene::{Scene, SceneBuilder};
 
@@ -248,12 +248,8 @@ mod tests {
         batch.fill([Sample::new(&scene, 0, [0; 2], stream, stream)]);
         batch.entries.extend(entries);
         batch.splats.push(splat);
-        let job = Job {
-            scene: &scene,
-            view: &view,
-            settings: &PathSettings::default(),
-            connections: Connections::of_own_subpaths(view.film()),
-        };
+        let settings = PathSettings::default();
+        let job = Job::of_own_subpaths(&scene, &view, &settings);
         Deposit {
             job: &job,
             layers: film.layers(),

@@ -5,9 +5,9 @@
 
 use super::Progress;
 use crate::film::{Aov, AovKind, Layers};
-use crate::integrator::{Batch, Job, camera_ray};
+use crate::integrator::{Batch, camera_ray};
 use crate::math::Vec3;
-use crate::path::{PathContext, Vertex};
+use crate::path::{Job, PathContext, Vertex};
 use crate::sampler::{Dimension, Purpose};
 use crate::scene::Chances;
 use crate::spectrum::Spectrum;
@@ -91,7 +91,7 @@ impl FirstSurface {
     /// Finds the first surface of the one sample of `batch`. None: the ray escapes.
     fn find(job: &Job<'_>, batch: &mut Batch) -> Option<Self> {
         let sample = &batch.samples[0];
-        let context = job.context(sample);
+        let context = sample.context(job);
         if batch.camera.count() > 0 {
             let surface = batch.camera.get(0).vertices.get(1)?;
             return Some(Self::new(&context, surface));
@@ -107,16 +107,21 @@ impl FirstSurface {
     }
 
     fn new(context: &PathContext<'_>, surface: &Vertex) -> Self {
-        let (wo, n_s) = (surface.wo, surface.shading.z);
-        let space = context.scene.space();
-        let albedo = surface.bsdf.albedo(surface.shading.to_local(wo));
+        let wo = surface.wo;
+        let space = context.job.scene.space();
+        let [_, n_s] = surface.place();
+        let albedo = surface.albedo(wo);
         let toward_camera = |n: Vec3| if n.dot(wo) < 0.0 { -n } else { n };
         Self {
-            albedo: context.scene.color().to_rgb(albedo, &context.wavelengths),
+            albedo: context
+                .job
+                .scene
+                .color()
+                .to_rgb(albedo, &context.wavelengths),
             point: space.world_point(surface.locus.point).as_vec3(),
             n_g: toward_camera(surface.locus.n_g),
             n_s: toward_camera(n_s),
-            depth: space.world_length(context.view.camera().depth(surface.locus.point)),
+            depth: space.world_length(context.job.view.camera().depth(surface.locus.point)),
         }
     }
 }

@@ -25,8 +25,8 @@ pub use threads::{Shortage, Threads, stand_alone, start_pool};
 pub use training::{Effort, Plan, Training};
 pub use variance::StrategyMoments;
 
+use crate::analysis::LostLight;
 use crate::film::{Film, FilmError};
-use crate::integrator::LostLight;
 use crate::scene::Scene;
 use crate::stats::Clock;
 use crate::view::View;

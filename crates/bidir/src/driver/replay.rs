@@ -6,9 +6,9 @@
 
 use crate::contribution::{Contribution, Term};
 use crate::film::{FilmSettings, SplatPlace};
-use crate::integrator::{Batch, Entry, Fate, Job, Link, Sample};
+use crate::integrator::{Batch, Entry, Fate, Link, Sample};
 use crate::locus::Locus;
-use crate::path::{Strategy, Subpath};
+use crate::path::{Job, Strategy, Subpath};
 use crate::select::Selector;
 use crate::spectrum::Spectrum;
 

@@ -15,9 +15,11 @@ use super::features::{Features, Meter};
 use super::threads::{Shortage, Threads, Workers};
 use super::training::prepare;
 use super::{Effort, Progress, Replay, Resources, SessionError, Settings, Training};
+use crate::analysis::no_path;
 use crate::film::{Film, FilmError, MergeError, PassBuffer};
-use crate::integrator::{Batch, IntegratorKind, Job, Method, Sample, group_size, no_path};
-use crate::path::Connections;
+use crate::guide::Guide;
+use crate::integrator::{Batch, IntegratorKind, Method, Sample, group_size};
+use crate::path::{Job, StrategyCounts};
 use crate::sampler::{Domain, Sampler};
 use crate::scene::Scene;
 use crate::select::Selector;
@@ -266,18 +268,27 @@ impl<'a> Session<'a> {
             scene: &self.scene,
             view: &self.view,
             settings: &self.settings.path,
-            connections: self.connections(),
+            counts: self.counts(),
+            guide: self.guide(),
         }
     }
 
-    /// How many samples strategies take, and what they learned.
-    pub(super) fn connections(&self) -> Connections<'_> {
-        match (self.settings.integrator, &self.training) {
-            (IntegratorKind::Lvc, Some(training)) => {
-                training.connections(self.settings.lvc, self.light_subpaths())
-            }
-            _ => Connections::of_own_subpaths(self.view.film()),
+    /// How many samples strategies take.
+    pub(super) fn counts(&self) -> StrategyCounts {
+        match self.guiding() {
+            Some(training) => training.counts(self.settings.lvc, self.light_subpaths()),
+            None => StrategyCounts::of_own_subpaths(self.view.film()),
         }
+    }
+
+    fn guide(&self) -> Guide<'_> {
+        self.guiding().map_or(Guide::default(), Training::guide)
+    }
+
+    /// The training, if the estimator uses its knowledge.
+    fn guiding(&self) -> Option<&Training> {
+        let training = self.training.as_ref();
+        training.filter(|_| self.settings.integrator == IntegratorKind::Lvc)
     }
 
     /// Takes the samples at `places` batch by batch, and keeps what they found.

@@ -62,7 +62,7 @@ impl Session<'_> {
         let (pixels, paths) = match strategy.t {
             1 => {
                 let pixels = film.light_paths().max(1) as f64;
-                (pixels, self.connections().light_subpaths)
+                (pixels, self.counts().light_subpaths)
             }
             _ => (1.0, 1.0),
         };

@@ -5,8 +5,8 @@ use super::stages::lens_vertex;
 use super::{Entry, Fate, Link};
 use crate::contribution::{Term, is_summable};
 use crate::path::{
-    Arrival, ConnectionPart, Connections, JoinedPath, PathContext, PathDensities, PathSettings,
-    RunningSums, Shares, Subpaths, Weights,
+    Arrival, ConnectionPart, Job, JoinedPath, PathContext, PathDensities, RunningSums, Shares,
+    Subpaths, Weights,
 };
 use crate::sampler::{Dimension, Purpose, SampleStream};
 use crate::scene::Scene;
@@ -14,7 +14,6 @@ use crate::select::{Candidate, Chosen};
 use crate::spectrum::{Spectrum, Wavelengths};
 use crate::stats::{Clock, Dropped, Stats, Stopwatch};
 use crate::strategy::Strategy;
-use crate::view::View;
 
 /// One camera sample, with the light subpath that goes with it.
 #[derive(Clone, Copy, Debug)]
@@ -51,31 +50,13 @@ impl Sample {
             light,
         }
     }
-}
 
-/// The data of a render that all of its samples have in common.
-#[derive(Clone, Copy)]
-pub struct Job<'a> {
-    /// The scene.
-    pub scene: &'a Scene,
-    /// The camera that sees it, and its film.
-    pub view: &'a View,
-    /// How paths are made and weighted.
-    pub settings: &'a PathSettings,
-    /// How many samples strategies take, and what they learned.
-    pub connections: Connections<'a>,
-}
-
-impl<'a> Job<'a> {
-    /// The context of a sample.
+    /// The context of its paths.
     #[inline]
-    pub fn context(&self, sample: &Sample) -> PathContext<'a> {
+    pub fn context<'a>(&self, job: &Job<'a>) -> PathContext<'a> {
         PathContext {
-            scene: self.scene,
-            view: self.view,
-            settings: self.settings,
-            wavelengths: sample.wavelengths,
-            connections: self.connections,
+            job: *job,
+            wavelengths: self.wavelengths,
         }
     }
 }
@@ -209,7 +190,7 @@ impl Batch {
                 shares(JoinedPath::connection(light, &walk.vertices[..t]))
             }
             None if s == 0 => {
-                let arrival = Arrival::of(context.scene, &walk, t - 1, term.light)?;
+                let arrival = Arrival::of(context.job.scene, &walk, t - 1, term.light)?;
                 let x0 = arrival.vertex(context);
                 shares(JoinedPath::hit(&x0, &walk.vertices[..t - 1]))
             }

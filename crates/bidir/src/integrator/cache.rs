@@ -1,8 +1,7 @@
 //! The light vertex cache: which vertices of a group's light subpaths can be connected, and draws of them.
 
-use crate::path::{
-    Cell, CellDraw, Cells, LightPointChoice, LightProposals, Subpath, Subpaths, Vertex,
-};
+use crate::guide::{Cell, CellDraw, Cells, LightProposals};
+use crate::path::{LightPointChoice, Subpath, Subpaths, Vertex};
 use std::ops::Range;
 
 /// An index of the light vertices that can be connected.

@@ -2,17 +2,18 @@
 //!
 //! **Light vertex cache.** ⟨C⟩ = 1/(N M) Σ_m C(y, z_m) / P(z_m | y) [Davidovic14, §4]: a camera vertex y is
 //! connected with M of the K vertices z of N light subpaths, in place of those of one; they are drawn by P
-//! ([`LightProposals`](crate::path::LightProposals)), or evenly, where P = 1/K. For each vertex of the light
+//! ([`LightProposals`](crate::guide::LightProposals)), or evenly, where P = 1/K. For each vertex of the light
 //! subpath of a path, strategy (s, t) takes M N P samples on average. K differs from group to group, and P with
 //! it; weights must not, or the estimate is biased. They take M / κ in place of M N / K, with κ the mean of
-//! K / N in a training render ([`Connections`](crate::path::Connections)), and for a learned P its stand-in
+//! K / N in a training render ([`StrategyCounts`](crate::path::StrategyCounts)), and for a learned P its stand-in
 //! likewise.
 
 use super::stages::{
     Source, Weighting, connect, direct, hits, light_image, next_events, select, shadow_rays,
     sum_camera, sum_light, walk_camera, walk_light,
 };
-use super::{Batch, CandidateCount, IntegratorKind, Job, LvcSettings};
+use super::{Batch, CandidateCount, IntegratorKind, LvcSettings};
+use crate::path::Job;
 use crate::select::Selector;
 
 /// How many samples share light subpaths where so many pixels are rendered. So few that the subpaths stay
@@ -116,6 +117,6 @@ pub fn walk_group(job: &Job<'_>, batch: &mut Batch) {
 /// Makes ready what the samples of a group share, when all of it is walked.
 pub fn end_group(job: &Job<'_>, batch: &mut Batch) {
     let Batch { light, cache, .. } = batch;
-    let proposals = job.connections.proposals;
+    let proposals = job.guide.proposals;
     cache.index(light, job.settings.light_point, proposals);
 }

@@ -7,16 +7,13 @@
 //! **Adding one**: a variant of [`Method`] and of [`IntegratorKind`], and the stages that are missing.
 
 mod batch;
-mod blind;
 mod cache;
 mod journal;
 mod lvc;
 mod method;
 mod stages;
 
-pub use batch::{Batch, Job, Sample};
-pub(crate) use blind::no_path;
-pub use blind::{BlindSpot, LostLight, blind_spots, lost_light, missing_light};
+pub use batch::{Batch, Sample};
 pub(crate) use cache::connectable;
 pub use journal::{Entry, Fate, Link};
 pub use lvc::*;

@@ -3,13 +3,10 @@
 //!
 //! No ray is traced here: visibility is the caller's to ask for.
 
-use super::{
-    Cell, LightChoiceKind, LightProposals, PathContext, PathDensities, Segment, Turn, Vertex,
-    mis_weight,
-};
+use super::{LightChoiceKind, PathContext, PathDensities, Segment, Turn, Vertex, mis_weight};
 use crate::bsdf::TransportMode;
 use crate::light::{ChosenEmitter, LightChoice, LightPoint, LightSample, Part};
-use crate::math::{Vec2, Vec3};
+use crate::math::Vec2;
 use crate::spectrum::Spectrum;
 
 /// How the two subpaths of a path came together.
@@ -124,7 +121,7 @@ impl<'a> JoinedPath<'a> {
     pub fn weight(&self, context: &PathContext<'_>, densities: &mut PathDensities) -> f32 {
         densities.gather(context, self);
         let count = |j| self.count(context, j);
-        mis_weight(densities, count, context.settings.mis, self.strategy()) as f32
+        mis_weight(densities, count, context.job.settings.mis, self.strategy()) as f32
     }
 
     /// s of the strategy that made the path.
@@ -149,8 +146,8 @@ pub fn sample_next_event(
     u_light: impl FnOnce() -> f32,
     u: Vec2,
 ) -> Option<(u32, LightSample)> {
-    let scene = context.scene;
-    let ChosenEmitter { light, part, prob } = match context.settings.light_choice {
+    let scene = context.job.scene;
+    let ChosenEmitter { light, part, prob } = match context.job.settings.light_choice {
         LightChoiceKind::Power => scene.light_choice().sample(u_light).map(by_power)?,
         LightChoiceKind::Tree => {
             let tree = scene.light_tree();
@@ -168,8 +165,8 @@ pub fn sample_next_event(
 /// `light` for `x1`, a vertex of any subpath. Measure: area, 1/m²; solid angle, 1/sr, for a light at infinity.
 #[inline]
 pub fn next_event_pdf(context: &PathContext<'_>, x1: &Vertex, light: u32, at: &LightPoint) -> f32 {
-    let scene = context.scene;
-    let ChosenEmitter { part, prob, .. } = match context.settings.light_choice {
+    let scene = context.job.scene;
+    let ChosenEmitter { part, prob, .. } = match context.job.settings.light_choice {
         LightChoiceKind::Power => {
             let prob = scene.light_choice().prob(light as usize);
             by_power((light as usize, prob))
@@ -198,38 +195,30 @@ impl PathContext<'_> {
     /// True where strategy (s, t) takes part.
     #[inline]
     pub fn takes(&self, s: usize, t: usize) -> bool {
-        self.settings.strategies.contains(s, t)
+        self.job.settings.strategies.contains(s, t)
     }
 
     /// The luminance of light at the wavelengths of the sample.
     #[inline]
     pub(crate) fn luminance(&self, light: Spectrum) -> f32 {
-        self.scene.color().luminance(light, &self.wavelengths)
+        self.job.scene.color().luminance(light, &self.wavelengths)
     }
 
     /// How light subpaths choose the light that they begin on.
     #[inline]
     pub(super) fn emission(&self) -> &LightChoice {
-        let learnt = self.connections.emission;
-        learnt.unwrap_or_else(|| self.scene.light_choice())
+        let learned = self.job.guide.light_start;
+        learned.unwrap_or_else(|| self.job.scene.light_choice())
     }
 
     /// √V̂ of the shadow ray between a light vertex `z` and a camera vertex `y`: 1 if nothing is learned, and
     /// at infinity, where there are no places.
     #[inline]
     pub(crate) fn root_visibility(&self, z: &Vertex, y: &Vertex) -> f32 {
-        let of_cells = |all: &LightProposals| all.root_visibility(z.cell, y.cell);
-        let proposals = self
-            .connections
-            .proposals
-            .filter(|_| !z.locus.is_infinite());
-        proposals.map_or(1.0, of_cells)
-    }
-
-    /// The cell of a vertex with the unit normal `n`, if anything is learned for cells.
-    #[inline]
-    pub(super) fn cell(&self, point: Vec3, n: Vec3) -> Cell {
-        let cell = |all: &LightProposals| all.cells().of(point, n);
-        self.connections.proposals.map_or(Cell::default(), cell)
+        if z.locus.is_infinite() {
+            1.0
+        } else {
+            self.job.guide.root_visibility(z.cell, y.cell)
+        }
     }
 }

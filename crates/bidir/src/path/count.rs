@@ -5,7 +5,32 @@
 //! it (docs/derivations/mis-weights.md). n_j depends on the two vertices that strategy j links alone, so that
 //! sums along subpaths can hold it.
 
-use super::{Connections, JoinedPath, LightProposals, PathContext, Vertex};
+use super::{JoinedPath, PathContext, Vertex};
+use crate::film::FilmSettings;
+
+/// How many samples of a path strategies take in a pass, before the [`Guide`](crate::guide::Guide) shares
+/// them out.
+#[derive(Clone, Copy, Debug)]
+pub struct StrategyCounts {
+    /// Connections with a light vertex of the path, on average: of the first vertex of a camera subpath (t = 2),
+    /// and of those behind it.
+    pub connections: [f64; 2],
+    /// The same for s = 1.
+    pub next_events: [f64; 2],
+    /// Light subpaths, each with one light image.
+    pub light_subpaths: f64,
+}
+
+impl StrategyCounts {
+    /// Every vertex of one light subpath is connected; each sample of `film` has its own.
+    pub fn of_own_subpaths(film: &FilmSettings) -> Self {
+        Self {
+            connections: [1.0; 2],
+            next_events: [1.0; 2],
+            light_subpaths: film.light_paths() as f64,
+        }
+    }
+}
 
 impl PathContext<'_> {
     /// n_j: how many samples strategy (s, t) takes in a pass of a path that it makes by linking `z`,
@@ -14,19 +39,16 @@ impl PathContext<'_> {
     /// one per light subpath.
     #[inline]
     pub fn count(&self, s: usize, t: usize, [z, y]: [&Vertex; 2]) -> f64 {
-        let Connections {
-            per_vertex,
+        let StrategyCounts {
+            connections,
             next_events,
-            proposals,
             light_subpaths,
-            ..
-        } = self.connections;
+        } = self.job.counts;
         match t {
             _ if !self.takes(s, t) => 0.0,
             1 => light_subpaths,
-            _ if s >= self.settings.light_point.first_walked() => {
-                let relative = |all: &LightProposals| all.relative(z.cell, y.cell);
-                per_vertex[usize::from(t > 2)] * proposals.map_or(1.0, relative)
+            _ if s >= self.job.settings.light_point.first_walked() => {
+                connections[usize::from(t > 2)] * self.job.guide.count_factor(z.cell, y.cell)
             }
             _ => next_events[usize::from(t > 2)],
         }

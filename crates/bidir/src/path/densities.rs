@@ -4,9 +4,7 @@
 //! They describe the path, not the strategy that made it, so that every strategy finds the same
 //! weight (docs/derivations/mis-weights.md).
 
-use super::{
-    JoinedPath, Junction, LightPointChoice, PathContext, Vertex, VertexKind, next_event_pdf,
-};
+use super::{JoinedPath, Junction, LightPointChoice, PathContext, Vertex, next_event_pdf};
 
 /// How likely one vertex of a path is to be drawn from either side, roulette included.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -153,12 +151,12 @@ impl JoinedPath<'_> {
 #[inline]
 pub(super) fn next_event_density(context: &PathContext<'_>, x0: &Vertex, x1: &Vertex) -> f32 {
     let Some(index) = x0.light else { return 0.0 };
-    match (context.settings.light_point, x1.kind) {
+    match (context.job.settings.light_point, x1.is_camera()) {
         // Of a camera and a light both at infinity no connection makes a path: the camera has to
         // see the light by itself.
-        (_, VertexKind::Camera) if x0.locus.is_infinite() && x1.locus.is_infinite() => 0.0,
+        (_, true) if x0.locus.is_infinite() && x1.locus.is_infinite() => 0.0,
         // A path of two vertices has its s = 1 by t = 1, which uses the light subpath's x_0.
-        (LightPointChoice::Shared, _) | (_, VertexKind::Camera) => x0.pdf_fwd,
+        (LightPointChoice::Shared, _) | (_, true) => x0.pdf_fwd,
         _ => next_event_pdf(context, x1, index, &x0.light_point()),
     }
 }
@@ -171,7 +169,11 @@ fn factor(context: &PathContext<'_>, index: usize, albedo: impl FnOnce() -> f32)
     if index < 2 {
         1.0
     } else {
-        context.settings.roulette.density_factor(index - 2, albedo)
+        context
+            .job
+            .settings
+            .roulette
+            .density_factor(index - 2, albedo)
     }
 }
 

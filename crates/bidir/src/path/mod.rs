@@ -19,13 +19,11 @@
 //! Nothing here adds to a film, and no ray is traced but those of the walks.
 
 mod arrival;
-mod cells;
 mod connect;
 mod count;
 mod densities;
 mod light_choice;
 mod mis;
-mod proposals;
 mod roulette;
 mod running;
 mod scatter;
@@ -36,21 +34,20 @@ mod walk;
 
 pub use crate::strategy::{Strategies, Strategy};
 pub use arrival::Arrival;
-pub use cells::{Cell, Cells};
 pub use connect::{JoinedPath, Junction, next_event_pdf, sample_next_event};
+pub use count::StrategyCounts;
 pub use densities::{PathDensities, VertexDensities};
 pub use light_choice::{LightChoiceKind, LightPointChoice};
 pub use mis::{MisHeuristic, mis_weight};
-pub(crate) use proposals::CellDraw;
-pub use proposals::{Connections, LightProposals, PairSums};
 pub use roulette::PathRoulette;
 pub use running::{LightSums, PathSums, RunningSums, Weights};
 pub use scatter::Turn;
 pub use segment::Segment;
 pub(crate) use shares::{ConnectionPart, Shares};
-pub use vertex::{Vertex, VertexKind};
+pub use vertex::{Scattering, Vertex};
 pub use walk::{Escape, Subpath, Subpaths, camera_subpath, light_subpath};
 
+use crate::guide::Guide;
 use crate::scene::Scene;
 use crate::spectrum::Wavelengths;
 use crate::view::View;
@@ -99,17 +96,39 @@ impl PathSettings {
     }
 }
 
-/// The data that every step of making a path needs.
+/// The data of a render that all of its samples have in common.
 #[derive(Clone, Copy)]
-pub struct PathContext<'a> {
+pub struct Job<'a> {
     /// The scene.
     pub scene: &'a Scene,
     /// The camera that sees it, and its film.
     pub view: &'a View,
     /// How paths are made and weighted.
     pub settings: &'a PathSettings,
+    /// How many samples strategies take.
+    pub counts: StrategyCounts,
+    /// The knowledge of training.
+    pub guide: Guide<'a>,
+}
+
+impl<'a> Job<'a> {
+    /// A job in which every sample has a light subpath of its own, and nothing is learned.
+    pub fn of_own_subpaths(scene: &'a Scene, view: &'a View, settings: &'a PathSettings) -> Self {
+        Self {
+            scene,
+            view,
+            settings,
+            counts: StrategyCounts::of_own_subpaths(view.film()),
+            guide: Guide::default(),
+        }
+    }
+}
+
+/// The data that every step of making a path needs.
+#[derive(Clone, Copy)]
+pub struct PathContext<'a> {
+    /// The data of the render.
+    pub job: Job<'a>,
     /// The wavelengths of the sample.
     pub wavelengths: Wavelengths,
-    /// How many samples strategies take, and what they learned.
-    pub connections: Connections<'a>,
 }

@@ -123,7 +123,7 @@ impl RunningSums {
     }
 
     fn sum_light(&mut self, context: &PathContext<'_>, walk: &[Vertex], start: &LightEnd) {
-        let share = |ratio| context.settings.mis.share(ratio);
+        let share = |ratio| context.job.settings.mis.share(ratio);
         let mut sum = start.is_hit;
         self.sums.push(sum);
         let densities = walked_densities(context, walk, FAR);
@@ -136,7 +136,7 @@ impl RunningSums {
     }
 
     fn sum_camera(&mut self, context: &PathContext<'_>, walk: &[Vertex]) {
-        let share = |ratio| context.settings.mis.share(ratio);
+        let share = |ratio| context.job.settings.mis.share(ratio);
         let mut sum = 0.0;
         self.sums.push(sum);
         let densities = walked_densities(context, walk, FAR);
@@ -190,7 +190,7 @@ impl PathSums<'_> {
     /// s = 0: all others have more light vertices.
     fn hit(&self, context: &PathContext<'_>, path: &JoinedPath<'_>) -> f64 {
         let (y, t) = (path.y(), path.camera.len());
-        let share = |ratio| context.settings.mis.share(ratio);
+        let share = |ratio| context.job.settings.mis.share(ratio);
         let end = LightEnd::new(context, path.z(), y);
         let reversed = path.reversed(context);
         let count = share(context.count(1, t, [path.z(), y]));
@@ -203,7 +203,7 @@ impl PathSums<'_> {
             from_drawn,
         );
         if t == 1 {
-            others = context.settings.mis.share_of_image(others, 1.0);
+            others = context.job.settings.mis.share_of_image(others, 1.0);
         }
         1.0 / (1.0 + others)
     }
@@ -212,7 +212,7 @@ impl PathSums<'_> {
     fn connection(&self, context: &PathContext<'_>, path: &JoinedPath<'_>) -> f64 {
         let JoinedPath { light, camera, .. } = *path;
         let (s, t) = (light.len(), camera.len());
-        let share = |ratio| context.settings.mis.share(ratio);
+        let share = |ratio| context.job.settings.mis.share(ratio);
         let end = match s {
             1 => LightEnd::new(context, path.z(), path.y()),
             _ => *self.light.start,
@@ -244,7 +244,7 @@ impl PathSums<'_> {
         };
         let mut own = share(context.count(s, t, [path.z(), path.y()]));
         if s + t == 2 {
-            own = context.settings.mis.share_of_image(own, fewer_light);
+            own = context.job.settings.mis.share_of_image(own, fewer_light);
         }
         own / (own + fewer_light + fewer_camera)
     }

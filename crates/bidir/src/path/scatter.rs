@@ -1,7 +1,7 @@
 //! The effect of a vertex on light: its value scatter(wo, wi) in the integrand, the directions that walks
 //! draw there, and their densities. Visibility and roulette are no part of it.
 
-use super::{PathContext, Vertex, VertexKind};
+use super::{PathContext, Scattering, Vertex};
 use crate::bsdf::TransportMode;
 use crate::light::LightPoint;
 use crate::math::{Vec2, Vec3};
@@ -50,7 +50,10 @@ impl Side {
     fn new(vertex: &Vertex, world: Vec3) -> Self {
         Self {
             world,
-            local: vertex.shading.to_local(world),
+            local: match &vertex.scattering {
+                Scattering::Surface { shading, .. } => shading.to_local(world),
+                Scattering::Camera | Scattering::Light => Vec3::ZERO,
+            },
             cos_g: vertex.locus.n_g.dot(world),
         }
     }
@@ -98,13 +101,15 @@ impl<'a> Turn<'a> {
     #[inline]
     pub fn scatter(&self, context: &PathContext<'_>, mode: TransportMode) -> Spectrum {
         let Self { vertex, wo, wi } = self;
-        match (vertex.kind, vertex.light) {
-            (VertexKind::Camera, _) => Spectrum::splat(context.view.camera().importance(wi.world)),
-            (VertexKind::Light, Some(light)) => {
+        match (&vertex.scattering, vertex.light) {
+            (Scattering::Camera, _) => {
+                Spectrum::splat(context.job.view.camera().importance(wi.world))
+            }
+            (Scattering::Light, Some(light)) => {
                 context.emitted(light, &vertex.light_point(), wi.world)
             }
-            (VertexKind::Light, None) => Spectrum::ZERO,
-            (VertexKind::Surface, _) => {
+            (Scattering::Light, None) => Spectrum::ZERO,
+            (Scattering::Surface { bsdf, .. }, _) => {
                 if !wo.agrees() || !wi.agrees() {
                     return Spectrum::ZERO;
                 }
@@ -112,7 +117,7 @@ impl<'a> Turn<'a> {
                     TransportMode::Radiance => wi,
                     TransportMode::Importance => wo,
                 };
-                vertex.bsdf.eval(wo.local, wi.local, mode) * from.normal_ratio()
+                bsdf.eval(wo.local, wi.local, mode) * from.normal_ratio()
             }
         }
     }
@@ -122,29 +127,37 @@ impl<'a> Turn<'a> {
     /// to the probability of the others.
     #[inline]
     pub fn pdf(&self, context: &PathContext<'_>) -> f32 {
-        let (scene, vertex) = (context.scene, self.vertex);
-        match (vertex.kind, vertex.light) {
-            (VertexKind::Camera, _) => context.view.camera().pdf_direction(self.wi.world),
-            (VertexKind::Light, Some(light)) => {
+        let (scene, vertex) = (context.job.scene, self.vertex);
+        match (&vertex.scattering, vertex.light) {
+            (Scattering::Camera, _) => context.job.view.camera().pdf_direction(self.wi.world),
+            (Scattering::Light, Some(light)) => {
                 let (light, at) = (scene.light(light), vertex.light_point());
                 light.pdf_direction(&scene.light_context(), &at, self.wi.world)
             }
-            (VertexKind::Light, None) => 0.0,
-            (VertexKind::Surface, _) => vertex.bsdf.pdf(self.wo.local, self.wi.local),
+            (Scattering::Light, None) => 0.0,
+            (Scattering::Surface { bsdf, .. }, _) => bsdf.pdf(self.wo.local, self.wi.local),
         }
     }
 
     /// The largest lane of the albedo that a walk along -`wo` meets here.
     #[inline]
     pub(super) fn albedo(&self) -> f32 {
-        match self.vertex.kind {
-            VertexKind::Surface => self.vertex.bsdf.albedo(self.wo.local).max_lane(),
-            VertexKind::Camera | VertexKind::Light => 1.0,
+        match &self.vertex.scattering {
+            Scattering::Surface { bsdf, .. } => bsdf.albedo(self.wo.local).max_lane(),
+            Scattering::Camera | Scattering::Light => 1.0,
         }
     }
 }
 
 impl Vertex {
+    /// The albedo that a walk meets which comes along -`w`; 1 at the ends of paths.
+    pub fn albedo(&self, w: Vec3) -> Spectrum {
+        match &self.scattering {
+            Scattering::Surface { shading, bsdf } => bsdf.albedo(shading.to_local(w)),
+            Scattering::Camera | Scattering::Light => Spectrum::ONE,
+        }
+    }
+
     /// The vertex of a walk that came along -`wo` and goes on along `wi`.
     #[inline]
     pub fn turn(&self, wo: Vec3, wi: Vec3) -> Turn<'_> {
@@ -163,12 +176,15 @@ impl Vertex {
         u_lobe: impl FnOnce() -> f32,
         u: Vec2,
     ) -> Option<Scattered> {
+        let Scattering::Surface { shading, bsdf } = &self.scattering else {
+            return None;
+        };
         let wo = Side::new(self, self.wo);
-        let sample = self.bsdf.sample(wo.local, mode, u_lobe, u)?;
+        let sample = bsdf.sample(wo.local, mode, u_lobe, u)?;
         let turn = Turn {
             vertex: self,
             wo,
-            wi: Side::new(self, self.shading.to_world(sample.wi)),
+            wi: Side::new(self, shading.to_world(sample.wi)),
         };
         if !turn.wo.agrees() || !turn.wi.agrees() {
             return None;
@@ -197,7 +213,7 @@ impl PathContext<'_> {
     /// irradiance, as [`Light::emitted`](crate::light::Light::emitted) says.
     #[inline]
     pub(crate) fn emitted(&self, light: u32, at: &LightPoint, w: Vec3) -> Spectrum {
-        let scene = self.scene;
+        let scene = self.job.scene;
         let emitted = scene.light(light).emitted(&scene.light_context(), at, w);
         scene.color().illuminant(emitted, &self.wavelengths)
     }

@@ -37,7 +37,7 @@ impl JoinedPath<'_> {
         parts.clear();
         densities.gather(context, self);
         let n = self.len();
-        let first_walked = context.settings.light_point.first_walked();
+        let first_walked = context.job.settings.light_point.first_walked();
         let [mut hits, mut light_images] = [0.0, 0.0];
         let [mut next_events, mut connections] = [[0.0; 2]; 2];
         let mut add = |j: usize, ratio: f64| {

@@ -4,9 +4,10 @@
 //! `scatter` is in 1/sr at a surface; densities are per area, 1/m² (solid angle, 1/sr, for a light
 //! at infinity). Visibility and roulette are no part of a vertex.
 
-use super::{Cell, PathContext, Segment};
-use crate::bsdf::{Bsdf, Diffuse};
+use super::{PathContext, Segment};
+use crate::bsdf::Bsdf;
 use crate::camera::LensSample;
+use crate::guide::Cell;
 use crate::light::{Facing, LightPoint, Receiver};
 use crate::locus::Locus;
 use crate::math::{Frame, Vec3};
@@ -14,31 +15,33 @@ use crate::scene::SurfaceHit;
 use crate::spectrum::Spectrum;
 use crate::texture::TexturePoint;
 
-/// The kind of a vertex.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum VertexKind {
-    /// A point on the lens, or the direction towards a camera at infinity: the start of a camera
-    /// subpath.
+/// The effect of a vertex on light, by its kind.
+#[derive(Clone, Copy, Debug)]
+pub enum Scattering {
+    /// The importance of a point on the lens, or of the direction towards a camera at infinity: the start of a
+    /// camera subpath.
     Camera,
-    /// A point on a light, or a direction towards one at infinity: the start of a light subpath.
+    /// The emission of a point on a light, or of a direction towards one at infinity: the start of a light
+    /// subpath.
     Light,
-    /// A point of a surface, emissive or not.
-    Surface,
+    /// The BSDF of a point of a surface, emissive or not.
+    Surface {
+        /// The frame that it is evaluated in.
+        shading: Frame,
+        /// The BSDF.
+        bsdf: Bsdf,
+    },
 }
 
 /// A vertex of a subpath.
 #[derive(Clone, Copy, Debug)]
 pub struct Vertex {
-    /// The kind.
-    pub kind: VertexKind,
     /// The place.
     pub locus: Locus,
-    /// The shading frame of a surface.
-    pub shading: Frame,
+    /// Its effect on light.
+    pub scattering: Scattering,
     /// The unit direction towards the previous vertex of the walk.
     pub wo: Vec3,
-    /// The scattering of a surface.
-    pub bsdf: Bsdf,
     /// Throughput up to this vertex, without the scattering at it.
     pub beta: Spectrum,
     /// The density with which a walk from this end of the path draws this vertex, without roulette; on a light
@@ -65,20 +68,12 @@ pub struct Vertex {
 }
 
 impl Vertex {
-    /// A vertex of which only the kind and the place matter.
-    fn endpoint(kind: VertexKind, locus: Locus) -> Self {
+    /// A vertex that no walk has come to.
+    fn new(locus: Locus, scattering: Scattering) -> Self {
         Self {
-            kind,
             locus,
-            shading: Frame {
-                x: Vec3::ZERO,
-                y: Vec3::ZERO,
-                z: Vec3::ZERO,
-            },
+            scattering,
             wo: Vec3::ZERO,
-            bsdf: Bsdf::Diffuse(Diffuse {
-                reflectance: Spectrum::ZERO,
-            }),
             beta: Spectrum::ONE,
             pdf_fwd: 0.0,
             pdf_rev: 0.0,
@@ -97,13 +92,13 @@ impl Vertex {
         Self {
             beta: Spectrum::splat(1.0 / lens.pdf),
             pdf_fwd: lens.pdf,
-            ..Self::endpoint(VertexKind::Camera, lens.locus)
+            ..Self::new(lens.locus, Scattering::Camera)
         }
     }
 
     /// A point on light number `light`, which light subpaths draw with density `pdf_fwd`.
     pub fn light(context: &PathContext<'_>, light: u32, at: &LightPoint) -> Self {
-        let scene = context.scene;
+        let scene = context.job.scene;
         let prob = context.emission().prob(light as usize);
         let pdf_position = scene.light(light).pdf_position(&scene.light_context(), at);
         Self::on_light(context, light, at, prob * pdf_position)
@@ -117,11 +112,11 @@ impl Vertex {
         pdf_fwd: f32,
     ) -> Self {
         Self {
-            cell: context.cell(at.locus.point, at.locus.n_g),
+            cell: context.job.guide.cell(at.locus.point, at.locus.n_g),
             pdf_fwd,
             light: Some(light),
             light_primitive: at.primitive,
-            ..Self::endpoint(VertexKind::Light, at.locus)
+            ..Self::new(at.locus, Scattering::Light)
         }
     }
 
@@ -134,10 +129,10 @@ impl Vertex {
         beta: Spectrum,
         u_mix: impl FnOnce() -> f32,
     ) -> Self {
-        let (scene, surface) = (context.scene, &hit.surface);
+        let (scene, surface) = (context.job.scene, &hit.surface);
         let mut at = TexturePoint::new(surface);
         if let Some(differentials) = &hit.differentials {
-            at = at.seen(context.view.footprint(surface.point), differentials);
+            at = at.seen(context.job.view.footprint(surface.point), differentials);
         }
         let material = scene.material(hit.material).choose(&at, u_mix);
         let bsdf = material.bsdf(&at, scene.color(), &context.wavelengths);
@@ -146,15 +141,13 @@ impl Vertex {
             _ => surface.shading,
         };
         Self {
-            shading,
             wo,
-            bsdf,
             beta,
             albedo_fwd: bsdf.albedo(shading.to_local(wo)).max_lane(),
             light: hit.light.map(|(light, _)| light),
             light_primitive: hit.light.map_or(0, |(_, at)| at.primitive),
-            cell: context.cell(surface.point, shading.z),
-            ..Self::endpoint(VertexKind::Surface, surface.locus())
+            cell: context.job.guide.cell(surface.point, shading.z),
+            ..Self::new(surface.locus(), Scattering::Surface { shading, bsdf })
         }
     }
 
@@ -169,9 +162,9 @@ impl Vertex {
 
     /// Its point and its unit normal: that of the shading frame where there is one.
     pub(crate) fn place(&self) -> [Vec3; 2] {
-        let n = match self.kind {
-            VertexKind::Surface => self.shading.z,
-            VertexKind::Camera | VertexKind::Light => self.locus.n_g,
+        let n = match &self.scattering {
+            Scattering::Surface { shading, .. } => shading.z,
+            Scattering::Camera | Scattering::Light => self.locus.n_g,
         };
         [self.locus.point, n]
     }
@@ -180,13 +173,13 @@ impl Vertex {
     /// towards the camera. Both give the same receiver, as both are on one side of an opaque surface.
     #[inline]
     pub fn receiver(&self, w: Vec3) -> Receiver {
-        let n = self.shading.z;
-        let facing = if self.bsdf.transmits() {
-            Facing::Both(n)
-        } else if n.dot(w) < 0.0 {
-            Facing::Front(-n)
-        } else {
-            Facing::Front(n)
+        let facing = match &self.scattering {
+            Scattering::Surface { shading, bsdf } if !bsdf.transmits() => {
+                let n = shading.z;
+                Facing::Front(if n.dot(w) < 0.0 { -n } else { n })
+            }
+            Scattering::Surface { shading, .. } => Facing::Both(shading.z),
+            Scattering::Camera | Scattering::Light => Facing::Both(self.locus.n_g),
         };
         let point = self.locus.point;
         Receiver { point, facing }
@@ -196,14 +189,23 @@ impl Vertex {
     /// [`went_by_delta`](Self::went_by_delta) is about the walk's own step.
     #[inline]
     pub fn is_delta(&self) -> bool {
-        self.kind == VertexKind::Surface && self.bsdf.is_delta()
+        match &self.scattering {
+            Scattering::Surface { bsdf, .. } => bsdf.is_delta(),
+            Scattering::Camera | Scattering::Light => false,
+        }
+    }
+
+    /// True for a point on the lens, or a camera at infinity.
+    #[inline]
+    pub fn is_camera(&self) -> bool {
+        matches!(self.scattering, Scattering::Camera)
     }
 
     /// True on a light that no ray can hit by chance.
     #[inline]
     pub(super) fn is_on_delta_light(&self, context: &PathContext<'_>) -> bool {
         self.light
-            .is_some_and(|light| context.scene.light(light).is_delta())
+            .is_some_and(|light| context.job.scene.light(light).is_delta())
     }
 
     /// This vertex and `other` as they see each other; at most one of the two is at infinity.

@@ -83,13 +83,13 @@ pub fn camera_subpath(
         context,
         mode: TransportMode::Radiance,
         stream,
-        max_vertices: context.settings.max_vertices(),
+        max_vertices: context.job.settings.max_vertices(),
     };
     // Cameras draw rays in proportion to their importance: its weight leaves the film's alone.
     let step = Step {
         direction: ray.direction,
         beta: Spectrum::splat(weight),
-        pdf_w: context.view.camera().pdf_direction(ray.direction),
+        pdf_w: context.job.view.camera().pdf_direction(ray.direction),
     };
     let first = subpaths.vertices.len();
     subpaths.vertices.push(Vertex::camera(&ray.lens));
@@ -109,6 +109,7 @@ pub fn light_subpath(
         return subpaths.end(None);
     };
     let emitted = context
+        .job
         .scene
         .color()
         .illuminant(emission.emitted_cos, &context.wavelengths);
@@ -127,7 +128,7 @@ pub fn light_subpath(
         mode: TransportMode::Importance,
         stream,
         // At least the lens is the camera's.
-        max_vertices: context.settings.max_vertices() - 1,
+        max_vertices: context.job.settings.max_vertices() - 1,
     };
     let first = subpaths.vertices.len();
     subpaths.vertices.push(start);
@@ -142,7 +143,7 @@ fn draw_emission(
     context: &PathContext<'_>,
     stream: &SampleStream,
 ) -> Option<(Vertex, EmissionSample)> {
-    let scene = context.scene;
+    let scene = context.job.scene;
     let at = |purpose| Dimension::at(0, purpose);
     let u_light = || stream.get_1d(at(Purpose::Light));
     let (light, prob) = context.emission().sample(u_light)?;
@@ -236,6 +237,7 @@ impl Walker<'_> {
             let chances = Chances::new(self.stream, count);
             let hit = self
                 .context
+                .job
                 .scene
                 .intersect(origin, step.direction, chances);
             let Some(hit) = hit else {
@@ -284,7 +286,7 @@ impl Walker<'_> {
         vertex.went_by_delta = scattered.is_delta;
         vertex.albedo_rev = scattered.albedo_reverse;
         let beta = vertex.beta * scattered.weight;
-        let survival = self.context.settings.roulette.survival_prob(
+        let survival = self.context.job.settings.roulette.survival_prob(
             index - 1,
             vertex.albedo_fwd,
             magnitude(beta) / start,

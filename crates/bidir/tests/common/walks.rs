@@ -1,10 +1,10 @@
 //! Pairs of subpaths, walked in a scene.
 
 use super::Shot;
+use bidir::guide::{Cells, LightProposals, PairSums};
 use bidir::light::LightChoice;
 use bidir::path::{
-    Cells, Connections, LightProposals, PairSums, PathContext, PathSettings, Subpath, Subpaths,
-    camera_subpath, light_subpath,
+    Job, PathContext, PathSettings, Subpath, Subpaths, camera_subpath, light_subpath,
 };
 use bidir::sampler::{Dimension, Domain, Purpose, Sampler, SamplerKind};
 use bidir::spectrum::Wavelengths;
@@ -19,7 +19,7 @@ fn walk(context: &PathContext<'_>, index: u64, [light, camera]: [&mut Subpaths; 
     let stream = sampler.stream(Domain::Camera, 0, index);
     let raster = stream.get_2d(Dimension::at(0, Purpose::Film)) * 8.0;
     let lens = stream.get_2d(Dimension::at(0, Purpose::Lens));
-    let ray = context.view.camera().sample_ray(raster, || lens);
+    let ray = context.job.view.camera().sample_ray(raster, || lens);
     let mut stats = Stats::default();
     camera.clear();
     camera_subpath(context, &stream, &ray, 1.0, camera, &mut stats);
@@ -34,8 +34,8 @@ pub(crate) fn for_each_pair(
     scene: &Shot,
     f: impl FnMut(&PathContext<'_>, &Subpath<'_>, &Subpath<'_>),
 ) {
-    let connections = Connections::of_own_subpaths(scene.view.film());
-    for_some_pairs(PAIRS, settings, scene, connections, f);
+    let job = Job::of_own_subpaths(&scene.scene, &scene.view, settings);
+    for_some_pairs(PAIRS, job, f);
 }
 
 /// Proposals for cells of the scene that say something else of every pair, and nothing of some.
@@ -57,7 +57,7 @@ pub(crate) fn some_proposals(scene: &Shot) -> LightProposals {
 }
 
 /// Another choice of lights than by power.
-pub(crate) fn some_emission(scene: &Shot) -> LightChoice {
+pub(crate) fn some_light_start(scene: &Shot) -> LightChoice {
     let lights = 0..scene.light_choice().count();
     LightChoice::with_weights(lights.map(|light| (7 - light * 5 % 7) as f32))
 }
@@ -65,17 +65,12 @@ pub(crate) fn some_emission(scene: &Shot) -> LightChoice {
 /// The same with the first `pairs` of them.
 pub(crate) fn for_some_pairs(
     pairs: u64,
-    settings: &PathSettings,
-    shot: &Shot,
-    connections: Connections<'_>,
+    job: Job<'_>,
     mut f: impl FnMut(&PathContext<'_>, &Subpath<'_>, &Subpath<'_>),
 ) {
     let context = PathContext {
-        scene: &shot.scene,
-        view: &shot.view,
-        settings,
+        job,
         wavelengths: Wavelengths::default(),
-        connections,
     };
     let [mut light, mut camera] = [Subpaths::default(), Subpaths::default()];
     for index in 0..pairs {

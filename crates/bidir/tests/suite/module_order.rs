@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// From the lowest to the highest.
-const ORDER: [&str; 21] = [
+const ORDER: [&str; 23] = [
     "names",
     "math",
     "spectrum",
@@ -22,9 +22,11 @@ const ORDER: [&str; 21] = [
     "view",
     "scene",
     "stats",
+    "guide",
     "path",
     "select",
     "integrator",
+    "analysis",
     "settings",
 ];
 

@@ -6,14 +6,15 @@
 
 use crate::common;
 use crate::common::Shot;
-use crate::common::walks::{for_each_pair, for_some_pairs, some_emission, some_proposals};
+use crate::common::walks::{for_each_pair, for_some_pairs, some_light_start, some_proposals};
 use bidir::bsdf::TransportMode;
+use bidir::guide::Guide;
 use bidir::light::Part;
 use bidir::math::Vec2;
 use bidir::math::Vec3;
 use bidir::path::{
-    Connections, JoinedPath, LightChoiceKind, LightPointChoice, MAX_VERTICES, MisHeuristic,
-    PathContext, PathDensities, PathRoulette, PathSettings, Vertex,
+    Job, JoinedPath, LightChoiceKind, LightPointChoice, MAX_VERTICES, MisHeuristic, PathContext,
+    PathDensities, PathRoulette, PathSettings, StrategyCounts, Vertex,
 };
 use bidir::spectrum::Spectrum;
 
@@ -32,11 +33,9 @@ fn survival(context: &PathContext<'_>, index: usize, before: &Vertex) -> f32 {
     if index < 2 {
         return 1.0;
     }
-    let albedo = before
-        .bsdf
-        .albedo(before.shading.to_local(before.wo))
-        .max_lane();
+    let albedo = before.albedo(before.wo).max_lane();
     context
+        .job
         .settings
         .roulette
         .density_factor(index - 2, || albedo)
@@ -67,8 +66,7 @@ fn rewalk(
             let step = segment.geometry_term / (vertex.pdf_fwd * roulette);
             // The first camera density counts samples per pixel, and so does importance.
             vertex.beta = before.beta * scatter * step;
-            let local = vertex.shading.to_local(vertex.wo);
-            vertex.albedo_fwd = vertex.bsdf.albedo(local).max_lane();
+            vertex.albedo_fwd = vertex.albedo(vertex.wo).max_lane();
         }
         walk.push(vertex);
         densities.push(density);
@@ -78,7 +76,7 @@ fn rewalk(
         if let Some(after) = walk.get(i + 2).copied() {
             let (wi, back) = (next.segment_to(&after).w, next.segment_to(&vertex));
             walk[i].pdf_rev = next.turn(wi, back.w).pdf(context) * back.to_b;
-            walk[i + 1].albedo_rev = next.bsdf.albedo(next.shading.to_local(wi)).max_lane();
+            walk[i + 1].albedo_rev = next.albedo(wi).max_lane();
         }
     }
     (walk, densities)
@@ -188,20 +186,23 @@ fn took_a_dirac_lobe(subpath: &[Vertex]) -> bool {
 /// The density with which strategy s = 1 draws x_0.
 fn next_event_density(context: &PathContext<'_>, path: &[Vertex]) -> f32 {
     let index = path[0].light.expect("x_0 is on a light");
-    let (light, lights) = (context.scene.light(index), context.scene.light_context());
+    let (light, lights) = (
+        context.job.scene.light(index),
+        context.job.scene.light_context(),
+    );
     let at = path[0].light_point();
-    let by_power = context.scene.light_choice();
-    let emission = context.connections.emission.unwrap_or(by_power);
-    if context.settings.light_point == LightPointChoice::Shared || path.len() == 2 {
+    let by_power = context.job.scene.light_choice();
+    let emission = context.job.guide.light_start.unwrap_or(by_power);
+    if context.job.settings.light_point == LightPointChoice::Shared || path.len() == 2 {
         return emission.prob(index as usize) * light.pdf_position(&lights, &at);
     }
     let x1 = &path[1];
-    let (part, prob) = match context.settings.light_choice {
+    let (part, prob) = match context.job.settings.light_choice {
         LightChoiceKind::Power => (Part::Whole, by_power.prob(index as usize)),
         LightChoiceKind::Tree => {
             // Light leaves on the side that it goes on at.
             let receiver = || x1.receiver(path[2].locus.point - x1.locus.point);
-            let tree = context.scene.light_tree();
+            let tree = context.job.scene.light_tree();
             let chosen = tree.find(receiver, index, at.primitive);
             (chosen.part, chosen.prob)
         }
@@ -242,50 +243,45 @@ fn strategies(context: &PathContext<'_>, path: &[Vertex]) -> Vec<(usize, f32, Sp
 
 /// n_s of these connections.
 fn count(context: &PathContext<'_>, s: usize, path: &[Vertex]) -> f64 {
-    let Connections {
+    let StrategyCounts {
         next_events,
-        proposals,
         light_subpaths,
         ..
-    } = context.connections;
+    } = context.job.counts;
+    let is_guided = context.job.guide.proposals.is_some();
     match (s, path.len() - s) {
         (_, 1) => light_subpaths,
         (1, t) => next_events[usize::from(t > 2)],
-        (s, t) if s > 0 && proposals.is_some() => context.count(s, t, [&path[s - 1], &path[s]]),
+        (s, t) if s > 0 && is_guided => context.count(s, t, [&path[s - 1], &path[s]]),
         _ => 1.0,
     }
 }
 
 fn check_paths(mis: MisHeuristic, light_point: LightPointChoice, scene: &Shot) {
-    let connections = Connections::of_own_subpaths(scene.view.film());
-    check_paths_with(&settings(mis, light_point), scene, connections);
+    let settings = settings(mis, light_point);
+    check_job(Job::of_own_subpaths(&scene.scene, &scene.view, &settings));
 }
 
-fn check_paths_with(settings: &PathSettings, scene: &Shot, connections: Connections<'_>) {
+fn check_job(job: Job<'_>) {
+    let settings = job.settings;
     let mut paths = 0;
-    for_some_pairs(
-        400,
-        settings,
-        scene,
-        connections,
-        |context, light, camera| {
-            for s in 1..=light.vertices.len() {
-                for t in 1..=camera.vertices.len() {
-                    let (light, camera) = (&light.vertices[..s], &camera.vertices[..t]);
-                    let path = JoinedPath::connection(light, camera);
-                    let contributes = !path.contribution(context).is_black();
-                    // Such a step cannot be made again from points alone.
-                    let is_bound = took_a_dirac_lobe(light) || took_a_dirac_lobe(camera);
-                    if s + t > settings.max_vertices() || !contributes || is_bound {
-                        continue;
-                    }
-                    let path = whole_path(context, light, camera);
-                    check_path(context, &path, settings.mis);
-                    paths += 1;
+    for_some_pairs(400, job, |context, light, camera| {
+        for s in 1..=light.vertices.len() {
+            for t in 1..=camera.vertices.len() {
+                let (light, camera) = (&light.vertices[..s], &camera.vertices[..t]);
+                let path = JoinedPath::connection(light, camera);
+                let contributes = !path.contribution(context).is_black();
+                // Such a step cannot be made again from points alone.
+                let is_bound = took_a_dirac_lobe(light) || took_a_dirac_lobe(camera);
+                if s + t > settings.max_vertices() || !contributes || is_bound {
+                    continue;
                 }
+                let path = whole_path(context, light, camera);
+                check_path(context, &path, settings.mis);
+                paths += 1;
             }
-        },
-    );
+        }
+    });
     assert!(paths > 1000, "{paths} paths");
 }
 
@@ -345,8 +341,7 @@ fn lamps_are_one_function_of_the_path_however_they_are_chosen() {
                 light_choice,
                 ..settings(mis, LightPointChoice::Fresh)
             };
-            let connections = Connections::of_own_subpaths(scene.view.film());
-            check_paths_with(&settings, &scene, connections);
+            check_job(Job::of_own_subpaths(&scene.scene, &scene.view, &settings));
         }
     }
 }
@@ -356,17 +351,23 @@ fn lamps_are_one_function_of_the_path_however_they_are_chosen() {
 fn proposals_are_one_function_of_the_path() {
     for scene in [common::room(0.1), common::gallery(0.1)] {
         let proposals = some_proposals(&scene);
-        let emission = some_emission(&scene);
-        let connections = Connections {
-            per_vertex: [1.7, 0.4],
+        let light_start = some_light_start(&scene);
+        let counts = StrategyCounts {
+            connections: [1.7, 0.4],
             next_events: [3.0, 2.0],
-            proposals: Some(&proposals),
-            emission: Some(&emission),
             light_subpaths: 16.0,
+        };
+        let guide = Guide {
+            proposals: Some(&proposals),
+            light_start: Some(&light_start),
         };
         for mis in [MisHeuristic::Balance, MisHeuristic::Power] {
             let settings = settings(mis, LightPointChoice::Fresh);
-            check_paths_with(&settings, &scene, connections);
+            check_job(Job {
+                counts,
+                guide,
+                ..Job::of_own_subpaths(&scene.scene, &scene.view, &settings)
+            });
         }
     }
 }
@@ -384,6 +385,7 @@ fn densities_of_points_in_front_of_each_other_are_reciprocal() {
         assert_close(there.geometry_term, back.geometry_term, "G");
         if let [lens, first, ..] = camera.vertices {
             let raster = context
+                .job
                 .view
                 .camera()
                 .raster(lens.locus.point, lens.segment_to(first).w);

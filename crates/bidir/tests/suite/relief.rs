@@ -11,7 +11,7 @@ use bidir::driver::Settings;
 use bidir::integrator::IntegratorKind;
 use bidir::material::{Bitangent, Material, Mixture, NormalMap, Relief};
 use bidir::math::{Affine3A, Vec2, Vec3};
-use bidir::path::{Connections, PathContext, PathSettings, Vertex};
+use bidir::path::{Job, PathContext, PathSettings, Scattering, Vertex};
 use bidir::sampler::{Domain, Sampler, SamplerKind};
 use bidir::scene::{Chances, SceneBuilder};
 use bidir::shape::Shape;
@@ -163,7 +163,7 @@ fn vertex(context: &PathContext<'_>, origin: Vec3, target: Vec3) -> Vertex {
     let stream = Sampler::new(SamplerKind::Independent, 1).stream(Domain::Camera, 0, 0);
     let direction = (target - origin).normalize();
     let chances = Chances::new(&stream, 1);
-    let hit = context.scene.intersect(origin, direction, chances);
+    let hit = context.job.scene.intersect(origin, direction, chances);
     let hit = hit.expect("the floor is there");
     Vertex::surface(context, &hit, -direction, Spectrum::ONE, || 0.9)
 }
@@ -174,12 +174,10 @@ fn a_point_looks_the_same_to_every_walk() {
     let mut builder = builder(SIZE, 0.0);
     add_floor(&mut builder, floor());
     let floor = builder.build().expect("the floor is valid");
+    let settings = PathSettings::default();
     let context = PathContext {
-        scene: &floor.scene,
-        view: &floor.view,
-        settings: &PathSettings::default(),
+        job: Job::of_own_subpaths(&floor.scene, &floor.view, &settings),
         wavelengths: Wavelengths::default(),
-        connections: Connections::of_own_subpaths(floor.view.film()),
     };
     for i in 0..64 {
         let along = Vec2::new(
@@ -189,9 +187,13 @@ fn a_point_looks_the_same_to_every_walk() {
         let target = Vec3::new(-1.7 + 3.4 * along.x, -1.3, -1.3 + 2.9 * along.y);
         let near = vertex(&context, target + Vec3::new(0.01, 0.02, 0.01), target);
         let far = vertex(&context, target + Vec3::new(7.0, 40.0, -9.0), target);
-        let turn = near.shading.z.distance(far.shading.z);
+        let [near, far] = [near, far].map(|vertex| match vertex.scattering {
+            Scattering::Surface { shading, bsdf } => (shading.z, bsdf.albedo(Vec3::Z)[0]),
+            Scattering::Camera | Scattering::Light => panic!("it is on the floor"),
+        });
+        let turn = near.0.distance(far.0);
         assert!(turn < 2e-2, "the normal turns by {turn}");
-        let albedos = [near, far].map(|vertex| vertex.bsdf.albedo(Vec3::Z)[0]);
-        assert!((albedos[0] - albedos[1]).abs() < 1e-2, "{albedos:?}");
+        let (near, far) = (near.1, far.1);
+        assert!((near - far).abs() < 1e-2, "albedos of {near} and {far}");
     }
 }

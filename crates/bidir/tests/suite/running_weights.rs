@@ -2,15 +2,16 @@
 //! make, and for every way to weigh them.
 
 use crate::common;
-use crate::common::walks::{for_some_pairs, some_emission, some_proposals};
+use crate::common::walks::{for_some_pairs, some_light_start, some_proposals};
 use crate::common::{Shot, ShotBuilder};
 use bidir::camera::{Camera, Orthographic, OrthographicSettings, Perspective, PerspectiveSettings};
+use bidir::guide::Guide;
 use bidir::light::{DistantLight, InfiniteLight, Light, PointLight};
 use bidir::math::{Affine3A, Vec2, Vec3};
 use bidir::path::{
-    Arrival, Connections, JoinedPath, Junction, LightChoiceKind, LightPointChoice, MisHeuristic,
+    Arrival, Job, JoinedPath, Junction, LightChoiceKind, LightPointChoice, MisHeuristic,
     PathContext, PathDensities, PathRoulette, PathSettings, PathSums, RunningSums, Strategies,
-    Subpath, Vertex, Weights, sample_next_event,
+    StrategyCounts, Subpath, Vertex, Weights, sample_next_event,
 };
 use bidir::shape::Shape;
 
@@ -51,7 +52,7 @@ impl Comparison {
         assert!(
             (running - pure).abs() <= TOLERANCE * pure + SMALL,
             "s = {s}, t = {t}: {running} instead of {pure}; {}",
-            describe(context.settings)
+            describe(context.job.settings)
         );
         self.paths += 1;
         self.shared += usize::from(s + t > 4 && (0.01..0.99).contains(&pure));
@@ -64,7 +65,7 @@ impl Comparison {
         light: &Subpath<'_>,
         camera: &Subpath<'_>,
     ) {
-        self.weights.set(context.settings);
+        self.weights.set(context.job.settings);
         self.sums.iter_mut().for_each(RunningSums::clear);
         if self.weights.uses_sums() {
             self.sums[0].add_light(context, light);
@@ -73,7 +74,7 @@ impl Comparison {
         self.compare_hits(context, camera);
         self.compare_light_images(context, light.vertices);
         self.compare_next_events(context, camera.vertices);
-        let fresh = context.settings.light_point == LightPointChoice::Fresh;
+        let fresh = context.job.settings.light_point == LightPointChoice::Fresh;
         for t in 2..=camera.vertices.len() {
             for s in 1 + usize::from(fresh)..=light.vertices.len() {
                 let (light, camera) = (&light.vertices[..s], &camera.vertices[..t]);
@@ -102,14 +103,18 @@ impl Comparison {
             }
         }
         let Some(escape) = camera.escape else { return };
-        for arrival in Arrival::of_escape(context.scene, escape) {
+        for arrival in Arrival::of_escape(context.job.scene, escape) {
             let x0 = arrival.vertex(context);
             self.compare(context, &JoinedPath::hit(&x0, camera.vertices));
         }
     }
 
     fn compare_light_images(&mut self, context: &PathContext<'_>, light: &[Vertex]) {
-        let lens = context.view.camera().sample_lens(|| Vec2::new(0.3, 0.8));
+        let lens = context
+            .job
+            .view
+            .camera()
+            .sample_lens(|| Vec2::new(0.3, 0.8));
         let lens = Vertex::camera(&lens);
         for s in 1..=light.len() {
             if !(light[s - 1].locus.is_infinite() && lens.locus.is_infinite()) {
@@ -188,26 +193,33 @@ fn describe(settings: &PathSettings) -> String {
 fn check(scene: &Shot, pairs: u64) {
     let (mut comparison, mut least) = (Comparison::default(), 0);
     let proposals = some_proposals(scene);
-    let emission = some_emission(scene);
-    let shared = Connections {
-        per_vertex: [2.7, 0.6],
+    let light_start = some_light_start(scene);
+    let counts = StrategyCounts {
+        connections: [2.7, 0.6],
         next_events: [3.0, 2.0],
-        proposals: Some(&proposals),
-        emission: Some(&emission),
         light_subpaths: 16.0,
     };
-    let own = Connections::of_own_subpaths(scene.view.film());
-    let uniform = Connections {
-        proposals: None,
-        ..shared
+    let guide = Guide {
+        proposals: Some(&proposals),
+        light_start: Some(&light_start),
     };
     for settings in all_settings() {
-        for_some_pairs(pairs, &settings, scene, shared, |context, light, camera| {
-            for connections in [own, uniform, shared] {
-                let context = PathContext {
-                    connections,
-                    ..*context
-                };
+        let own = Job::of_own_subpaths(&scene.scene, &scene.view, &settings);
+        let guided = Job {
+            counts,
+            guide,
+            ..own
+        };
+        let uniform = Job {
+            guide: Guide {
+                proposals: None,
+                ..guide
+            },
+            ..guided
+        };
+        for_some_pairs(pairs, guided, |context, light, camera| {
+            for job in [own, uniform, guided] {
+                let context = PathContext { job, ..*context };
                 comparison.compare_pair(&context, light, camera);
             }
         });
@@ -311,9 +323,7 @@ fn long_paths() {
         let mut comparison = Comparison::default();
         for_some_pairs(
             4,
-            &settings,
-            &scene,
-            Connections::of_own_subpaths(scene.view.film()),
+            Job::of_own_subpaths(&scene.scene, &scene.view, &settings),
             |context, light, camera| {
                 comparison.compare_pair(context, light, camera);
             },

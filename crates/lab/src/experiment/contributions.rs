@@ -10,8 +10,8 @@ use super::loaded_scene::LoadedScene;
 use super::{Experiment, MethodSpec, is_in};
 use crate::results::Contributions;
 use bidir::driver::Settings;
-use bidir::integrator::{Batch, Job, Method, Sample};
-use bidir::path::Connections;
+use bidir::integrator::{Batch, Method, Sample};
+use bidir::path::Job;
 use bidir::sampler::{Domain, Sampler};
 use bidir::select::ShadowRays;
 use rayon::prelude::*;
@@ -144,12 +144,7 @@ fn terms(loaded: &LoadedScene<'_>, settings: &Settings, pass: u64) -> Vec<[f64; 
     let LoadedScene { scene, view, .. } = loaded;
     let film = view.film();
     let sampler = Sampler::new(settings.sampler, settings.seed);
-    let job = Job {
-        scene,
-        view,
-        settings: &settings.path,
-        connections: Connections::of_own_subpaths(film),
-    };
+    let job = Job::of_own_subpaths(scene, view, &settings.path);
     let method = Method::Bdpt(ShadowRays::All.selector(0.0));
     let mut batch = Batch::default();
     let mut terms = Vec::new();

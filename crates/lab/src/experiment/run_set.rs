@@ -13,7 +13,7 @@ use super::run::Run;
 use super::settings::{no_effect, texts};
 use super::{Absent, Experiment, MethodSpec, contributions};
 use crate::results::{BudgetInfo, FORMAT, Machine, MethodInfo, Record, Results};
-use bidir::integrator::{LostLight, lost_light};
+use bidir::analysis::{LostLight, lost_light};
 use bidir::scene::Isa;
 use formats::scene::Files;
 use std::collections::BTreeMap;

@@ -5,7 +5,7 @@ use bidir::camera::{Camera, LensSample};
 use bidir::driver::Session;
 use bidir::locus::Locus;
 use bidir::math::{Vec2, Vec3};
-use bidir::path::{Subpath, Vertex, VertexKind};
+use bidir::path::{Scattering, Subpath, Vertex};
 use bidir::scene::RenderSpace;
 use bidir::spectrum::Rgb;
 use serde::Serialize;
@@ -142,10 +142,10 @@ impl SubpathReport {
 
 impl VertexReport {
     fn new(color: &Color, view: &View<'_>, vertex: &Vertex) -> Self {
-        let kind = match vertex.kind {
-            VertexKind::Camera => "camera",
-            VertexKind::Light => "light",
-            VertexKind::Surface => "surface",
+        let kind = match vertex.scattering {
+            Scattering::Camera => "camera",
+            Scattering::Light => "light",
+            Scattering::Surface { .. } => "surface",
         };
         Self {
             kind,

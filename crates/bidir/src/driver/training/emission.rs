@@ -7,8 +7,8 @@
 //! what is bright.
 
 use super::constants::{LIGHT_PRIOR, POWER_FRACTION};
+use crate::guide::{Cell, Cells};
 use crate::light::LightChoice;
-use crate::path::{Cell, Cells};
 
 /// A connection of two cells.
 #[derive(Clone, Copy)]

@@ -8,9 +8,10 @@ use super::survey::Survey;
 use super::{Settings, Task, Training};
 use crate::contribution;
 use crate::film::FilmSettings;
-use crate::integrator::{Batch, Job, LightStart, ProposalKind, connectable};
+use crate::guide::{Cell, Cells, LightProposals, PairSums};
+use crate::integrator::{Batch, LightStart, ProposalKind, connectable};
 use crate::math::Vec3;
-use crate::path::{Cell, Cells, ConnectionPart, LightProposals, PairSums};
+use crate::path::{ConnectionPart, Job};
 use crate::select::Candidate;
 use crate::strategy::Strategy;
 
@@ -227,9 +228,9 @@ impl Training {
         let counts = Counts::new(settings, settings.path.roulette, self.light_vertices);
         let connections = survey.connections(film, &cells, &counts);
         if settings.lvc.light_start == LightStart::Learned {
-            self.emission = emission::learned(power, &connections, survey.samples());
+            self.light_start = emission::learned(power, &connections, survey.samples());
         }
-        let gain = |light| emission::gain(power, self.emission.as_ref(), light);
+        let gain = |light| emission::gain(power, self.light_start.as_ref(), light);
         let mut sums = survey.pair_sums(&cells, gain);
         self.light_vertices = sums.light_vertices.iter().sum();
         if settings.lvc.proposal == ProposalKind::Learned {

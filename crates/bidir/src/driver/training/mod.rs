@@ -19,9 +19,10 @@ pub use plan::Plan;
 
 use super::Settings;
 use crate::film::FilmSettings;
+use crate::guide::{Guide, LightProposals};
 use crate::integrator::{IntegratorKind, LvcSettings, group_size};
 use crate::light::LightChoice;
-use crate::path::{Connections, LightProposals};
+use crate::path::StrategyCounts;
 use crate::scene::Scene;
 use crate::stats::RayCounts;
 use crate::view::View;
@@ -39,7 +40,7 @@ pub struct Training {
     /// The choice of light vertices, where that is learned.
     pub proposals: Option<LightProposals>,
     /// The choice of the light of light subpaths, where that is learned.
-    pub emission: Option<LightChoice>,
+    pub light_start: Option<LightChoice>,
     /// The plan of `auto`.
     pub plan: Option<Plan>,
     /// The samples it took.
@@ -105,7 +106,7 @@ impl Training {
             mean_luminance: (survey.luminance / survey.samples()) as f32,
             light_vertices: survey.light_vertices(),
             proposals: None,
-            emission: None,
+            light_start: None,
             plan: None,
             samples: survey.stats.samples,
             rays: survey.stats.rays,
@@ -127,21 +128,23 @@ impl Training {
     }
 
     /// The counts of the strategies of `lvc`, with `light_subpaths` subpaths in a pass.
-    pub(super) fn connections(
-        &self,
-        settings: LvcSettings,
-        light_subpaths: u64,
-    ) -> Connections<'_> {
+    pub(super) fn counts(&self, settings: LvcSettings, light_subpaths: u64) -> StrategyCounts {
         let each = |count: u16| match self.light_vertices {
             0.0 => 1.0,
             vertices => f64::from(count) / vertices,
         };
-        Connections {
-            per_vertex: settings.candidates.get().map(each),
+        StrategyCounts {
+            connections: settings.candidates.get().map(each),
             next_events: settings.next_events.get().map(f64::from),
-            proposals: self.proposals.as_ref(),
-            emission: self.emission.as_ref(),
             light_subpaths: light_subpaths as f64,
+        }
+    }
+
+    /// The knowledge that the estimator uses.
+    pub(super) fn guide(&self) -> Guide<'_> {
+        Guide {
+            proposals: self.proposals.as_ref(),
+            light_start: self.light_start.as_ref(),
         }
     }
 }

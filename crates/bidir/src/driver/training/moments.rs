@@ -19,8 +19,8 @@ use super::constants::{
 use super::survey::Survey;
 use crate::contribution::Contribution;
 use crate::film::FilmSettings;
-use crate::integrator::{Batch, IntegratorKind, Job};
-use crate::path::{PathContext, PathRoulette, Shares};
+use crate::integrator::{Batch, IntegratorKind};
+use crate::path::{Job, PathContext, PathRoulette, Shares};
 use crate::select::ShadowRays;
 use crate::strategy::Strategy;
 use std::ops::AddAssign;

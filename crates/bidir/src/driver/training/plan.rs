@@ -5,9 +5,8 @@ use super::constants::{BDPT_ALLOWANCE, PATH_ALLOWANCE};
 use super::moments::Counts;
 use super::survey::Survey;
 use super::{Settings, Task};
-use crate::integrator::{
-    BlindSpot, CandidateCount, IntegratorKind, SamplesPerSubpath, blind_spots,
-};
+use crate::analysis::{BlindSpot, blind_spots};
+use crate::integrator::{CandidateCount, IntegratorKind, SamplesPerSubpath};
 use crate::path::{LightPointChoice, PathRoulette};
 use crate::select::ShadowRays;
 use std::fmt;

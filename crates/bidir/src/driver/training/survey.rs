@@ -8,8 +8,8 @@ use super::extent;
 use super::learning::Found;
 use super::moments::{Term, Work};
 use super::{Settings, Task};
-use crate::integrator::{Batch, Entry, Job, Link, Method, Sample};
-use crate::path::{Connections, MisHeuristic, PathDensities};
+use crate::integrator::{Batch, Entry, Link, Method, Sample};
+use crate::path::{Job, MisHeuristic, PathDensities};
 use crate::sampler::{Domain, Sampler};
 use crate::scene::Scene;
 use crate::select::{Candidate, ShadowRays};
@@ -69,7 +69,7 @@ impl Survey {
     /// Adds what was made of the one sample of `batch`.
     fn keep(&mut self, job: &Job<'_>, batch: &Batch) {
         let sample = &batch.samples[0];
-        let (context, film) = (job.context(sample), job.view.film());
+        let (context, film) = (sample.context(job), job.view.film());
         let [x, y] = sample.pixel.map(i64::from);
         let own = film.crop.index(x, y).map(|pixel| (pixel, 1.0));
         let (mut densities, mut parts) = (PathDensities::default(), Vec::new());
@@ -157,12 +157,7 @@ impl<'a> Surveyor<'a> {
         let camera = sampler.stream(Domain::TrainingCamera, number, 0);
         let light = sampler.stream(Domain::TrainingLight, 0, number);
         let pixel = spread::point(&self.view.film().crop, number);
-        let job = Job {
-            scene: self.scene,
-            view: self.view,
-            settings: &self.settings.path,
-            connections: Connections::of_own_subpaths(self.view.film()),
-        };
+        let job = Job::of_own_subpaths(self.scene, self.view, &self.settings.path);
         batch.fill([Sample::new(self.scene, 0, pixel, camera, light)]);
         self.method.run(&job, batch);
         survey.keep(&job, batch);

@@ -2,9 +2,9 @@
 
 use super::*;
 use crate::camera::LensSample;
+use crate::guide::PairSums;
 use crate::locus::Locus;
 use crate::math::Vec3;
-use crate::path::PairSums;
 
 const SUBPATHS: usize = 20;
 /// The places of numbers that are drawn with, evenly spaced.

@@ -2,11 +2,12 @@
 
 use super::super::batch::drop_term;
 use super::super::cache::{LightCache, Place};
-use super::super::{Batch, CandidateCount, Job, Sample};
+use super::super::{Batch, CandidateCount, Sample};
 use super::pairs::Pairs;
 use crate::contribution::{Term, is_summable};
 use crate::path::{
-    JoinedPath, LightSums, PathContext, PathSums, RunningSums, Subpath, Subpaths, Vertex, Weights,
+    Job, JoinedPath, LightSums, PathContext, PathSums, RunningSums, Subpath, Subpaths, Vertex,
+    Weights,
 };
 use crate::sampler::{Dimension, Purpose};
 use crate::select::Candidate;
@@ -55,7 +56,7 @@ pub(in super::super) fn connect(job: &Job<'_>, batch: &mut Batch, source: Source
     for (number, sample) in samples.iter().enumerate() {
         let walk = camera.get(number);
         let mut connector = Connector {
-            context: job.context(sample),
+            context: sample.context(job),
             sample,
             camera: walk,
             camera_sums: camera_sums.camera(walk.first),
@@ -147,7 +148,7 @@ struct Connector<'a> {
 impl Connector<'_> {
     /// Connects camera vertex number `t` with the vertices of the sample's own light subpath.
     fn offer_own(&mut self, t: usize, lights: &Lights<'_>, number: usize, pairs: &mut Pairs) {
-        let settings = self.context.settings;
+        let settings = self.context.job.settings;
         let walk = lights.walks.get(number);
         let longest = walk.vertices.len().min(settings.max_vertices() - t);
         for s in settings.light_point.first_walked()..=longest {
@@ -164,7 +165,7 @@ impl Connector<'_> {
 
     /// Connects camera vertex number `t` with `count` vertices of the cache, one of each of as many parts of it.
     fn offer_cached(&mut self, t: usize, lights: &Lights<'_>, count: u16) {
-        let proposals = self.context.connections.proposals;
+        let proposals = self.context.job.guide.proposals;
         let at = Dimension::at(t - 1, Purpose::CachedVertex);
         let u = f64::from(self.sample.camera.get_1d(at));
         let cell = self.camera.vertices[t - 1].cell;
@@ -174,7 +175,7 @@ impl Connector<'_> {
                 continue;
             };
             let place = lights.cache.place(draw.entry);
-            if usize::from(place.s) + t <= self.context.settings.max_vertices() {
+            if usize::from(place.s) + t <= self.context.job.settings.max_vertices() {
                 let end = LightEnd {
                     number: draw.entry + 1,
                     share: (draw.share / f64::from(count)) as f32,

@@ -7,13 +7,15 @@
 //! else is asked.
 
 use super::super::batch::enter;
-use super::super::{Batch, Job, Link, Sample};
+use super::super::{Batch, Link, Sample};
 use super::trace::trace;
 use crate::bsdf::TransportMode;
 use crate::contribution::Term;
 use crate::light::LightSample;
 use crate::locus::Locus;
-use crate::path::{Arrival, PathContext, Segment, Turn, Vertex, next_event_pdf, sample_next_event};
+use crate::path::{
+    Arrival, Job, PathContext, Segment, Turn, Vertex, next_event_pdf, sample_next_event,
+};
 use crate::sampler::{Dimension, Purpose};
 use crate::spectrum::Spectrum;
 use crate::stats::Stage;
@@ -31,7 +33,7 @@ pub(in super::super) fn direct(job: &Job<'_>, batch: &mut Batch) {
         ..
     } = batch;
     for (number, sample) in samples.iter().enumerate() {
-        let context = job.context(sample);
+        let context = sample.context(job);
         let walk = camera.get(number);
         let mut add = |term, link| entries.push(enter(stats, (number, sample), term, link));
         for (i, vertex) in walk.vertices.iter().enumerate().skip(1) {
@@ -40,13 +42,13 @@ pub(in super::super) fn direct(job: &Job<'_>, batch: &mut Batch) {
             {
                 add(term, Link::Walk);
             }
-            let connects = i + 2 <= context.settings.max_vertices() && !vertex.is_delta();
+            let connects = i + 2 <= context.job.settings.max_vertices() && !vertex.is_delta();
             if connects && let Some((term, ends)) = next_event(&context, sample, vertex, i) {
                 add(term, Link::Connection(ends));
             }
         }
         let escape = walk.escape.into_iter();
-        for arrival in escape.flat_map(|escape| Arrival::of_escape(context.scene, escape)) {
+        for arrival in escape.flat_map(|escape| Arrival::of_escape(context.job.scene, escape)) {
             if let Some(term) = hit(&context, walk.vertices, &arrival) {
                 add(term, Link::Walk);
             }
@@ -68,7 +70,7 @@ fn hit(context: &PathContext<'_>, before: &[Vertex], arrival: &Arrival) -> Optio
         1.0
     } else {
         let q = next_event_pdf(context, from, arrival.light, &arrival.at);
-        context.settings.mis.weight_of_two(arrival.pdf, q)
+        context.job.settings.mis.weight_of_two(arrival.pdf, q)
     };
     Some(Term {
         strategy: Strategy::new(0, before.len() + 1),
@@ -97,7 +99,7 @@ fn next_event(
     if contribution == Spectrum::ZERO {
         return None;
     }
-    let p = if context.scene.light(light).is_delta() {
+    let p = if context.job.scene.light(light).is_delta() {
         0.0
     } else {
         turn.pdf(context) * segment.to_a
@@ -106,7 +108,7 @@ fn next_event(
         strategy: Strategy::new(1, i + 1),
         light,
         contribution,
-        weight: context.settings.mis.weight_of_two(x0.pdf, p),
+        weight: context.job.settings.mis.weight_of_two(x0.pdf, p),
     };
     Some((term, ends))
 }

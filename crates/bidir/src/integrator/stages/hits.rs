@@ -1,9 +1,9 @@
 //! s = 0: the camera subpath hits lights, or escapes to those at infinity. No shadow rays.
 
 use super::super::batch::enter;
-use super::super::{Batch, Job, Link};
+use super::super::{Batch, Link};
 use crate::contribution::Term;
-use crate::path::{Arrival, JoinedPath, LightSums, PathContext, PathSums, Vertex, Weights};
+use crate::path::{Arrival, Job, JoinedPath, LightSums, PathContext, PathSums, Vertex, Weights};
 use crate::spectrum::Spectrum;
 use crate::stats::Stage;
 use crate::strategy::Strategy;
@@ -21,7 +21,7 @@ pub(in super::super) fn hits(job: &Job<'_>, batch: &mut Batch) {
         ..
     } = batch;
     for (number, sample) in samples.iter().enumerate() {
-        let context = job.context(sample);
+        let context = sample.context(job);
         let walk = camera.get(number);
         let sums = PathSums {
             light: LightSums::NONE,
@@ -38,7 +38,7 @@ pub(in super::super) fn hits(job: &Job<'_>, batch: &mut Batch) {
             }
         }
         let escape = walk.escape.into_iter();
-        for arrival in escape.flat_map(|escape| Arrival::of_escape(context.scene, escape)) {
+        for arrival in escape.flat_map(|escape| Arrival::of_escape(context.job.scene, escape)) {
             add(walk.vertices, &arrival);
         }
     }

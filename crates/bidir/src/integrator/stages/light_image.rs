@@ -2,13 +2,13 @@
 //! sees it. The film divides by its number of pixels; where there are fewer light subpaths, each counts more.
 
 use super::super::batch::enter;
-use super::super::{Batch, Job, Link, Sample};
+use super::super::{Batch, Link, Sample};
 use super::trace::trace;
 use crate::contribution::Term;
 use crate::film::SplatPlace;
 use crate::locus::Locus;
 use crate::math::Vec2;
-use crate::path::{JoinedPath, PathContext, PathSums, Vertex, VertexKind};
+use crate::path::{Job, JoinedPath, PathContext, PathSums, Scattering, Vertex};
 use crate::sampler::{Dimension, Purpose};
 use crate::spectrum::Spectrum;
 use crate::stats::Stage;
@@ -37,7 +37,7 @@ pub(in super::super) fn light_image(job: &Job<'_>, batch: &mut Batch, weighting:
         ..
     } = batch;
     for (number, sample) in samples.iter().enumerate() {
-        let context = job.context(sample);
+        let context = sample.context(job);
         let walk = light.get(first + number);
         let sums = PathSums {
             light: light_sums.light(first + number, walk.first),
@@ -70,7 +70,7 @@ pub(in super::super) fn lens_vertex(
     s: usize,
 ) -> Vertex {
     let at = Dimension::at(s, Purpose::LightImageLens);
-    let camera = context.view.camera();
+    let camera = context.job.view.camera();
     Vertex::camera(&camera.sample_lens(|| sample.light.get_2d(at)))
 }
 
@@ -88,10 +88,11 @@ struct LightImage<'a> {
 impl<'a> LightImage<'a> {
     /// Connects the last vertex of a light subpath to a lens point. None: nothing arrives on the film.
     fn new(context: &PathContext<'_>, light: &'a [Vertex], lens: &'a Vertex) -> Option<Self> {
-        let scene = context.scene;
+        let scene = context.job.scene;
         let end = light.last()?;
         // The image of a Dirac light itself would be a Dirac distribution: such lights are invisible.
-        if end.kind == VertexKind::Light && end.light.is_none_or(|i| scene.light(i).is_delta()) {
+        let is_start = matches!(end.scattering, Scattering::Light);
+        if is_start && end.light.is_none_or(|i| scene.light(i).is_delta()) {
             return None;
         }
         if lens.locus.is_infinite() && end.locus.is_infinite() {
@@ -103,11 +104,12 @@ impl<'a> LightImage<'a> {
         } else {
             lens.locus.point
         };
-        let raster = context.view.camera().raster(on_ray, -path.segment.w)?;
+        let raster = context.job.view.camera().raster(on_ray, -path.segment.w)?;
         if !reaches_film(context, raster) {
             return None;
         }
-        let share = context.view.film().light_paths() as f64 / context.connections.light_subpaths;
+        let share =
+            context.job.view.film().light_paths() as f64 / context.job.counts.light_subpaths;
         let contribution = path.contribution(context) * share as f32;
         (contribution != Spectrum::ZERO).then_some(Self {
             light: light[0].light?,
@@ -143,13 +145,13 @@ fn camera_end(context: &PathContext<'_>, lens: &Vertex, end: &Vertex) -> Locus {
     if !lens.locus.is_infinite() {
         return lens.locus;
     }
-    let depth = context.view.camera().depth(end.locus.point);
+    let depth = context.job.view.camera().depth(end.locus.point);
     Locus::in_space(end.locus.point + lens.locus.point * depth)
 }
 
 /// True where the filter of some pixel of the crop may reach `raster`.
 fn reaches_film(context: &PathContext<'_>, raster: Vec2) -> bool {
-    let film = context.view.film();
+    let film = context.job.view.film();
     let corner = |c: [u32; 2]| Vec2::new(c[0] as f32, c[1] as f32);
     let margin = film.filter.radius();
     let (min, max) = (

@@ -1,9 +1,9 @@
 //! s = 1: light points for camera vertices, where these have their own.
 
 use super::super::batch::NextEvent;
-use super::super::{Batch, CandidateCount, Job, Sample};
+use super::super::{Batch, CandidateCount, Sample};
 use crate::math::ONE_MINUS_EPSILON;
-use crate::path::{LightPointChoice, PathContext, Vertex, sample_next_event};
+use crate::path::{Job, LightPointChoice, PathContext, Vertex, sample_next_event};
 use crate::sampler::{Dimension, Purpose, kronecker_point};
 use crate::spectrum::Spectrum;
 
@@ -22,7 +22,7 @@ pub(in super::super) fn next_events(job: &Job<'_>, batch: &mut Batch, counts: Ca
         ..
     } = batch;
     for (number, sample) in samples.iter().enumerate() {
-        let context = job.context(sample);
+        let context = sample.context(job);
         let walk = camera.get(number);
         let longest = walk.vertices.len().min(job.settings.max_vertices() - 1);
         for t in 2..=longest {

@@ -25,7 +25,7 @@ impl Pairs {
     /// The choice of a sample with the numbers `camera`.
     pub(super) fn new(context: &PathContext<'_>, camera: &SampleStream) -> Self {
         let at = Dimension::at(0, Purpose::Pairs);
-        let has_choice = context.settings.max_vertices() > ALL_UP_TO;
+        let has_choice = context.job.settings.max_vertices() > ALL_UP_TO;
         Self {
             pointer: if has_choice {
                 camera.get_1d(at).into()

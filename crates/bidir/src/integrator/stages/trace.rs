@@ -1,7 +1,8 @@
 //! Choosing connections, and the shadow rays of those that were chosen.
 
-use super::super::{Batch, Entry, Fate, Job, Link};
+use super::super::{Batch, Entry, Fate, Link};
 use crate::contribution::Contribution;
+use crate::path::Job;
 use crate::scene::Scene;
 use crate::select::{Chosen, Draws, Selector};
 use crate::stats::{Stage, Stats};

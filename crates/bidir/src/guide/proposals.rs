@@ -21,8 +21,6 @@
 //! they are compared by, V̂ being the part of the connections of two cells that arrived in training.
 
 use super::cells::{Cell, Cells};
-use crate::film::FilmSettings;
-use crate::light::LightChoice;
 
 /// ε: the fraction of uniform proposals. Connections that training did not see cost at most 1/ε times as much as
 /// without it.
@@ -47,7 +45,7 @@ pub struct LightProposals {
     /// there instead of at the first cell of all.
     first: Vec<u8>,
     /// For each pair of cells, by that of camera vertices first, n κ / M.
-    relative: Vec<f32>,
+    count_factors: Vec<f32>,
     /// For each pair √V̂.
     root_visibility: Vec<f32>,
 }
@@ -100,7 +98,7 @@ impl LightProposals {
     pub fn new(cells: Cells, sums: &PairSums) -> Self {
         let mut cumulative = Vec::with_capacity(Cells::COUNT * (Cells::COUNT + 1));
         let mut first = Vec::with_capacity(Cells::COUNT * PARTS);
-        let mut relative = Vec::with_capacity(Cells::COUNT * Cells::COUNT);
+        let mut count_factors = Vec::with_capacity(Cells::COUNT * Cells::COUNT);
         let kappa = &sums.light_vertices;
         let all: f64 = kappa.iter().sum();
         for squares in sums.squares.chunks_exact(Cells::COUNT) {
@@ -115,13 +113,13 @@ impl LightProposals {
                     UNIFORM_PART + (1.0 - UNIFORM_PART) * (prob * all / kappa) as f32
                 }
             };
-            relative.extend(kappa.iter().zip(ends.windows(2)).map(of_cell));
+            count_factors.extend(kappa.iter().zip(ends.windows(2)).map(of_cell));
         }
         Self {
             cells,
             cumulative,
             first,
-            relative,
+            count_factors,
             root_visibility: sums.arrived.iter().copied().map(root_visibility).collect(),
         }
     }
@@ -134,8 +132,8 @@ impl LightProposals {
 
     /// n κ / M of a light vertex in the cell `light` for a camera vertex in the cell `camera`.
     #[inline]
-    pub(super) fn relative(&self, light: Cell, camera: Cell) -> f64 {
-        f64::from(self.relative[Cells::pair(light, camera)])
+    pub(super) fn count_factor(&self, light: Cell, camera: Cell) -> f64 {
+        f64::from(self.count_factors[Cells::pair(light, camera)])
     }
 
     /// √V̂ of a light vertex in the cell `light` and a camera vertex in the cell `camera`.
@@ -212,35 +210,6 @@ fn accumulate(kappa: &[f64], squares: &[f64], sums: &mut Vec<f32>) {
     }
 }
 
-/// How many samples strategies take of a path, and what training learned for drawing them.
-#[derive(Clone, Copy, Debug)]
-pub struct Connections<'a> {
-    /// In a pass, on average, for each light vertex of a path: the first vertex of a camera subpath (t = 2), and
-    /// those behind it.
-    pub per_vertex: [f64; 2],
-    /// The same for s = 1.
-    pub next_events: [f64; 2],
-    /// How light vertices are chosen. None: each is as likely as others.
-    pub proposals: Option<&'a LightProposals>,
-    /// How light subpaths choose the light that they begin on. None: by power.
-    pub emission: Option<&'a LightChoice>,
-    /// How many light subpaths a pass has, each with one light image.
-    pub light_subpaths: f64,
-}
-
-impl Connections<'_> {
-    /// With every vertex of one light subpath; each sample of `film` has its own.
-    pub fn of_own_subpaths(film: &FilmSettings) -> Self {
-        Self {
-            per_vertex: [1.0; 2],
-            next_events: [1.0; 2],
-            proposals: None,
-            emission: None,
-            light_subpaths: film.light_paths() as f64,
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -276,7 +245,7 @@ mod tests {
         let after = LightProposals::new(cells, &sums);
         assert!((f64::from(after.root_visibility(z, y)) - libm::sqrt(0.26)).abs() < 1e-6);
         assert_eq!(after.cumulative, before.cumulative);
-        assert_eq!(after.relative, before.relative);
+        assert_eq!(after.count_factors, before.count_factors);
     }
 
     #[test]

@@ -4,7 +4,7 @@
 //! specularly; s = 0 needs a light that rays can hit. A class of paths is lost if the estimator has
 //! strategies for it and none of them is in the list.
 
-use super::IntegratorKind;
+use crate::integrator::IntegratorKind;
 use crate::light::Light;
 use crate::material::Material;
 use crate::path::{MAX_VERTICES, PathSettings, Strategies};

@@ -12,7 +12,7 @@ mod lists;
 pub(crate) use lists::no_path;
 pub use lists::{LostLight, lost_light};
 
-use super::IntegratorKind;
+use crate::integrator::IntegratorKind;
 use crate::light::Light;
 use crate::material::Material;
 use crate::path::PathSettings;
