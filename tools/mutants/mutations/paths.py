@@ -52,8 +52,8 @@ PATHS = [
     (
         "roulette forgotten in densities",
         "crates/bidir/src/path/densities.rs",
-        "context.job.settings.roulette.density_factor(index - 2, albedo)",
-        "context.job.settings.roulette.density_factor(index - 2, || 1.0)",
+        ".density_factor(index - 2, albedo)",
+        ".density_factor(index - 2, || 1.0)",
         PATH,
     ),
     (
@@ -66,7 +66,7 @@ PATHS = [
     (
         "next-event density taken for the emission density",
         "crates/bidir/src/path/densities.rs",
-        "(LightPointChoice::Shared, _) | (_, VertexKind::Camera) => x0.pdf_fwd,",
+        "(LightPointChoice::Shared, _) | (_, true) => x0.pdf_fwd,",
         "(LightPointChoice::Shared, _) | (_, _) => x0.pdf_fwd,",
         PATH,
     ),
