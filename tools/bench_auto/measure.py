@@ -32,10 +32,11 @@ def measured(path, args):
     warnings.simplefilter("ignore")
     try:
         scene = bidir.load(path, size=args.size)
-        runs = {
-            name: [rendered(scene, make(sampler=args.sampler), seed, args.spp) for seed in range(args.seeds)]
-            for name, make in METHODS.items()
-        }
+        runs = {name: [] for name in METHODS}
+        # In turns, so that a slow minute of the machine does not meet one estimator alone.
+        for seed in range(args.seeds):
+            for name, make in METHODS.items():
+                runs[name].append(rendered(scene, make(sampler=args.sampler), seed, args.spp))
     except bidir.BidirError as error:
         return f"{path.stem}: left out: {error}"
     images = {name: np.stack([run[0] for run in all_of]) for name, all_of in runs.items()}

@@ -4,7 +4,7 @@
 //! The same rays for every engine, which take turns in each round, so that other load of the machine
 //! slows all of them. Ratios are medians over rounds; see `docs/performance.md`.
 
-#![allow(clippy::print_stdout, reason = "a benchmark tells what it found")]
+#![allow(clippy::print_stdout, reason = "a benchmark prints its results")]
 #![allow(
     clippy::disallowed_methods,
     reason = "scenes need not be the same on every machine"

@@ -8,9 +8,9 @@ use std::ops::Range;
 #[derive(Debug, Default)]
 pub(super) struct LightCache {
     /// The vertices that can be connected, in the order of their cells.
-    entries: Vec<Entry>,
+    entries: Vec<CachedVertex>,
     /// The same vertices, in the order of the subpaths.
-    unsorted: Vec<Entry>,
+    unsorted: Vec<CachedVertex>,
     /// The number of subpaths.
     subpaths: usize,
     /// For each cell where its entries begin, and where the last ones end. Empty: there are no cells.
@@ -21,7 +21,7 @@ pub(super) struct LightCache {
 
 /// A vertex that can be connected.
 #[derive(Clone, Copy, Debug, Default)]
-struct Entry {
+struct CachedVertex {
     place: Place,
     cell: Cell,
 }
@@ -69,7 +69,7 @@ impl LightCache {
                 first, vertices, ..
             } = walks.get(subpath);
             let connectable = connectable(light_point, vertices);
-            self.unsorted.extend(connectable.map(|i| Entry {
+            self.unsorted.extend(connectable.map(|i| CachedVertex {
                 place: Place {
                     z: (first + i) as u32,
                     subpath: subpath as u32,
@@ -93,7 +93,8 @@ impl LightCache {
             self.begins[i + 1] += self.begins[i];
         }
         self.next.clone_from(&self.begins);
-        self.entries.resize(self.unsorted.len(), Entry::default());
+        self.entries
+            .resize(self.unsorted.len(), CachedVertex::default());
         for entry in &self.unsorted {
             let place = &mut self.next[entry.cell.index()];
             self.entries[*place as usize] = *entry;

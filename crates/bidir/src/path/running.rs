@@ -19,7 +19,7 @@ pub struct RunningSums {
     /// may be padding.
     sums: Vec<f64>,
     /// For each light walk the light's end of all paths with two of its vertices or more.
-    starts: Vec<LightEnd>,
+    starts: Vec<PathStart>,
 }
 
 /// Sums of shares along the subpaths of a path.
@@ -37,7 +37,7 @@ pub struct LightSums<'a> {
     /// L_m.
     sums: &'a [f64],
     /// The light's end of its paths.
-    start: &'a LightEnd,
+    start: &'a PathStart,
 }
 
 /// Weights of paths, by sums where these hold.
@@ -51,7 +51,7 @@ pub struct Weights {
 
 /// How x_0 is drawn.
 #[derive(Clone, Copy, Debug)]
-struct LightEnd {
+struct PathStart {
     /// a_0.
     emission: f64,
     /// e. Never zero: where s = 1 is impossible, the ratios across it must still cancel.
@@ -74,7 +74,7 @@ impl LightSums<'_> {
     /// No sums: paths with one light vertex need none.
     pub const NONE: LightSums<'static> = LightSums {
         sums: &[],
-        start: &LightEnd::NONE,
+        start: &PathStart::NONE,
     };
 }
 
@@ -89,8 +89,8 @@ impl RunningSums {
     pub fn add_light(&mut self, context: &PathContext<'_>, walk: &Subpath<'_>) {
         let end = self.sums.len() + walk.vertices.len();
         let start = match walk.vertices {
-            [x0, x1, ..] => LightEnd::new(context, x0, x1),
-            _ => LightEnd::NONE,
+            [x0, x1, ..] => PathStart::new(context, x0, x1),
+            _ => PathStart::NONE,
         };
         if walk.vertices.len() > 1 {
             self.sum_light(context, walk.vertices, &start);
@@ -112,7 +112,7 @@ impl RunningSums {
     pub fn light(&self, i: usize, first: usize) -> LightSums<'_> {
         LightSums {
             sums: self.sums.get(first..).unwrap_or_default(),
-            start: self.starts.get(i).unwrap_or(&LightEnd::NONE),
+            start: self.starts.get(i).unwrap_or(&PathStart::NONE),
         }
     }
 
@@ -122,7 +122,7 @@ impl RunningSums {
         self.sums.get(first..).unwrap_or_default()
     }
 
-    fn sum_light(&mut self, context: &PathContext<'_>, walk: &[Vertex], start: &LightEnd) {
+    fn sum_light(&mut self, context: &PathContext<'_>, walk: &[Vertex], start: &PathStart) {
         let share = |ratio| context.job.settings.mis.share(ratio);
         let mut sum = start.is_hit;
         self.sums.push(sum);
@@ -191,7 +191,7 @@ impl PathSums<'_> {
     fn hit(&self, context: &PathContext<'_>, path: &JoinedPath<'_>) -> f64 {
         let (y, t) = (path.y(), path.camera.len());
         let share = |ratio| context.job.settings.mis.share(ratio);
-        let end = LightEnd::new(context, path.z(), y);
+        let end = PathStart::new(context, path.z(), y);
         let reversed = path.reversed(context);
         let count = share(context.count(1, t, [path.z(), y]));
         let links = count * end.is_drawn * possible(!y.went_by_delta);
@@ -214,7 +214,7 @@ impl PathSums<'_> {
         let (s, t) = (light.len(), camera.len());
         let share = |ratio| context.job.settings.mis.share(ratio);
         let end = match s {
-            1 => LightEnd::new(context, path.z(), path.y()),
+            1 => PathStart::new(context, path.z(), path.y()),
             _ => *self.light.start,
         };
         let reversed = path.reversed(context);
@@ -250,7 +250,7 @@ impl PathSums<'_> {
     }
 }
 
-impl LightEnd {
+impl PathStart {
     /// The end of no path.
     const NONE: Self = Self {
         emission: 0.0,

@@ -50,10 +50,7 @@ impl Side {
     fn new(vertex: &Vertex, world: Vec3) -> Self {
         Self {
             world,
-            local: match &vertex.scattering {
-                Scattering::Surface { shading, .. } => shading.to_local(world),
-                Scattering::Camera | Scattering::Light => Vec3::ZERO,
-            },
+            local: vertex.frame.to_local(world),
             cos_g: vertex.locus.n_g.dot(world),
         }
     }
@@ -109,7 +106,7 @@ impl<'a> Turn<'a> {
                 context.emitted(light, &vertex.light_point(), wi.world)
             }
             (Scattering::Light, None) => Spectrum::ZERO,
-            (Scattering::Surface { bsdf, .. }, _) => {
+            (Scattering::Surface(bsdf), _) => {
                 if !wo.agrees() || !wi.agrees() {
                     return Spectrum::ZERO;
                 }
@@ -135,7 +132,7 @@ impl<'a> Turn<'a> {
                 light.pdf_direction(&scene.light_context(), &at, self.wi.world)
             }
             (Scattering::Light, None) => 0.0,
-            (Scattering::Surface { bsdf, .. }, _) => bsdf.pdf(self.wo.local, self.wi.local),
+            (Scattering::Surface(bsdf), _) => bsdf.pdf(self.wo.local, self.wi.local),
         }
     }
 
@@ -143,7 +140,7 @@ impl<'a> Turn<'a> {
     #[inline]
     pub(super) fn albedo(&self) -> f32 {
         match &self.vertex.scattering {
-            Scattering::Surface { bsdf, .. } => bsdf.albedo(self.wo.local).max_lane(),
+            Scattering::Surface(bsdf) => bsdf.albedo(self.wo.local).max_lane(),
             Scattering::Camera | Scattering::Light => 1.0,
         }
     }
@@ -153,7 +150,7 @@ impl Vertex {
     /// The albedo that a walk meets which comes along -`w`; 1 at the ends of paths.
     pub fn albedo(&self, w: Vec3) -> Spectrum {
         match &self.scattering {
-            Scattering::Surface { shading, bsdf } => bsdf.albedo(shading.to_local(w)),
+            Scattering::Surface(bsdf) => bsdf.albedo(self.frame.to_local(w)),
             Scattering::Camera | Scattering::Light => Spectrum::ONE,
         }
     }
@@ -176,7 +173,7 @@ impl Vertex {
         u_lobe: impl FnOnce() -> f32,
         u: Vec2,
     ) -> Option<Scattered> {
-        let Scattering::Surface { shading, bsdf } = &self.scattering else {
+        let Scattering::Surface(bsdf) = &self.scattering else {
             return None;
         };
         let wo = Side::new(self, self.wo);
@@ -184,7 +181,7 @@ impl Vertex {
         let turn = Turn {
             vertex: self,
             wo,
-            wi: Side::new(self, shading.to_world(sample.wi)),
+            wi: Side::new(self, self.frame.to_world(sample.wi)),
         };
         if !turn.wo.agrees() || !turn.wi.agrees() {
             return None;

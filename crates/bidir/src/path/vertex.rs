@@ -25,12 +25,7 @@ pub enum Scattering {
     /// subpath.
     Light,
     /// The BSDF of a point of a surface, emissive or not.
-    Surface {
-        /// The frame that it is evaluated in.
-        shading: Frame,
-        /// The BSDF.
-        bsdf: Bsdf,
-    },
+    Surface(Bsdf),
 }
 
 /// A vertex of a subpath.
@@ -40,6 +35,8 @@ pub struct Vertex {
     pub locus: Locus,
     /// Its effect on light.
     pub scattering: Scattering,
+    /// The frame that scattering is evaluated in; zero at the ends of paths, which have none.
+    pub frame: Frame,
     /// The unit direction towards the previous vertex of the walk.
     pub wo: Vec3,
     /// Throughput up to this vertex, without the scattering at it.
@@ -73,6 +70,11 @@ impl Vertex {
         Self {
             locus,
             scattering,
+            frame: Frame {
+                x: Vec3::ZERO,
+                y: Vec3::ZERO,
+                z: Vec3::ZERO,
+            },
             wo: Vec3::ZERO,
             beta: Spectrum::ONE,
             pdf_fwd: 0.0,
@@ -136,18 +138,19 @@ impl Vertex {
         }
         let material = scene.material(hit.material).choose(&at, u_mix);
         let bsdf = material.bsdf(&at, scene.color(), &context.wavelengths);
-        let shading = match (material.relief(), &hit.differentials) {
+        let frame = match (material.relief(), &hit.differentials) {
             (Some(relief), Some(differentials)) => relief.frame(surface, differentials, &at),
             _ => surface.shading,
         };
         Self {
+            frame,
             wo,
             beta,
-            albedo_fwd: bsdf.albedo(shading.to_local(wo)).max_lane(),
+            albedo_fwd: bsdf.albedo(frame.to_local(wo)).max_lane(),
             light: hit.light.map(|(light, _)| light),
             light_primitive: hit.light.map_or(0, |(_, at)| at.primitive),
-            cell: context.job.guide.cell(surface.point, shading.z),
-            ..Self::new(surface.locus(), Scattering::Surface { shading, bsdf })
+            cell: context.job.guide.cell(surface.point, frame.z),
+            ..Self::new(surface.locus(), Scattering::Surface(bsdf))
         }
     }
 
@@ -163,7 +166,7 @@ impl Vertex {
     /// Its point and its unit normal: that of the shading frame where there is one.
     pub(crate) fn place(&self) -> [Vec3; 2] {
         let n = match &self.scattering {
-            Scattering::Surface { shading, .. } => shading.z,
+            Scattering::Surface(_) => self.frame.z,
             Scattering::Camera | Scattering::Light => self.locus.n_g,
         };
         [self.locus.point, n]
@@ -174,11 +177,11 @@ impl Vertex {
     #[inline]
     pub fn receiver(&self, w: Vec3) -> Receiver {
         let facing = match &self.scattering {
-            Scattering::Surface { shading, bsdf } if !bsdf.transmits() => {
-                let n = shading.z;
+            Scattering::Surface(bsdf) if !bsdf.transmits() => {
+                let n = self.frame.z;
                 Facing::Front(if n.dot(w) < 0.0 { -n } else { n })
             }
-            Scattering::Surface { shading, .. } => Facing::Both(shading.z),
+            Scattering::Surface(_) => Facing::Both(self.frame.z),
             Scattering::Camera | Scattering::Light => Facing::Both(self.locus.n_g),
         };
         let point = self.locus.point;
@@ -190,7 +193,7 @@ impl Vertex {
     #[inline]
     pub fn is_delta(&self) -> bool {
         match &self.scattering {
-            Scattering::Surface { bsdf, .. } => bsdf.is_delta(),
+            Scattering::Surface(bsdf) => bsdf.is_delta(),
             Scattering::Camera | Scattering::Light => false,
         }
     }

@@ -12,7 +12,7 @@ use crate::light::EmissionSample;
 use crate::locus::Locus;
 use crate::math::Vec3;
 use crate::sampler::{Dimension, Purpose, SampleStream};
-use crate::scene::Chances;
+use crate::scene::{Chances, SurfaceHit};
 use crate::spectrum::Spectrum;
 use crate::stats::Stats;
 
@@ -247,19 +247,7 @@ impl Walker<'_> {
                     pdf_fwd: step.pdf_w,
                 });
             };
-            let at = Dimension::at(count, Purpose::Mix);
-            let u_mix = || self.stream.get_1d(at);
-            let wo = -step.direction;
-            let mut vertex = Vertex::surface(self.context, &hit, wo, step.beta, u_mix);
-            let from = vertices[vertices.len() - 1].locus;
-            let segment = Segment::along(&from, &vertex.locus, step.direction);
-            vertex.pdf_fwd = step.pdf_w * segment.to_b;
-            vertex.to_previous = segment.to_a;
-            // Rounding put the vertex on the one before it, in a corner: no density, no path.
-            if vertex.pdf_fwd == 0.0 {
-                return None;
-            }
-            vertices.push(vertex);
+            self.arrive(vertices, &hit, &step, count)?;
             count += 1;
             if count == self.max_vertices {
                 return None;
@@ -270,6 +258,30 @@ impl Walker<'_> {
                 .ray_origin(step.direction);
         }
         None
+    }
+
+    /// Adds vertex number `index` of the walk, where `step` led from the last one. None: rounding put it on that one,
+    /// in a corner: no density, no path.
+    #[inline]
+    fn arrive(
+        &self,
+        vertices: &mut Vec<Vertex>,
+        hit: &SurfaceHit,
+        step: &Step,
+        index: usize,
+    ) -> Option<()> {
+        let u_mix = || self.stream.get_1d(Dimension::at(index, Purpose::Mix));
+        let wo = -step.direction;
+        let mut vertex = Vertex::surface(self.context, hit, wo, step.beta, u_mix);
+        let from = vertices[vertices.len() - 1].locus;
+        let segment = Segment::along(&from, &vertex.locus, step.direction);
+        vertex.pdf_fwd = step.pdf_w * segment.to_b;
+        vertex.to_previous = segment.to_a;
+        if vertex.pdf_fwd == 0.0 {
+            return None;
+        }
+        vertices.push(vertex);
+        Some(())
     }
 
     /// Scatters at the last of `vertices`. None: the walk ends there.

@@ -159,8 +159,7 @@ pub struct Request {
     pub light_start: Option<LightStart>,
     /// Samples per light subpath, a power of two up to 256 (lvc) [default: 2].
     ///
-    /// Where light subpaths are so long that those of a group would fill more than about 30 MB, there are
-    /// fewer.
+    /// If light subpaths are so long that those of a group would fill more than about 30 MB, there are fewer.
     #[cfg_attr(
         feature = "clap",
         arg(long, value_name = "K", help_heading = "Shared light subpaths")

@@ -188,7 +188,7 @@ fn a_point_looks_the_same_to_every_walk() {
         let near = vertex(&context, target + Vec3::new(0.01, 0.02, 0.01), target);
         let far = vertex(&context, target + Vec3::new(7.0, 40.0, -9.0), target);
         let [near, far] = [near, far].map(|vertex| match vertex.scattering {
-            Scattering::Surface { shading, bsdf } => (shading.z, bsdf.albedo(Vec3::Z)[0]),
+            Scattering::Surface(bsdf) => (vertex.frame.z, bsdf.albedo(Vec3::Z)[0]),
             Scattering::Camera | Scattering::Light => panic!("it is on the floor"),
         });
         let turn = near.0.distance(far.0);

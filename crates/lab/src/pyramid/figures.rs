@@ -37,10 +37,10 @@ impl Figures {
         let moments: Vec<_> = session.strategy_moments().collect();
         let (film, stats) = (session.film(), session.stats());
         let rows = stats.strategies.rows().map(|(strategy, counts)| {
-            let told = moments.iter().find(|told| told.strategy == strategy);
-            let images = told.map(|told| ImageFigures {
-                mean: told.mean,
-                variance: told.variance,
+            let found = moments.iter().find(|found| found.strategy == strategy);
+            let images = found.map(|found| ImageFigures {
+                mean: found.mean,
+                variance: found.variance,
                 raw_mean: film.layers().raw_part(strategy).map(|raw| mean(film, raw)),
                 raw_dropped: stats.strategy_images.get(strategy).raw_dropped,
             });

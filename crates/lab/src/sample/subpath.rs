@@ -145,7 +145,7 @@ impl VertexReport {
         let kind = match vertex.scattering {
             Scattering::Camera => "camera",
             Scattering::Light => "light",
-            Scattering::Surface { .. } => "surface",
+            Scattering::Surface(_) => "surface",
         };
         Self {
             kind,

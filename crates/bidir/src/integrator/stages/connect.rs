@@ -1,6 +1,6 @@
 //! s ≥ 1 and t ≥ 2: the connections of light vertices with camera vertices, before visibility.
 
-use super::super::batch::drop_term;
+use super::super::batch::{NextEvent, drop_term};
 use super::super::cache::{LightCache, Place};
 use super::super::{Batch, CandidateCount, Sample};
 use super::pairs::Pairs;
@@ -51,11 +51,11 @@ pub(in super::super) fn connect(job: &Job<'_>, batch: &mut Batch, source: Source
         sums: light_sums,
         cache,
     };
-    // They are in the order in which camera vertices are visited.
-    let mut next_events = next_events.iter().peekable();
+    let of_sample = next_events.chunk_by(|a, b| a.sample == b.sample);
+    let mut of_sample = of_sample.peekable();
     for (number, sample) in samples.iter().enumerate() {
         let walk = camera.get(number);
-        let mut connector = Connector {
+        let connector = Connector {
             context: sample.context(job),
             sample,
             camera: walk,
@@ -65,23 +65,11 @@ pub(in super::super) fn connect(job: &Job<'_>, batch: &mut Batch, source: Source
             unoffered,
             stats,
         };
-        let mut pairs = Pairs::new(&connector.context, &sample.camera);
-        for t in 2..=walk.vertices.len() {
-            if walk.vertices[t - 1].is_delta() {
-                continue;
-            }
-            let place = (number as u32, t as u32);
-            while let Some(event) = next_events.next_if(|event| (event.sample, event.t) == place) {
-                connector.offer(t, &lights.point(event.z));
-            }
-            match source {
-                Source::Own => connector.offer_own(t, &lights, first + number, &mut pairs),
-                Source::Cache(counts) => connector.offer_cached(t, &lights, counts.at(t)),
-            }
-        }
+        let next_events = of_sample.next_if(|events| events[0].sample as usize == number);
+        let next_events = next_events.unwrap_or_default();
+        connector.offer_all(next_events, &lights, source, first + number);
         candidates_end.push(candidates.len());
     }
-    debug_assert!(next_events.next().is_none());
     batch.stopwatch.end(Stage::Candidates);
 }
 
@@ -146,6 +134,33 @@ struct Connector<'a> {
 }
 
 impl Connector<'_> {
+    /// Connects all camera vertices with the sample's light points and with other light vertices; `number` is that
+    /// of its own light subpath.
+    fn offer_all(
+        mut self,
+        next_events: &[NextEvent],
+        lights: &Lights<'_>,
+        source: Source,
+        number: usize,
+    ) {
+        let mut pairs = Pairs::new(&self.context, &self.sample.camera);
+        let mut next_events = next_events.iter().peekable();
+        for t in 2..=self.camera.vertices.len() {
+            if self.camera.vertices[t - 1].is_delta() {
+                continue;
+            }
+            // Light points are drawn in the same order.
+            while let Some(event) = next_events.next_if(|event| event.t as usize == t) {
+                self.offer(t, &lights.point(event.z));
+            }
+            match source {
+                Source::Own => self.offer_own(t, lights, number, &mut pairs),
+                Source::Cache(counts) => self.offer_cached(t, lights, counts.at(t)),
+            }
+        }
+        debug_assert!(next_events.next().is_none());
+    }
+
     /// Connects camera vertex number `t` with the vertices of the sample's own light subpath.
     fn offer_own(&mut self, t: usize, lights: &Lights<'_>, number: usize, pairs: &mut Pairs) {
         let settings = self.context.job.settings;

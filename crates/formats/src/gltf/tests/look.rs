@@ -285,14 +285,14 @@ fn lamps_that_give_no_light_are_warned_of() {
     let warning = "the point light has no power: it adds nothing to the image";
     let of_dark = |loaded: &Loaded| {
         let warnings = loaded.warnings.iter();
-        warnings.filter(|told| told.contains(warning)).count()
+        warnings.filter(|text| text.contains(warning)).count()
     };
     let (dark, bright) = (loaded(0.0), loaded(1.0));
     assert_eq!([&dark, &bright].map(of_dark), [1, 0], "{:?}", dark.warnings);
     // Each is in a folder of its own.
     let place = bright.lamps[0].place.rsplit('/').next().unwrap_or_default();
     assert!(
-        dark.warnings.iter().any(|told| told.contains(place)),
+        dark.warnings.iter().any(|text| text.contains(place)),
         "{place}"
     );
 }
