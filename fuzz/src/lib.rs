@@ -1,4 +1,4 @@
-//! What the targets call: one function for each kind of input, which must return whatever the bytes.
+//! One function for each kind of input, which must return whatever the bytes.
 //!
 //! The mutation tests of `formats` and `lab` call the same functions, and so does the example
 //! `mutations` of `lab`, for `tools/attack`.

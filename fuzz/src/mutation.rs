@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// What stands in for numbers of texts.
+/// Stand-ins for the numbers of texts.
 const NUMBERS: [&str; 14] = [
     "0",
     "-1",

@@ -213,14 +213,14 @@ PATHS = [
         PATH,
     ),
     (
-        "learnt light subpaths divided by the probability that power has",
+        "learned light subpaths divided by the probability that power has",
         "crates/bidir/src/path/walk.rs",
         "let (light, prob) = context.emission().sample(u_light)?;",
         "let light = context.emission().sample(u_light)?.0;\n    let prob = scene.light_choice().prob(light);",
         estimators("light_subpaths_with_a_trained"),
     ),
     (
-        "lights that are learnt by the squares themselves",
+        "lights that are learned by the squares themselves",
         "crates/bidir/src/driver/training/emission.rs",
         "prob * mean.sqrt()",
         "prob * mean",

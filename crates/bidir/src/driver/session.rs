@@ -19,7 +19,7 @@ use crate::analysis::no_path;
 use crate::film::{Film, FilmError, MergeError, PassBuffer};
 use crate::guide::Guide;
 use crate::integrator::{Batch, IntegratorKind, Method, Sample, group_size};
-use crate::path::{Job, StrategyCounts};
+use crate::path::{Job, SampleCounts};
 use crate::sampler::{Domain, Sampler};
 use crate::scene::Scene;
 use crate::select::Selector;
@@ -274,10 +274,10 @@ impl<'a> Session<'a> {
     }
 
     /// How many samples strategies take.
-    pub(super) fn counts(&self) -> StrategyCounts {
+    pub(super) fn counts(&self) -> SampleCounts {
         match self.guiding() {
             Some(training) => training.counts(self.settings.lvc, self.light_subpaths()),
-            None => StrategyCounts::of_own_subpaths(self.view.film()),
+            None => SampleCounts::of_own_subpaths(self.view.film()),
         }
     }
 

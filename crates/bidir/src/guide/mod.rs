@@ -1,9 +1,9 @@
 //! The knowledge of training that estimators use: which light vertices suit a camera vertex, how many of
 //! their shadow rays arrive, and where light subpaths begin.
 //!
-//! It knows no paths. A vertex asks for its [`Cell`] when it is made, weights ask for
-//! [`count_factor`](Guide::count_factor), selection for [`root_visibility`](Guide::root_visibility), and the
-//! light vertex cache draws by [`LightProposals`]. All of it is frozen before the first pass.
+//! It knows no paths. A vertex asks for its [`Cell`] when it is made, weights ask for `count_factor`, selection
+//! for `root_visibility`, and the light vertex cache draws by [`LightProposals`]. All of it is frozen before the
+//! first pass.
 
 mod cells;
 mod proposals;
@@ -25,22 +25,22 @@ pub struct Guide<'a> {
 }
 
 impl Guide<'_> {
-    /// The cell of a vertex with the unit normal `n`.
+    /// The cell of a vertex with the unit normal `n`; the default one without proposals.
     #[inline]
     pub(crate) fn cell(&self, point: Vec3, n: Vec3) -> Cell {
         let cell = |all: &LightProposals| all.cells().of(point, n);
         self.proposals.map_or(Cell::default(), cell)
     }
 
-    /// How many times as many samples a connection of these cells gets as one that nothing is known of: a
-    /// function of the path alone.
+    /// n κ / M: the number of samples of a connection of these cells, relative to uniform proposals; 1 without
+    /// proposals. It is a function of the path alone.
     #[inline]
     pub(crate) fn count_factor(&self, light: Cell, camera: Cell) -> f64 {
         self.proposals
             .map_or(1.0, |all| all.count_factor(light, camera))
     }
 
-    /// √V̂ of shadow rays between these cells; 1 if nothing is known of them.
+    /// √V̂ of shadow rays between these cells; 1 without proposals.
     #[inline]
     pub(crate) fn root_visibility(&self, light: Cell, camera: Cell) -> f32 {
         self.proposals

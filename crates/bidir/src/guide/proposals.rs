@@ -192,14 +192,14 @@ fn root_visibility([traced, arrived]: [u32; 2]) -> f32 {
 
 /// Appends the sums of Γ(c | r) ∝ √(κ_c Σ X²), or of κ_c where nothing was found.
 fn accumulate(kappa: &[f64], squares: &[f64], sums: &mut Vec<f32>) {
-    let learnt = || kappa.iter().zip(squares).map(|(k, q)| (k * q).sqrt());
-    let total: f64 = learnt().sum();
+    let learned = || kappa.iter().zip(squares).map(|(k, q)| (k * q).sqrt());
+    let total: f64 = learned().sum();
     let all: f64 = kappa.iter().sum();
     let mut sum = 0.0;
     sums.push(0.0);
-    for (kappa, learnt) in kappa.iter().zip(learnt()) {
+    for (kappa, learned) in kappa.iter().zip(learned()) {
         sum += if total > 0.0 {
-            learnt / total
+            learned / total
         } else {
             kappa / all
         };

@@ -5,7 +5,7 @@
 //! ([`LightProposals`](crate::guide::LightProposals)), or evenly, where P = 1/K. For each vertex of the light
 //! subpath of a path, strategy (s, t) takes M N P samples on average. K differs from group to group, and P with
 //! it; weights must not, or the estimate is biased. They take M / κ in place of M N / K, with κ the mean of
-//! K / N in a training render ([`StrategyCounts`](crate::path::StrategyCounts)), and for a learned P its stand-in
+//! K / N in a training render ([`SampleCounts`](crate::path::SampleCounts)), and for a learned P its stand-in
 //! likewise.
 
 use super::stages::{

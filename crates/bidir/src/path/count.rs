@@ -11,7 +11,7 @@ use crate::film::FilmSettings;
 /// How many samples of a path strategies take in a pass, before the [`Guide`](crate::guide::Guide) shares
 /// them out.
 #[derive(Clone, Copy, Debug)]
-pub struct StrategyCounts {
+pub struct SampleCounts {
     /// Connections with a light vertex of the path, on average: of the first vertex of a camera subpath (t = 2),
     /// and of those behind it.
     pub connections: [f64; 2],
@@ -21,7 +21,7 @@ pub struct StrategyCounts {
     pub light_subpaths: f64,
 }
 
-impl StrategyCounts {
+impl SampleCounts {
     /// Every vertex of one light subpath is connected; each sample of `film` has its own.
     pub fn of_own_subpaths(film: &FilmSettings) -> Self {
         Self {
@@ -39,7 +39,7 @@ impl PathContext<'_> {
     /// one per light subpath.
     #[inline]
     pub fn count(&self, s: usize, t: usize, [z, y]: [&Vertex; 2]) -> f64 {
-        let StrategyCounts {
+        let SampleCounts {
             connections,
             next_events,
             light_subpaths,

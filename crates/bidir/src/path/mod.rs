@@ -35,7 +35,7 @@ mod walk;
 pub use crate::strategy::{Strategies, Strategy};
 pub use arrival::Arrival;
 pub use connect::{JoinedPath, Junction, next_event_pdf, sample_next_event};
-pub use count::StrategyCounts;
+pub use count::SampleCounts;
 pub use densities::{PathDensities, VertexDensities};
 pub use light_choice::{LightChoiceKind, LightPointChoice};
 pub use mis::{MisHeuristic, mis_weight};
@@ -106,7 +106,7 @@ pub struct Job<'a> {
     /// How paths are made and weighted.
     pub settings: &'a PathSettings,
     /// How many samples strategies take.
-    pub counts: StrategyCounts,
+    pub counts: SampleCounts,
     /// The knowledge of training.
     pub guide: Guide<'a>,
 }
@@ -118,7 +118,7 @@ impl<'a> Job<'a> {
             scene,
             view,
             settings,
-            counts: StrategyCounts::of_own_subpaths(view.film()),
+            counts: SampleCounts::of_own_subpaths(view.film()),
             guide: Guide::default(),
         }
     }

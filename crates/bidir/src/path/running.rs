@@ -18,7 +18,7 @@ pub struct RunningSums {
     /// A number for each vertex of the walks: L_m of light walks, C_m of camera walks; the last ones of a walk
     /// may be padding.
     sums: Vec<f64>,
-    /// For each light walk the light's end of all paths with two of its vertices or more.
+    /// For each light walk the start of all paths with two of its vertices or more.
     starts: Vec<PathStart>,
 }
 
@@ -36,7 +36,7 @@ pub struct PathSums<'a> {
 pub struct LightSums<'a> {
     /// L_m.
     sums: &'a [f64],
-    /// The light's end of its paths.
+    /// The start of its paths.
     start: &'a PathStart,
 }
 
@@ -251,7 +251,7 @@ impl PathSums<'_> {
 }
 
 impl PathStart {
-    /// The end of no path.
+    /// The start of no path.
     const NONE: Self = Self {
         emission: 0.0,
         next_event: 0.0,

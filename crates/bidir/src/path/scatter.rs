@@ -147,7 +147,7 @@ impl<'a> Turn<'a> {
 }
 
 impl Vertex {
-    /// The albedo that a walk meets which comes along -`w`; 1 at the ends of paths.
+    /// The albedo for a walk that comes along -`w`; 1 at the ends of paths.
     pub fn albedo(&self, w: Vec3) -> Spectrum {
         match &self.scattering {
             Scattering::Surface(bsdf) => bsdf.albedo(self.frame.to_local(w)),

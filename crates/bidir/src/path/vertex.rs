@@ -65,7 +65,7 @@ pub struct Vertex {
 }
 
 impl Vertex {
-    /// A vertex that no walk has come to.
+    /// A vertex without the data of a walk.
     fn new(locus: Locus, scattering: Scattering) -> Self {
         Self {
             locus,

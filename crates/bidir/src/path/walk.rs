@@ -247,7 +247,7 @@ impl Walker<'_> {
                     pdf_fwd: step.pdf_w,
                 });
             };
-            self.arrive(vertices, &hit, &step, count)?;
+            self.add_surface(vertices, &hit, &step, count)?;
             count += 1;
             if count == self.max_vertices {
                 return None;
@@ -260,10 +260,10 @@ impl Walker<'_> {
         None
     }
 
-    /// Adds vertex number `index` of the walk, where `step` led from the last one. None: rounding put it on that one,
-    /// in a corner: no density, no path.
+    /// Adds vertex number `index`, the `hit` that `step` led to. None: by rounding it is the vertex before it, in a
+    /// corner; it has no density.
     #[inline]
-    fn arrive(
+    fn add_surface(
         &self,
         vertices: &mut Vec<Vertex>,
         hit: &SurfaceHit,

@@ -159,7 +159,7 @@ pub struct Request {
     pub light_start: Option<LightStart>,
     /// Samples per light subpath, a power of two up to 256 (lvc) [default: 2].
     ///
-    /// If light subpaths are so long that those of a group would fill more than about 30 MB, there are fewer.
+    /// More samples share each if the subpaths of a group would fill more than about 30 MB.
     #[cfg_attr(
         feature = "clap",
         arg(long, value_name = "K", help_heading = "Shared light subpaths")

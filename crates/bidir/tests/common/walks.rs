@@ -62,7 +62,7 @@ pub(crate) fn some_light_start(scene: &Shot) -> LightChoice {
     LightChoice::with_weights(lights.map(|light| (7 - light * 5 % 7) as f32))
 }
 
-/// The same with the first `pairs` of them.
+/// Calls `f` with the context of `job` and the first `pairs` pairs of subpaths.
 pub(crate) fn for_some_pairs(
     pairs: u64,
     job: Job<'_>,

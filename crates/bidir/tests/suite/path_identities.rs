@@ -14,7 +14,7 @@ use bidir::math::Vec2;
 use bidir::math::Vec3;
 use bidir::path::{
     Job, JoinedPath, LightChoiceKind, LightPointChoice, MAX_VERTICES, MisHeuristic, PathContext,
-    PathDensities, PathRoulette, PathSettings, StrategyCounts, Vertex,
+    PathDensities, PathRoulette, PathSettings, SampleCounts, Vertex,
 };
 use bidir::spectrum::Spectrum;
 
@@ -243,7 +243,7 @@ fn strategies(context: &PathContext<'_>, path: &[Vertex]) -> Vec<(usize, f32, Sp
 
 /// n_s of these connections.
 fn count(context: &PathContext<'_>, s: usize, path: &[Vertex]) -> f64 {
-    let StrategyCounts {
+    let SampleCounts {
         next_events,
         light_subpaths,
         ..
@@ -352,7 +352,7 @@ fn proposals_are_one_function_of_the_path() {
     for scene in [common::room(0.1), common::gallery(0.1)] {
         let proposals = some_proposals(&scene);
         let light_start = some_light_start(&scene);
-        let counts = StrategyCounts {
+        let counts = SampleCounts {
             connections: [1.7, 0.4],
             next_events: [3.0, 2.0],
             light_subpaths: 16.0,

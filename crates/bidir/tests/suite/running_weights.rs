@@ -10,8 +10,8 @@ use bidir::light::{DistantLight, InfiniteLight, Light, PointLight};
 use bidir::math::{Affine3A, Vec2, Vec3};
 use bidir::path::{
     Arrival, Job, JoinedPath, Junction, LightChoiceKind, LightPointChoice, MisHeuristic,
-    PathContext, PathDensities, PathRoulette, PathSettings, PathSums, RunningSums, Strategies,
-    StrategyCounts, Subpath, Vertex, Weights, sample_next_event,
+    PathContext, PathDensities, PathRoulette, PathSettings, PathSums, RunningSums, SampleCounts,
+    Strategies, Subpath, Vertex, Weights, sample_next_event,
 };
 use bidir::shape::Shape;
 
@@ -194,7 +194,7 @@ fn check(scene: &Shot, pairs: u64) {
     let (mut comparison, mut least) = (Comparison::default(), 0);
     let proposals = some_proposals(scene);
     let light_start = some_light_start(scene);
-    let counts = StrategyCounts {
+    let counts = SampleCounts {
         connections: [2.7, 0.6],
         next_events: [3.0, 2.0],
         light_subpaths: 16.0,

@@ -87,7 +87,7 @@ impl SampleReport {
                 f,
                 "  g, by which candidates are chosen, is the luminance of w C{}",
                 if self.settings.request.integrator == Some(IntegratorKind::Lvc) {
-                    ", times √V̂ where visibility is learnt"
+                    ", times √V̂ where visibility is learned"
                 } else {
                     ""
                 }

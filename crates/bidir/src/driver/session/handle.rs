@@ -1,4 +1,4 @@
-//! Whose scene a session renders.
+//! The owner of the scene that a session renders.
 
 use crate::scene::Scene;
 use std::ops::Deref;

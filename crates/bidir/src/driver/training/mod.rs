@@ -22,7 +22,7 @@ use crate::film::FilmSettings;
 use crate::guide::{Guide, LightProposals};
 use crate::integrator::{IntegratorKind, LvcSettings, group_size};
 use crate::light::LightChoice;
-use crate::path::StrategyCounts;
+use crate::path::SampleCounts;
 use crate::scene::Scene;
 use crate::stats::RayCounts;
 use crate::view::View;
@@ -128,12 +128,12 @@ impl Training {
     }
 
     /// The counts of the strategies of `lvc`, with `light_subpaths` subpaths in a pass.
-    pub(super) fn counts(&self, settings: LvcSettings, light_subpaths: u64) -> StrategyCounts {
+    pub(super) fn counts(&self, settings: LvcSettings, light_subpaths: u64) -> SampleCounts {
         let each = |count: u16| match self.light_vertices {
             0.0 => 1.0,
             vertices => f64::from(count) / vertices,
         };
-        StrategyCounts {
+        SampleCounts {
             connections: settings.candidates.get().map(each),
             next_events: settings.next_events.get().map(f64::from),
             light_subpaths: light_subpaths as f64,

@@ -51,7 +51,7 @@ pub(super) const LVC: Plan = Plan {
     ..BDPT
 };
 
-/// The plans, with the factor by which their products of second moment and cost may exceed that of `lvc`.
+/// The plans, with the allowances that their products of second moment and cost are divided by.
 const PLANS: [(Plan, f64); 3] = [(PATH, PATH_ALLOWANCE), (BDPT, BDPT_ALLOWANCE), (LVC, 1.0)];
 
 impl Plan {

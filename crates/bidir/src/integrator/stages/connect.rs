@@ -70,6 +70,7 @@ pub(in super::super) fn connect(job: &Job<'_>, batch: &mut Batch, source: Source
         connector.offer_all(next_events, &lights, source, first + number);
         candidates_end.push(candidates.len());
     }
+    debug_assert!(of_sample.next().is_none());
     batch.stopwatch.end(Stage::Candidates);
 }
 
