@@ -11,6 +11,7 @@ use crate::builder::{MAX_PRIMITIVES, Tree};
 use crate::error::{BuildError, InstanceError};
 use crate::instance::{Instance, Placement};
 use crate::isa::Isa;
+use crate::lockstep::AreBlocked;
 use crate::node::Node;
 use crate::primitive::Primitive;
 use crate::query::{AnyHit, Anything, ClosestHit, EachHit, Query};
@@ -147,6 +148,18 @@ impl Bvh {
         let mut query = Anything { found: false };
         self.ask(ray, &mut query);
         query.found
+    }
+
+    /// Sets `blocked` to what [`is_blocked`](Self::is_blocked) says of each of `rays`, which is faster for dozens of
+    /// rays and more.
+    pub fn are_blocked(&self, rays: &[Ray], blocked: &mut Vec<bool>) {
+        blocked.clear();
+        blocked.resize(rays.len(), false);
+        self.isa.call(AreBlocked {
+            bvh: self,
+            rays,
+            blocked,
+        });
     }
 
     /// Calls `found` with every hit of the ray, each once and in any order, until it breaks off.

@@ -1,9 +1,9 @@
 //! Watertight ray intersection: an 8-wide BVH over triangles, spheres, disks, cylinders and instances.
 //!
-//! A [`Bvh`] is built once from a slice of [`Primitive`]s and then answers two questions from any
-//! number of threads: [`Bvh::closest`] and [`Bvh::occluded`]; [`Bvh::each_hit`] reports all hits.
-//! The two take a filter that decides which hits exist, so that cut-outs (alpha) cost one call per hit
-//! and nothing where they are not used ([`accept_all`]).
+//! A [`Bvh`] is built once from a slice of [`Primitive`]s and then answers rays from any number of
+//! threads: [`Bvh::closest`] and [`Bvh::occluded`] take a filter that decides which hits exist, so that
+//! cut-outs (alpha) cost one call per hit and nothing where they are not used ([`accept_all`]);
+//! [`Bvh::each_hit`] reports all hits, and [`Bvh::are_blocked`] finds which of many rays hit anything.
 //!
 //! ```
 //! use bidir_accel::{Bvh, BuildOptions, Primitive, Ray, accept_all};
@@ -60,6 +60,7 @@ mod error;
 mod exact;
 mod instance;
 mod isa;
+mod lockstep;
 mod memory;
 mod node;
 mod primitive;
@@ -80,6 +81,7 @@ pub use disk::Disk;
 pub use error::{BuildError, InstanceError};
 pub use instance::Instance;
 pub use isa::{Isa, UnknownIsa};
+pub use memory::load_ahead;
 pub use primitive::Primitive;
 pub use ray::{Hit, Ray, accept_all};
 pub use sphere::Sphere;

@@ -77,6 +77,11 @@ impl Node {
         self.children[slot % WIDTH]
     }
 
+    #[inline(always)]
+    pub(crate) fn children(&self) -> &[Child; WIDTH] {
+        &self.children
+    }
+
     pub(crate) fn children_mut(&mut self) -> &mut [Child; WIDTH] {
         &mut self.children
     }
@@ -92,7 +97,7 @@ impl Node {
     /// Which boxes the ray meets at distances up to `limit` (of [`widen`]): a mask with the bit of each
     /// box, and the distances at which they are entered.
     #[inline(always)]
-    pub(crate) fn intersect<V: F32x8>(&self, ray: &BoxRay<V>, limit: f32) -> (u32, V) {
+    pub(crate) fn intersect<V: F32x8>(&self, ray: &BoxLanes<V>, limit: f32) -> (u32, V) {
         let plane = |axis: usize, side: usize| {
             debug_assert!(side < 2, "side {side}");
             // SAFETY: there are two rows for each of three axes.
@@ -120,12 +125,13 @@ impl Node {
 }
 
 /// A ray made ready for boxes.
-pub(crate) struct BoxRay<V> {
-    axes: [AxisRay<V>; 3],
-    t_min: V,
+#[derive(Clone, Copy)]
+pub(crate) struct BoxRay {
+    axes: [AxisRay<f32>; 3],
+    t_min: f32,
 }
 
-impl<V: F32x8> BoxRay<V> {
+impl BoxRay {
     /// `reach`: the largest magnitude of a coordinate of what can be hit.
     #[inline(always)]
     pub(crate) fn new(ray: &Ray, reach: f32) -> Self {
@@ -153,16 +159,35 @@ impl<V: F32x8> BoxRay<V> {
         let (entry, exit) = (or(entry, f32::MAX), or(exit, f32::MIN));
         let negative = direction.is_negative_bitmask();
         let axis = |axis: usize| AxisRay {
-            inverse: V::splat(inverse[axis]),
-            entry_offset: V::splat(entry[axis]),
-            inverse_widened: V::splat(widened[axis]),
-            exit_offset: V::splat(exit[axis]),
+            inverse: inverse[axis],
+            entry_offset: entry[axis],
+            inverse_widened: widened[axis],
+            exit_offset: exit[axis],
             near: (negative >> axis & 1) as usize,
         };
         Self {
             // Written out, as `array::map` is not always inlined.
             axes: [axis(0), axis(1), axis(2)],
-            t_min: V::splat(ray.t_min),
+            t_min: ray.t_min,
+        }
+    }
+
+    /// The same in all lanes.
+    #[inline(always)]
+    pub(crate) fn lanes<V: F32x8>(&self) -> BoxLanes<V> {
+        let axis = |axis: usize| {
+            let ray = &self.axes[axis];
+            AxisRay {
+                inverse: V::splat(ray.inverse),
+                entry_offset: V::splat(ray.entry_offset),
+                inverse_widened: V::splat(ray.inverse_widened),
+                exit_offset: V::splat(ray.exit_offset),
+                near: ray.near,
+            }
+        };
+        BoxLanes {
+            axes: [axis(0), axis(1), axis(2)],
+            t_min: V::splat(self.t_min),
         }
     }
 }
@@ -170,7 +195,14 @@ impl<V: F32x8> BoxRay<V> {
 /// `T/δ`, times the direction's largest component.
 const STEEPEST: f32 = 1.001 * (1 << 23) as f32;
 
+/// A [`BoxRay`] against eight boxes.
+pub(crate) struct BoxLanes<V> {
+    axes: [AxisRay<V>; 3],
+    t_min: V,
+}
+
 /// The numbers of a [`BoxRay`] for slabs along one axis.
+#[derive(Clone, Copy)]
 struct AxisRay<V> {
     inverse: V,
     entry_offset: V,
@@ -190,7 +222,8 @@ mod tests {
         let mut node = Node::EMPTY;
         node.set(5, &bounds, Child::node(0));
         let ray = Ray::new(Vec3::from_array(origin), Vec3::from_array(direction));
-        let (mask, _) = node.intersect(&BoxRay::<Pair<Scalar4>>::new(&ray, 2.0), f32::INFINITY);
+        let lanes = BoxRay::new(&ray, 2.0).lanes::<Pair<Scalar4>>();
+        let (mask, _) = node.intersect(&lanes, f32::INFINITY);
         assert_eq!(mask, expected << 5);
     }
 

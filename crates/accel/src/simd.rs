@@ -5,6 +5,7 @@
 //! kernels do not rely on it: they only ever discard work conservatively, or accept hits that are
 //! certain with the same error bound.
 
+use std::mem::MaybeUninit;
 use std::ops::{Add, Mul, Sub};
 
 #[cfg(target_arch = "x86_64")]
@@ -48,6 +49,9 @@ pub(crate) trait F32x4:
 /// Eight `f32` with lane-wise arithmetic. Comparisons may be those of the bits as integers, which take a
 /// quarter of the time and are right but for negative numbers.
 pub(crate) trait F32x8: Copy {
+    /// True if [`pack`](Self::pack) takes a few instructions.
+    const PACKS_FAST: bool = false;
+
     /// All lanes equal to `value`.
     fn splat(value: f32) -> Self;
     /// Lanes from memory.
@@ -63,6 +67,27 @@ pub(crate) trait F32x8: Copy {
     fn le(self, other: Self) -> u32;
     /// Lane `k`, in the upper half of a word, above `low[k]`.
     fn over(self, low: &[u32; WIDTH]) -> [u64; WIDTH];
+
+    /// Bit `k` is set where either of the upper two bits of `words[k]` is.
+    #[inline(always)]
+    fn upper_two(words: &[u32; WIDTH]) -> u32 {
+        let mut mask = 0;
+        for (k, word) in words.iter().enumerate() {
+            mask |= u32::from(word >> 30 != 0) << k;
+        }
+        mask
+    }
+
+    /// Writes to the front of `to` the words whose bit is set in `mask`, in their order, and anything behind
+    /// them. `mask` has bits of eight words only.
+    #[inline(always)]
+    fn pack(mask: u32, words: &[u32; WIDTH], to: &mut [MaybeUninit<u32>; WIDTH]) {
+        let mut len = 0;
+        for (k, word) in words.iter().enumerate() {
+            to[len % WIDTH].write(*word);
+            len += (mask >> k & 1) as usize;
+        }
+    }
 }
 
 /// A set of vector instructions.

@@ -4,7 +4,7 @@ use std::mem::MaybeUninit;
 
 use crate::builder::{MAX_DEPTH, Tree};
 use crate::child::Child;
-use crate::node::{BoxRay, Node, WIDTH};
+use crate::node::{BoxLanes, Node, WIDTH};
 use crate::query::Query;
 use crate::simd::Simd;
 
@@ -60,7 +60,7 @@ impl Stack {
         &mut self,
         tree: &Tree,
         node: &Node,
-        ray: &BoxRay<S::Eight>,
+        ray: &BoxLanes<S::Eight>,
         limit: f32,
     ) -> Option<Child> {
         let (mask, distances) = node.intersect(ray, limit);

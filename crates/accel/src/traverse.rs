@@ -14,7 +14,7 @@ use crate::query::Query;
 use crate::ray::{Hit, Ray};
 use crate::simd::{F32x4, Kernel, Simd};
 use crate::stack::{Stack, bits};
-use crate::triangle::{TriangleBlock, TriangleRay};
+use crate::triangle::{TriangleBlock, TriangleLanes, TriangleRay};
 
 /// Offers `query` every hit of `ray` that it could care for.
 pub(crate) struct Ask<'a, Q> {
@@ -53,11 +53,11 @@ impl<Q: Query> Kernel for Ask<'_, Q> {
 
 /// Follows the ray through the object of instance number `index`, and returns its new `t_max`. A kernel
 /// of its own, so that trees without instances do not carry it in their loop.
-struct VisitInstance<'a, Q> {
-    bvh: &'a Bvh,
-    index: usize,
-    ray: Ray,
-    query: &'a mut Q,
+pub(crate) struct VisitInstance<'a, Q> {
+    pub(crate) bvh: &'a Bvh,
+    pub(crate) index: usize,
+    pub(crate) ray: Ray,
+    pub(crate) query: &'a mut Q,
 }
 
 impl<Q: Query> Kernel for VisitInstance<'_, Q> {
@@ -101,8 +101,8 @@ impl<P: Space> Walk<'_, P> {
     ) -> ControlFlow<()> {
         let Self { tree, space, ray } = self;
         let (tree, mut ray) = (*tree, *ray);
-        let box_ray = BoxRay::<S::Eight>::new(&ray, tree.reach);
-        let triangle_ray = TriangleRay::<S::Four>::new(&ray);
+        let box_ray = BoxRay::new(&ray, tree.reach).lanes::<S::Eight>();
+        let triangle_ray = TriangleRay::new(&ray).lanes::<S::Four>();
         let mut limit = widen(ray.t_max);
         let mut stack = Stack::new();
         let mut child = Child::node(0);
@@ -139,7 +139,7 @@ impl<P: Space> Walk<'_, P> {
 /// The ray in the form that the kernels assume: finite, not empty, without negative or infinite
 /// `t`, and with zero for components whose reciprocal would overflow. None: it hits nothing.
 #[inline(always)]
-fn clean(ray: &Ray) -> Option<Ray> {
+pub(crate) fn clean(ray: &Ray) -> Option<Ray> {
     let normal = |x: f32| if x.abs() < f32::MIN_POSITIVE { 0.0 } else { x };
     let [x, y, z] = ray.direction.to_array();
     let direction = Vec3::new(normal(x), normal(y), normal(z));
@@ -168,13 +168,13 @@ const ANY_HIT: Hit = Hit {
 };
 
 /// Leaves, in the space of a tree.
-trait Leaves: Space {
+pub(crate) trait Leaves: Space {
     /// Offers the hits of a block of triangles.
     #[inline(always)]
     fn visit_block<V: F32x4, Q: Query>(
         &mut self,
         block: &TriangleBlock,
-        triangle_ray: &TriangleRay<V>,
+        triangle_ray: &TriangleLanes<V>,
         ray: &mut Ray,
         query: &mut Q,
     ) -> ControlFlow<()> {

@@ -109,16 +109,16 @@ impl TriangleBlock {
     #[inline(always)]
     pub(crate) fn candidates<V: F32x4>(
         &self,
-        ray: &TriangleRay<V>,
+        ray: &TriangleLanes<V>,
         limits: &Ray,
         sure: [f32; 2],
     ) -> Candidates {
         let relative = |vertex: usize, axis: usize| {
-            let row = ray.axes[axis];
+            let row = ray.ray.axes[axis];
             debug_assert!(row < 3, "axis {row}");
             // SAFETY: `axes` is a permutation of 0, 1 and 2.
             let row = unsafe { self.vertices[vertex].get_unchecked(row) };
-            V::load(row) - ray.origin_lanes[axis]
+            V::load(row) - ray.origin[axis]
         };
         let sheared = |vertex: usize| {
             let z = relative(vertex, 2);
@@ -162,15 +162,21 @@ impl TriangleBlock {
     pub(crate) fn pass<V: F32x4>(
         &self,
         lane: usize,
-        ray: &TriangleRay<V>,
+        ray: &TriangleLanes<V>,
         certain: u32,
     ) -> Option<Passage> {
         let [a, b, c] = self.triangle(lane % LANES);
-        let seen = [a - ray.origin, b - ray.origin, c - ray.origin];
+        let TriangleRay {
+            origin,
+            direction,
+            axes,
+            ..
+        } = ray.ray;
+        let seen = [a - origin, b - origin, c - origin];
         if certain >> lane & 1 == 1 {
-            Some(pass_certain(seen, ray.direction, ray.axes[2] % 3))
+            Some(pass_certain(seen, direction, axes[2] % 3))
         } else {
-            pass_triangle(seen, ray.direction, ray.axes[2] % 3)
+            pass_triangle(seen, direction, axes[2] % 3)
         }
     }
 }
@@ -189,43 +195,64 @@ fn axes_of(direction: Vec3) -> [usize; 3] {
 }
 
 /// A ray made ready for triangles.
-pub(crate) struct TriangleRay<V> {
+#[derive(Clone, Copy)]
+pub(crate) struct TriangleRay {
     origin: Vec3,
     direction: Vec3,
     /// The permutation of the axes: the last is that of the direction's largest component.
     axes: [usize; 3],
-    /// The origin with its axes permuted.
-    origin_lanes: [V; 3],
     /// The direction's two smaller components over the largest.
-    shear: [V; 2],
+    shear: [f32; 2],
     /// One over the direction's largest component; NaN where it would be subnormal.
-    per_depth: V,
+    per_depth: f32,
 }
 
-impl<V: F32x4> TriangleRay<V> {
+impl TriangleRay {
     #[inline(always)]
     pub(crate) fn new(ray: &Ray) -> Self {
-        let (d, o) = (ray.direction.to_array(), ray.origin.to_array());
-        let [x, y, z] = axes_of(ray.direction);
-        let (d, o) = (
-            |axis: usize| d[axis % 3],
-            |axis: usize| V::splat(o[axis % 3]),
-        );
+        let d = ray.direction.to_array();
+        let axes = axes_of(ray.direction);
+        let [x, y, z] = axes;
+        let d = |axis: usize| d[axis % 3];
         let per_depth = 1.0 / d(z);
         Self {
             origin: ray.origin,
             direction: ray.direction,
-            axes: [x, y, z],
-            origin_lanes: [o(x), o(y), o(z)],
-            shear: [V::splat(d(x) / d(z)), V::splat(d(y) / d(z))],
-            per_depth: V::splat(if per_depth.is_normal() {
+            axes,
+            shear: [d(x) / d(z), d(y) / d(z)],
+            per_depth: if per_depth.is_normal() {
                 per_depth
             } else {
                 f32::NAN
-            }),
+            },
         }
     }
 
+    /// The same in all lanes.
+    #[inline(always)]
+    pub(crate) fn lanes<V: F32x4>(&self) -> TriangleLanes<V> {
+        let o = self.origin.to_array();
+        let [x, y, z] = self.axes;
+        let o = |axis: usize| V::splat(o[axis % 3]);
+        TriangleLanes {
+            ray: *self,
+            origin: [o(x), o(y), o(z)],
+            shear: [V::splat(self.shear[0]), V::splat(self.shear[1])],
+            per_depth: V::splat(self.per_depth),
+        }
+    }
+}
+
+/// A [`TriangleRay`] against four triangles.
+pub(crate) struct TriangleLanes<V> {
+    ray: TriangleRay,
+    /// The origin with its axes permuted.
+    origin: [V; 3],
+    shear: [V; 2],
+    per_depth: V,
+}
+
+impl<V: F32x4> TriangleLanes<V> {
     /// Masks of the lanes whose triangles, with vertices at these depths, the line passes at a `t`
     /// certainly outside the limits, and certainly within those that are sure.
     #[inline(always)]

@@ -94,15 +94,36 @@ PATHS = [
     (
         "running sums without the next-event density",
         "crates/bidir/src/path/running.rs",
-        "1 => self.next_event / self.emission * ratio(b, a),",
-        "1 => ratio(b, a),",
+        "1 => share(start.next_event / start.emission / a),",
+        "1 => share(1.0 / a),",
         RUNNING,
     ),
     (
         "running sums over links at Dirac vertices",
         "crates/bidir/src/path/running.rs",
-        "possible(!self.went_by_delta && !next.went_by_delta)",
-        "possible(!self.went_by_delta)",
+        "links[1] * possible(!vertex.went_by_delta)",
+        "links[1]",
+        RUNNING,
+    ),
+    (
+        "connections of diffuse vertices without the camera's other strategies",
+        "crates/bidir/src/path/diffuse.rs",
+        "(r_z * z.others + r_y * y.others)",
+        "(r_z * z.others)",
+        RUNNING,
+    ),
+    (
+        "connections of diffuse vertices behind a shading normal",
+        "crates/bidir/src/path/diffuse.rs",
+        "[g_z, s_z, g_y, s_y].map",
+        "[g_z, s_z, g_y, g_y].map",
+        RUNNING,
+    ),
+    (
+        "connections of diffuse vertices without the adjoint of shading normals",
+        "crates/bidir/src/path/diffuse.rs",
+        "TransportMode::Importance => (cos_s / cos_g).abs(),",
+        "TransportMode::Importance => 1.0,",
         RUNNING,
     ),
     (
@@ -151,18 +172,20 @@ PATHS = [
     (
         "sum of the group in place of C/pi",
         "crates/bidir/src/integrator/stages/trace.rs",
-        "                contribution: Contribution {\n"
-        "                    term: of.term,\n"
-        "                    prob: *prob,\n"
-        "                    transmittance: 1.0,\n"
-        "                },\n",
+        "            contribution: Contribution {\n"
+        "                term: of.term,\n"
+        "                prob,\n"
+        "                transmittance: 1.0,\n"
+        "            },\n",
         "                // Right in every grey image, wrong in colour.\n"
         "                contribution: {\n"
+        "                    let first = number.checked_sub(1).map_or(0, |i| candidates_end[i]);\n"
+        "                    let candidates = &candidates[first..candidates_end[number]];\n"
         "                    let all: f32 = candidates.iter().map(|c| c.score).sum();\n"
         "                    let values = candidates.iter().map(|c| c.term.value());\n"
         "                    let sum = values.fold(crate::spectrum::Spectrum::ZERO, |sum, v| sum + v);\n"
         "                    let term = crate::contribution::Term {\n"
-        "                        contribution: sum * (of.score / *prob as f32 / all),\n"
+        "                        contribution: sum * (of.score / prob as f32 / all),\n"
         "                        weight: 1.0,\n"
         "                        ..of.term\n"
         "                    };\n"
@@ -172,8 +195,8 @@ PATHS = [
     ),
     (
         "candidates of a light cache not shared among each other",
-        "crates/bidir/src/integrator/stages/connect.rs",
-        "(draw.share / f64::from(count)) as f32,",
+        "crates/bidir/src/integrator/stages/draw.rs",
+        "(draw.share / count) as f32,",
         "draw.share as f32,",
         analytic("a_closed_sphere"),
     ),
@@ -201,8 +224,8 @@ PATHS = [
     (
         "weights that know the proposal the other way round",
         "crates/bidir/src/path/count.rs",
-        "self.job.guide.count_factor(z.cell, y.cell)",
-        "self.job.guide.count_factor(if s > t { z.cell } else { y.cell }, y.cell)",
+        "self.job.guide.count_factor(z, y)",
+        "self.job.guide.count_factor(if s > t { z } else { y }, y)",
         RUNNING,
     ),
     (
@@ -243,8 +266,8 @@ PATHS = [
     (
         "the first vertex's candidates counted for those behind it",
         "crates/bidir/src/path/running.rs",
-        "share(context.count(i + 1, ANY_DEEPER, [&walk[i], &walk[i + 1]]));",
-        "share(context.count(i + 1, 2, [&walk[i], &walk[i + 1]]));",
+        "[2, ANY_DEEPER].map(",
+        "[2, 2].map(",
         RUNNING,
     ),
     (
@@ -390,15 +413,15 @@ PATHS = [
     (
         "shared light subpaths counted as one in sums",
         "crates/bidir/src/path/running.rs",
-        "let count = share(context.count(i + 1, ANY_DEEPER, [&walk[i], &walk[i + 1]]));",
-        "let count = 1.0;",
+        "links * share(context.count(i, t, [before.cell, z.cell]))",
+        "links",
         RUNNING,
     ),
     (
         "chosen rays not divided by their probability",
         "crates/bidir/src/integrator/stages/trace.rs",
-        "                    prob: *prob,\n",
-        "                    prob: 1.0,\n",
+        "                prob,\n",
+        "                prob: 1.0,\n",
         analytic("selection_keeps"),
     ),
     (
@@ -489,8 +512,8 @@ PATHS = [
     (
         "splats not weakened by what they pass",
         "crates/bidir/src/integrator/stages/light_image.rs",
-        "    trace(job.scene, splats, stats);\n",
-        "    trace(job.scene, splats, stats);\n"
+        "    trace(job.scene, splats, shadow_rays, stats);\n",
+        "    trace(job.scene, splats, shadow_rays, stats);\n"
         "    let splats = splats.iter_mut().map(|splat| &mut splat.contribution.transmittance);\n"
         "    splats.for_each(|transmittance| *transmittance = transmittance.ceil());\n",
         coverage("a_half_transparent_plane"),

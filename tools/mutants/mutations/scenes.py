@@ -1,6 +1,6 @@
 """Faults in what scenes are made of, in random numbers and in rays."""
 
-from .tests import ESTIMATORS, layers, reader, unit
+from .tests import ESTIMATORS, SUITE, layers, reader, unit
 
 SCENES = [
     # --- where a scene is rendered --------------------------------------------------------
@@ -112,6 +112,20 @@ SCENES = [
         "self.t < other.t || (self.t <= other.t && id(self) < id(other))",
         "self.t < other.t || (self.t <= other.t && id(self) > id(other))",
         ("bidir-accel", "", ""),
+    ),
+    (
+        "leaves of a ray in step visited by its neighbour",
+        "crates/accel/src/lockstep.rs",
+        "let place = usize::from(place) % RAYS;",
+        "let place = usize::from(place ^ 1) % RAYS;",
+        ("bidir-accel", SUITE, "many::"),
+    ),
+    (
+        "a ray in step that is blocked goes on as if it were not",
+        "crates/accel/src/lockstep.rs",
+        "let is_blocked = found >> number & 1 == 1;",
+        "let is_blocked = found >> number & 1 == 1 && !stack.is_empty();",
+        ("bidir-accel", SUITE, "many::"),
     ),
     # --- instances ---------------------------------------------------------------------------
     (

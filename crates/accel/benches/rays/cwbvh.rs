@@ -100,7 +100,7 @@ impl Engine for CwBvhScene {
             let ray = ObvhsRay::new(origin, direction, ray.t_min, ray.t_max);
             match question {
                 Question::Closest => self.intersect(ray),
-                Question::Occluded => self.occluded(ray),
+                Question::Occluded | Question::Together => self.occluded(ray),
             }
         };
         rays.iter().filter(hits).count()

@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use bidir_accel::{BuildOptions, Bvh, Instance, Isa, Primitive, Ray, accept_all};
 
-use crate::rays::Question;
+use crate::rays::{Question, TOGETHER};
 use crate::scenes::{Mesh, Scene};
 
 /// Something that answers rays.
@@ -75,11 +75,21 @@ impl Ours {
 
 impl Engine for Ours {
     fn count_hits(&self, question: Question, rays: &[Ray]) -> usize {
-        let hits = |ray: &&Ray| match question {
-            Question::Closest => self.bvh.closest(ray, accept_all).is_some(),
-            Question::Occluded => self.bvh.is_blocked(ray),
-        };
-        rays.iter().filter(hits).count()
+        let each = rays.iter();
+        match question {
+            Question::Closest => each
+                .filter(|ray| self.bvh.closest(ray, accept_all).is_some())
+                .count(),
+            Question::Occluded => each.filter(|ray| self.bvh.is_blocked(ray)).count(),
+            Question::Together => {
+                let mut blocked = Vec::new();
+                let mut of_call = |rays| {
+                    self.bvh.are_blocked(rays, &mut blocked);
+                    blocked.iter().filter(|&&is_blocked| is_blocked).count()
+                };
+                rays.chunks(TOGETHER).map(&mut of_call).sum()
+            }
+        }
     }
 
     fn bytes(&self) -> usize {

@@ -18,7 +18,12 @@ pub(crate) struct Batch {
 pub(crate) enum Question {
     Closest,
     Occluded,
+    /// The same of many rays at once, where the engine can: in calls of [`TOGETHER`].
+    Together,
 }
+
+/// Rays of a call: about as many as a batch of samples has.
+pub(crate) const TOGETHER: usize = 64;
 
 /// Pixels of a side of the picture.
 const SIDE: usize = 256;
@@ -28,8 +33,8 @@ const SIDE: usize = 256;
 const OFFSET: f32 = 1e-4;
 
 /// Rays of a camera, rays that bounce diffusely where these hit, and shadow rays from there to lights
-/// and to points that other bounces hit, in equal shares.
-pub(crate) fn batches(scene: &Scene, ours: &Ours) -> [Batch; 3] {
+/// and to points that other bounces hit, in equal shares; the shadow rays one by one and many at once.
+pub(crate) fn batches(scene: &Scene, ours: &Ours) -> [Batch; 4] {
     let mut random = Random(13);
     let primary = primary(scene, &mut random);
     let points: Vec<_> = primary
@@ -57,20 +62,17 @@ pub(crate) fn batches(scene: &Scene, ours: &Ours) -> [Batch; 3] {
             ..Ray::new(*point, end - *point)
         }
     };
-    let shadow = points.iter().enumerate().map(shadow).collect();
-    let closest = |name, rays| Batch {
+    let shadow: Vec<_> = points.iter().enumerate().map(shadow).collect();
+    let batch = |name, question, rays| Batch {
         name,
-        question: Question::Closest,
+        question,
         rays,
     };
     [
-        closest("primary", primary),
-        closest("diffuse", diffuse),
-        Batch {
-            name: "shadow",
-            question: Question::Occluded,
-            rays: shadow,
-        },
+        batch("primary", Question::Closest, primary),
+        batch("diffuse", Question::Closest, diffuse),
+        batch("shadow", Question::Occluded, shadow.clone()),
+        batch("shadows", Question::Together, shadow),
     ]
 }
 

@@ -114,3 +114,37 @@ fn nan_selects_the_second_operand() {
     assert_eq!((nan.max(one).lt(one), nan.max(one).le(one)), (0, 0b1111));
     assert!(one.max(nan).to_array()[0].is_nan());
 }
+
+/// Compares what is done with eight words with plain loops.
+struct Words<'a>(&'a [u32; 8]);
+
+impl Kernel for Words<'_> {
+    type Output = ();
+
+    fn run<S: Simd>(self) {
+        let Self(words) = self;
+        let upper = (0..8).filter(|&k| words[k] >= 1 << 30);
+        let expected = upper.fold(0, |mask, k| mask | 1 << k);
+        assert_eq!(S::Eight::upper_two(words), expected, "{words:x?}");
+        for mask in 0..256_u32 {
+            let mut packed = [MaybeUninit::new(0); 8];
+            S::Eight::pack(mask, words, &mut packed);
+            let set = (0..8).filter(|k| mask >> k & 1 == 1);
+            for (packed, k) in packed.into_iter().zip(set) {
+                // SAFETY: all are initialised above.
+                assert_eq!(unsafe { packed.assume_init() }, words[k], "{mask:b}");
+            }
+        }
+    }
+}
+
+#[test]
+fn words_are_packed_and_distinguished() {
+    let bits = [0, 1 << 29, 1 << 30, 1 << 31];
+    for shift in 0..8 {
+        let words = std::array::from_fn(|k| bits[(k + shift) % 3 + k % 2] | k as u32);
+        for isa in crate::Isa::supported() {
+            isa.call(Words(&words));
+        }
+    }
+}

@@ -13,12 +13,17 @@ fn check_rays(primitives: &[Primitive], random: &mut Random) {
     let bvh = build(primitives);
     let bounds = bvh.bounds();
     // A ray may meet every primitive.
-    for _ in 0..500.min(400_000 / primitives.len()) {
+    let rays = 500.min(400_000 / primitives.len());
+    let mut ray = || {
         let target = bounds.center() + bounds.extent() * 0.5 * random.cube();
         let origin = bounds.center() + bounds.extent() * random.cube();
-        let ray = Ray::new(origin, target - origin);
-        let hit = bvh.closest(&ray, accept_all);
-        assert_eq!(bvh.occluded(&ray, accept_all), hit.is_some());
+        Ray::new(origin, target - origin)
+    };
+    let rays: Vec<_> = (0..rays).map(|_| ray()).collect();
+    for (ray, is_blocked) in rays.iter().zip(bvh.are_blocked(&rays)) {
+        let hit = bvh.closest(ray, accept_all);
+        assert_eq!(bvh.occluded(ray, accept_all), hit.is_some());
+        assert_eq!(is_blocked, hit.is_some());
         if let Some(hit) = hit {
             assert!(
                 hit.t.is_finite() && hit.u.is_finite() && hit.v.is_finite(),
@@ -131,11 +136,12 @@ proptest! {
         rays in prop::collection::vec((grid_point(), grid_point()), 100),
     ) {
         let (bvh, single) = (build(&primitives), Single::new(&primitives));
-        for (origin, direction) in rays {
-            let ray = Ray::new(origin, direction);
-            let expected = single.closest(&ray, accept_all);
-            prop_assert_eq!(hit_bits(bvh.closest(&ray, accept_all)), hit_bits(expected));
-            prop_assert_eq!(bvh.occluded(&ray, accept_all), expected.is_some());
+        let rays: Vec<_> = rays.into_iter().map(|(o, d)| Ray::new(o, d)).collect();
+        for (ray, is_blocked) in rays.iter().zip(bvh.are_blocked(&rays)) {
+            let expected = single.closest(ray, accept_all);
+            prop_assert_eq!(hit_bits(bvh.closest(ray, accept_all)), hit_bits(expected));
+            prop_assert_eq!(bvh.occluded(ray, accept_all), expected.is_some());
+            prop_assert_eq!(is_blocked, expected.is_some());
         }
     }
 
@@ -145,10 +151,11 @@ proptest! {
         rays in prop::collection::vec((wild_point(), wild_point()), 50),
     ) {
         let bvh = build(&primitives);
-        for (origin, direction) in rays {
-            let ray = Ray::new(origin, direction);
-            let hit = bvh.closest(&ray, accept_all);
-            prop_assert_eq!(bvh.occluded(&ray, accept_all), hit.is_some());
+        let rays: Vec<_> = rays.into_iter().map(|(o, d)| Ray::new(o, d)).collect();
+        for (ray, is_blocked) in rays.iter().zip(bvh.are_blocked(&rays)) {
+            let hit = bvh.closest(ray, accept_all);
+            prop_assert_eq!(bvh.occluded(ray, accept_all), hit.is_some());
+            prop_assert_eq!(is_blocked, hit.is_some());
             if let Some(hit) = hit {
                 prop_assert!(hit.t >= 0.0 && hit.t.is_finite());
                 prop_assert!((0.0..=1.0).contains(&hit.u) && (0.0..=1.0).contains(&hit.v));

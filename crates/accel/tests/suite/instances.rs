@@ -31,11 +31,11 @@ fn placed_one(own: &[Primitive], objects: &[&[Primitive]], instances: &[Instance
     Bvh::with_instances(own, objects.collect(), instances, &options).expect("valid")
 }
 
-fn placed(own: &[Primitive], objects: &[&[Primitive]], instances: &[Instance]) -> Trees {
+pub(crate) fn placed(own: &[Primitive], objects: &[&[Primitive]], instances: &[Instance]) -> Trees {
     Trees::new(&placed_one(own, objects, instances))
 }
 
-fn instances(random: &mut Random, count: usize, objects: usize) -> Vec<Instance> {
+pub(crate) fn instances(random: &mut Random, count: usize, objects: usize) -> Vec<Instance> {
     let instance = |_| Instance {
         object: random.below(objects) as u32,
         world_from_object: map(random),

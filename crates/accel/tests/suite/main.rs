@@ -9,6 +9,7 @@ mod answers;
 mod bits;
 mod degenerate;
 mod instances;
+mod many;
 mod oracle;
 mod quadrics;
 mod scenes;

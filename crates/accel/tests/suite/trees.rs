@@ -42,9 +42,10 @@ impl Trees {
     /// True if there is any hit, by one tree and one question, other ones with every `turn`.
     pub(crate) fn is_hit_in_turn(&self, turn: usize, ray: &Ray) -> bool {
         let bvh = &self.0[turn % self.0.len()];
-        match turn / self.0.len() % 3 {
+        match turn / self.0.len() % 4 {
             0 => bvh.closest(ray, accept_all).is_some(),
             1 => bvh.occluded(ray, accept_all),
+            2 => are_blocked(bvh, std::slice::from_ref(ray))[0],
             _ => bvh.is_blocked(ray),
         }
     }
@@ -59,14 +60,32 @@ impl Trees {
         expected
     }
 
+    /// Which of `rays` hit anything, without a filter.
+    #[track_caller]
+    pub(crate) fn are_blocked(&self, rays: &[Ray]) -> Vec<bool> {
+        let expected = are_blocked(&self.0[0], rays);
+        for bvh in &self.0[1..] {
+            assert_eq!(are_blocked(bvh, rays), expected, "{}", bvh.isa());
+        }
+        expected
+    }
+
     /// True if anything is in the way, by all questions, which must agree.
     #[track_caller]
     pub(crate) fn is_hit(&self, ray: &Ray) -> bool {
         let expected = self.closest(ray, accept_all).is_some();
         assert_eq!(self.occluded(ray, accept_all), expected, "{ray:?}");
         assert_eq!(self.is_blocked(ray), expected, "{ray:?}");
+        let many = self.are_blocked(std::slice::from_ref(ray));
+        assert_eq!(many, [expected], "{ray:?}");
         expected
     }
+}
+
+fn are_blocked(bvh: &Bvh, rays: &[Ray]) -> Vec<bool> {
+    let mut blocked = vec![true];
+    bvh.are_blocked(rays, &mut blocked);
+    blocked
 }
 
 impl Deref for Trees {

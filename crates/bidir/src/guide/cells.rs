@@ -14,6 +14,9 @@ use std::cmp::Ordering;
 pub struct Cell(u16);
 
 impl Cell {
+    /// The cell of every vertex where nothing is learned.
+    pub(crate) const FIRST: Self = Self(0);
+
     /// Its number, below [`Cells::COUNT`].
     #[inline]
     pub(crate) fn index(self) -> usize {

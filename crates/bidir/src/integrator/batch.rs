@@ -1,6 +1,6 @@
 //! The samples in flight, and what each stage leaves for the next: arrays that the next batch uses again.
 
-use super::cache::LightCache;
+use super::cache::{CachedEnd, LightCache};
 use super::stages::lens_vertex;
 use super::{Entry, Fate, Link};
 use crate::contribution::{Term, is_summable};
@@ -9,7 +9,7 @@ use crate::path::{
     Subpaths, Weights,
 };
 use crate::sampler::{Dimension, Purpose, SampleStream};
-use crate::scene::Scene;
+use crate::scene::{Scene, ShadowRays};
 use crate::select::{Candidate, Chosen};
 use crate::spectrum::{Spectrum, Wavelengths};
 use crate::stats::{Clock, Dropped, Stats, Stopwatch};
@@ -70,6 +70,8 @@ pub(super) struct NextEvent {
     pub(super) t: u32,
     /// Its number among the light vertices.
     pub(super) z: usize,
+    /// e, the density that it was drawn with.
+    pub(super) pdf: f32,
 }
 
 /// The samples in flight, with all that was made of them so far.
@@ -86,6 +88,8 @@ pub struct Batch {
     pub(super) light_sums: RunningSums,
     pub(super) weights: Weights,
     pub(super) cache: LightCache,
+    /// The draws of all camera vertices, in their order.
+    pub(super) cached: Vec<CachedEnd>,
     /// The connections that may be traced, sample by sample.
     pub candidates: Vec<Candidate>,
     /// For each sample the end of its candidates.
@@ -100,6 +104,7 @@ pub struct Batch {
     pub values: Vec<Spectrum>,
     /// The terms of the light image.
     pub splats: Vec<Entry>,
+    pub(super) shadow_rays: ShadowRays,
     /// Memory of the driver: the luminance that each sample adds to its own pixel by a strategy.
     pub(crate) luminances: Vec<((u32, Strategy), f64)>,
     /// The counters.
@@ -125,6 +130,7 @@ impl Batch {
         self.camera_sums.clear();
         self.light.forget_points();
         self.next_events.clear();
+        self.cached.clear();
         self.candidates.clear();
         self.candidates_end.clear();
         self.unoffered.clear();

@@ -1,7 +1,7 @@
 //! The light vertex cache: which vertices of a group's light subpaths can be connected, and draws of them.
 
 use crate::guide::{Cell, CellDraw, Cells, LightProposals};
-use crate::path::{LightPointChoice, Subpath, Subpaths, Vertex};
+use crate::path::{LightPointChoice, RunningSums, Subpath, Subpaths, Vertex};
 use std::ops::Range;
 
 /// An index of the light vertices that can be connected.
@@ -31,13 +31,30 @@ struct CachedVertex {
 pub(super) struct Place {
     /// Its number among all light vertices.
     pub(super) z: u32,
-    /// The number of its subpath.
-    pub(super) subpath: u32,
     /// The number of vertices of the subpath up to it.
     pub(super) s: u16,
+    /// True where the sums have it as a diffuse vertex.
+    pub(super) is_diffuse: bool,
+    /// The light that its subpath begins on.
+    pub(super) light: Option<u32>,
 }
 
-/// A vertex that was drawn from the cache.
+/// A vertex that was drawn from the cache to be connected with a camera vertex.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct CachedEnd {
+    /// The sample, by number.
+    pub(super) sample: u32,
+    /// The number of the camera vertex.
+    pub(super) t: u32,
+    /// The number of the vertex in the cache.
+    pub(super) entry: u32,
+    /// How much its connection counts.
+    pub(super) share: f32,
+    /// Its place.
+    pub(super) place: Place,
+}
+
+/// A draw from the cache.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Draw {
     /// Its number.
@@ -59,6 +76,7 @@ impl LightCache {
     pub(super) fn index(
         &mut self,
         walks: &Subpaths,
+        sums: &RunningSums,
         light_point: LightPointChoice,
         proposals: Option<&LightProposals>,
     ) {
@@ -72,8 +90,9 @@ impl LightCache {
             self.unsorted.extend(connectable.map(|i| CachedVertex {
                 place: Place {
                     z: (first + i) as u32,
-                    subpath: subpath as u32,
                     s: i as u16 + 1,
+                    is_diffuse: sums.diffuse(first + i).is_some(),
+                    light: vertices[0].light,
                 },
                 cell: vertices[i].cell,
             }));

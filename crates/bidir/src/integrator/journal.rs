@@ -16,7 +16,7 @@ pub enum Link {
 }
 
 impl Link {
-    /// The ends of the shadow ray, if there is one.
+    /// The ends of the shadow ray, if it has one.
     #[inline]
     pub fn ends(&self) -> Option<&[Locus; 2]> {
         match self {
@@ -66,6 +66,12 @@ impl Entry {
             link,
             fate,
         }
+    }
+
+    /// The ends of its shadow ray, unless its term was dropped.
+    #[inline]
+    pub(super) fn shadow_ray(&self) -> Option<&[Locus; 2]> {
+        self.link.ends().filter(|_| self.fate != Fate::Dropped)
     }
 
     /// True where it adds to an image.

@@ -9,8 +9,8 @@
 //! likewise.
 
 use super::stages::{
-    Source, Weighting, connect, direct, hits, light_image, next_events, select, shadow_rays,
-    sum_camera, sum_light, walk_camera, walk_light,
+    Source, Weighting, connect, direct, draw_cached, hits, light_image, next_events, select,
+    shadow_rays, sum_camera, sum_light, walk_camera, walk_light,
 };
 use super::{Batch, CandidateCount, IntegratorKind, LvcSettings};
 use crate::path::Job;
@@ -92,7 +92,8 @@ impl Method {
                 sum_camera(job, batch);
                 hits(job, batch);
                 next_events(job, batch, lvc.next_events);
-                connect(job, batch, Source::Cache(lvc.candidates));
+                draw_cached(job, batch, lvc.candidates);
+                connect(job, batch, Source::Cache);
                 select(&**selector, batch);
                 shadow_rays(job, batch);
             }
@@ -116,7 +117,12 @@ pub fn walk_group(job: &Job<'_>, batch: &mut Batch) {
 
 /// Makes ready what the samples of a group share, when all of it is walked.
 pub fn end_group(job: &Job<'_>, batch: &mut Batch) {
-    let Batch { light, cache, .. } = batch;
+    let Batch {
+        light,
+        light_sums,
+        cache,
+        ..
+    } = batch;
     let proposals = job.guide.proposals;
-    cache.index(light, job.settings.light_point, proposals);
+    cache.index(light, light_sums, job.settings.light_point, proposals);
 }

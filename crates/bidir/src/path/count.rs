@@ -5,8 +5,9 @@
 //! it (docs/derivations/mis-weights.md). n_j depends on the two vertices that strategy j links alone, so that
 //! sums along subpaths can hold it.
 
-use super::{JoinedPath, PathContext, Vertex};
+use super::{JoinedPath, PathContext};
 use crate::film::FilmSettings;
+use crate::guide::Cell;
 
 /// How many samples of a path strategies take in a pass, before the [`Guide`](crate::guide::Guide) shares
 /// them out.
@@ -33,12 +34,12 @@ impl SampleCounts {
 }
 
 impl PathContext<'_> {
-    /// n_j: how many samples strategy (s, t) takes in a pass of a path that it makes by linking `z`,
-    /// its last light vertex, with `y`, its last camera vertex. Camera densities
+    /// n_j: how many samples strategy (s, t) takes in a pass of a path that it makes by linking its last light
+    /// vertex, in the cell `z`, with its last camera vertex, in the cell `y`. Camera densities
     /// count per pixel, so every strategy that begins at the camera takes one; the light image takes
     /// one per light subpath.
     #[inline]
-    pub fn count(&self, s: usize, t: usize, [z, y]: [&Vertex; 2]) -> f64 {
+    pub fn count(&self, s: usize, t: usize, [z, y]: [Cell; 2]) -> f64 {
         let SampleCounts {
             connections,
             next_events,
@@ -48,7 +49,7 @@ impl PathContext<'_> {
             _ if !self.takes(s, t) => 0.0,
             1 => light_subpaths,
             _ if s >= self.job.settings.light_point.first_walked() => {
-                connections[usize::from(t > 2)] * self.job.guide.count_factor(z.cell, y.cell)
+                connections[usize::from(t > 2)] * self.job.guide.count_factor(z, y)
             }
             _ => next_events[usize::from(t > 2)],
         }
@@ -66,7 +67,7 @@ impl JoinedPath<'_> {
     pub(super) fn count(&self, context: &PathContext<'_>, j: usize) -> f64 {
         match (j, self.len() - j) {
             (0, t) | (_, t @ 0) => context.count_hits(t),
-            (s, t) => context.count(s, t, [self.vertex(s - 1), self.vertex(s)]),
+            (s, t) => context.count(s, t, [self.vertex(s - 1).cell, self.vertex(s).cell]),
         }
     }
 }

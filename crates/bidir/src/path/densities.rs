@@ -164,7 +164,7 @@ pub(super) fn next_event_density(context: &PathContext<'_>, x0: &Vertex, x1: &Ve
 /// The roulette's part of the density of vertex number `index` of a walk (0 is its end of the
 /// path), with the albedo that the walk meets at the vertex before it.
 #[inline]
-fn factor(context: &PathContext<'_>, index: usize, albedo: impl FnOnce() -> f32) -> f32 {
+pub(super) fn factor(context: &PathContext<'_>, index: usize, albedo: impl FnOnce() -> f32) -> f32 {
     // Vertex 1 is drawn by the end of the path itself, which no roulette guards.
     if index < 2 {
         1.0
@@ -179,7 +179,7 @@ fn factor(context: &PathContext<'_>, index: usize, albedo: impl FnOnce() -> f32)
 
 /// The density with which its walk drew the last vertex of a subpath.
 #[inline]
-pub(super) fn drawn_density(context: &PathContext<'_>, subpath: &[Vertex]) -> f32 {
+fn drawn_density(context: &PathContext<'_>, subpath: &[Vertex]) -> f32 {
     let (last, index) = (&subpath[subpath.len() - 1], subpath.len() - 1);
     last.pdf_fwd * factor(context, index, || subpath[index - 1].albedo_fwd)
 }

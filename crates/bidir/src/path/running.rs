@@ -5,39 +5,50 @@
 //!
 //! L_m = Σ_{j ≤ m} h(n_j p_j / p_m) = h(n_m) + h(p_{m-1} / p_m) · L_{m-1},
 //!
-//! and likewise C_m by camera vertices. Both depend on vertices well inside of a subpath alone; a
-//! weight adds what changes at the junction (docs/derivations/mis-weights.md). It is the number that
+//! and likewise C_m by camera vertices. Both depend on vertices well inside of a subpath alone; a weight adds the
+//! four densities that change at the junction (docs/derivations/mis-weights.md). It is the number that
 //! [`mis_weight`](super::mis_weight) finds, but for rounding.
 
-use super::densities::{drawn_density, next_event_density, walked_densities};
-use super::{JoinedPath, Junction, PathContext, PathDensities, PathSettings, Subpath, Vertex};
+use super::densities::{Reversed, next_event_density, walked_densities};
+use super::{
+    DiffuseEnd, JoinedPath, Junction, PathContext, PathDensities, PathSettings, Subpath, Vertex,
+};
+use crate::bsdf::TransportMode;
 
-/// Sums of shares along the walks of a batch, each relative to the strategy it ends with.
+/// Sums of shares along the walks of a batch.
 #[derive(Debug, Default)]
 pub struct RunningSums {
-    /// A number for each vertex of the walks: L_m of light walks, C_m of camera walks; the last ones of a walk
-    /// may be padding.
-    sums: Vec<f64>,
-    /// For each light walk the start of all paths with two of its vertices or more.
-    starts: Vec<PathStart>,
+    /// For each vertex of the walks.
+    ends: Vec<EndSums>,
+    /// The same vertices for connections with diffuse ones.
+    diffuse: Vec<DiffuseEnd>,
 }
 
-/// Sums of shares along the subpaths of a path.
+/// The strategies that end a subpath before its last vertex, whose walk drew it with density a: with r the density of
+/// drawing it from the other end of the path, and r' that of the vertex before it, their share is
+/// h(r / a) (`links` + `slope` h(r')).
+#[derive(Clone, Copy, Debug)]
+pub struct EndSums {
+    /// h(1 / a); h(1 / e) at x_0 and h(e / (a_0 a_1)) at x_1.
+    per_drawn: f64,
+    /// The share of the strategy that links the vertex with the one before it: where the rest of the path is one
+    /// vertex, and where it is longer.
+    links: [f64; 2],
+    /// h(1 / a') of the vertex before it, times the sum up to there.
+    slope: f64,
+    /// L_m or C_m of the strategies that end with the vertex before it, or sooner, where the walk went on.
+    sum: f64,
+}
+
+/// Sums of shares at both ends of a connection.
 #[derive(Clone, Copy, Debug)]
 pub struct PathSums<'a> {
-    /// Along its light walk.
-    pub light: LightSums<'a>,
-    /// Along its camera walk: C_m; C_0 = 0.
-    pub camera: &'a [f64],
-}
-
-/// Sums of shares along a light walk.
-#[derive(Clone, Copy, Debug)]
-pub struct LightSums<'a> {
-    /// L_m.
-    sums: &'a [f64],
-    /// The start of its paths.
-    start: &'a PathStart,
+    /// At its light vertex. Not used where that is x_0: all of its sum belongs to the connection.
+    pub light: &'a EndSums,
+    /// At its camera vertex.
+    pub camera: &'a EndSums,
+    /// e of x_0, where it is known: that of a light point that was drawn for the camera vertex.
+    pub next_event: Option<f32>,
 }
 
 /// Weights of paths, by sums where these hold.
@@ -70,82 +81,129 @@ const FAR: usize = usize::MAX;
 const ANY_WALKED: usize = 2;
 const ANY_DEEPER: usize = 3;
 
-impl LightSums<'_> {
-    /// No sums: paths with one light vertex need none.
-    pub const NONE: LightSums<'static> = LightSums {
-        sums: &[],
-        start: &PathStart::NONE,
+impl EndSums {
+    /// No other strategy.
+    pub const NONE: Self = Self {
+        per_drawn: 0.0,
+        links: [0.0; 2],
+        slope: 0.0,
+        sum: 0.0,
     };
+
+    /// The share of these strategies, relative to one that links this vertex with `others` more, where h(r) is
+    /// `end` and h(r') is `before`.
+    #[inline]
+    fn shares(&self, others: usize, end: f64, before: f64) -> f64 {
+        let links = self.links[usize::from(others > 1)];
+        chain(0.0, self.per_drawn * end, chain(links, before, self.slope))
+    }
+
+    /// The factor of r in the share of these strategies under the balance heuristic, where the rest of the path is
+    /// longer than one vertex and r' is `before`.
+    pub(super) fn per_density(&self, before: f64) -> f64 {
+        self.shares(ANY_DEEPER, 1.0, before)
+    }
 }
 
 impl RunningSums {
     /// Forgets all walks, and keeps the memory.
     pub fn clear(&mut self) {
-        self.sums.clear();
-        self.starts.clear();
+        self.ends.clear();
+        self.diffuse.clear();
     }
 
     /// Adds the sums along a light walk, which follows the one before.
     pub fn add_light(&mut self, context: &PathContext<'_>, walk: &Subpath<'_>) {
-        let end = self.sums.len() + walk.vertices.len();
+        let share = |ratio| context.job.settings.mis.share(ratio);
         let start = match walk.vertices {
-            [x0, x1, ..] => PathStart::new(context, x0, x1),
-            _ => PathStart::NONE,
+            [] => return,
+            [_] => PathStart::NONE,
+            [x0, x1, ..] => PathStart::new(context, x0, next_event_density(context, x0, x1)),
         };
-        if walk.vertices.len() > 1 {
-            self.sum_light(context, walk.vertices, &start);
-        }
-        self.starts.push(start);
-        self.sums.resize(end, 0.0);
+        let links = |i: usize, [before, z]: [&Vertex; 2]| {
+            let links = if i == 1 { start.is_drawn } else { 1.0 };
+            [2, ANY_DEEPER].map(|t| links * share(context.count(i, t, [before.cell, z.cell])))
+        };
+        let per_drawn = |i: usize, a: f64| match i {
+            1 => share(start.next_event / start.emission / a),
+            _ => share(1.0 / a),
+        };
+        self.add(context, walk, start.sums(context), links, per_drawn);
     }
 
     /// Adds the sums along a camera walk, which follows the one before.
     pub fn add_camera(&mut self, context: &PathContext<'_>, walk: &Subpath<'_>) {
-        let end = self.sums.len() + walk.vertices.len();
-        self.sum_camera(context, walk.vertices);
-        self.sums.resize(end, 0.0);
-    }
-
-    /// The sums along light walk number `i`, whose first vertex has the number `first`; empty where none were
-    /// added.
-    #[inline]
-    pub fn light(&self, i: usize, first: usize) -> LightSums<'_> {
-        LightSums {
-            sums: self.sums.get(first..).unwrap_or_default(),
-            start: self.starts.get(i).unwrap_or(&PathStart::NONE),
-        }
-    }
-
-    /// The sums along the camera walk whose first vertex has the number `first`.
-    #[inline]
-    pub fn camera(&self, first: usize) -> &[f64] {
-        self.sums.get(first..).unwrap_or_default()
-    }
-
-    fn sum_light(&mut self, context: &PathContext<'_>, walk: &[Vertex], start: &PathStart) {
         let share = |ratio| context.job.settings.mis.share(ratio);
-        let mut sum = start.is_hit;
-        self.sums.push(sum);
-        let densities = walked_densities(context, walk, FAR);
-        for (i, [a, b]) in densities.take(walk.len() - 2).enumerate() {
-            let count = share(context.count(i + 1, ANY_DEEPER, [&walk[i], &walk[i + 1]]));
-            let links = count * start.links(i + 1) * walk[i].links(&walk[i + 1]);
-            sum = chain(links, share(start.down(i, a, b)), sum);
-            self.sums.push(sum);
+        let Some(lens) = walk.vertices.first() else {
+            return;
+        };
+        let links = |c: usize, [before, y]: [&Vertex; 2]| {
+            [share(context.count(ANY_WALKED, c, [y.cell, before.cell])); 2]
+        };
+        let per_drawn = |_: usize, b: f64| share(1.0 / b);
+        let first = EndSums {
+            per_drawn: finite(per_drawn(0, lens.pdf_fwd.into())),
+            ..EndSums::NONE
+        };
+        self.add(context, walk, first, links, per_drawn);
+    }
+
+    /// Adds the sums along a walk, those of its first vertex given; `links` is the share of the strategy that links
+    /// a vertex, by number, with the one before it, and `per_drawn` the factor for its density.
+    #[inline]
+    fn add(
+        &mut self,
+        context: &PathContext<'_>,
+        walk: &Subpath<'_>,
+        first: EndSums,
+        links: impl Fn(usize, [&Vertex; 2]) -> [f64; 2],
+        per_drawn: impl Fn(usize, f64) -> f64,
+    ) {
+        let share = |ratio| context.job.settings.mis.share(ratio);
+        let mode = if walk.vertices[0].is_camera() {
+            TransportMode::Radiance
+        } else {
+            TransportMode::Importance
+        };
+        let (mut last, mut back) = (first, 0.0);
+        for (i, [drawn, reverse]) in walked_densities(context, walk.vertices, FAR).enumerate() {
+            if let Some(before) = i.checked_sub(1) {
+                let [before, vertex] = [before, i].map(|i| &walk.vertices[i]);
+                let linked = possible(!before.went_by_delta);
+                let links = links(i, [before, vertex]).map(|of| of * linked);
+                let walked_on = links[1] * possible(!vertex.went_by_delta);
+                let slope = chain(0.0, last.per_drawn, last.sum);
+                last = EndSums {
+                    per_drawn: finite(per_drawn(i, drawn.into())),
+                    links,
+                    slope,
+                    sum: chain(walked_on, share(back), slope),
+                };
+            }
+            self.ends.push(last);
+            let vertex = &walk.vertices[i];
+            let end = DiffuseEnd::new(context, vertex, &last, mode);
+            self.diffuse.push(end);
+            back = f64::from(reverse);
         }
     }
 
-    fn sum_camera(&mut self, context: &PathContext<'_>, walk: &[Vertex]) {
-        let share = |ratio| context.job.settings.mis.share(ratio);
-        let mut sum = 0.0;
-        self.sums.push(sum);
-        let densities = walked_densities(context, walk, FAR);
-        for (c, [b, a]) in densities.take(walk.len() - 1).enumerate() {
-            let [y, z] = [&walk[c], &walk[c + 1]];
-            let links = share(context.count(ANY_WALKED, c + 1, [z, y])) * y.links(z);
-            sum = chain(links, share(ratio(a, b)), sum);
-            self.sums.push(sum);
-        }
+    /// The sums at the vertex of this number; none where none were added.
+    #[inline]
+    pub fn at(&self, vertex: usize) -> &EndSums {
+        self.ends.get(vertex).unwrap_or(&EndSums::NONE)
+    }
+
+    /// The vertex of this number for connections with diffuse ones. None: it is no diffuse one of a walk.
+    #[inline]
+    pub fn diffuse(&self, vertex: usize) -> Option<&DiffuseEnd> {
+        self.diffuse.get(vertex).and_then(DiffuseEnd::get)
+    }
+
+    /// Begins to load what `diffuse` gives.
+    #[inline]
+    pub(crate) fn load_ahead(&self, vertex: usize) {
+        accel::load_ahead(self.diffuse.get(vertex..=vertex).unwrap_or_default());
     }
 }
 
@@ -191,58 +249,47 @@ impl PathSums<'_> {
     fn hit(&self, context: &PathContext<'_>, path: &JoinedPath<'_>) -> f64 {
         let (y, t) = (path.y(), path.camera.len());
         let share = |ratio| context.job.settings.mis.share(ratio);
-        let end = PathStart::new(context, path.z(), y);
+        let start = self.start(context, path);
         let reversed = path.reversed(context);
-        let count = share(context.count(1, t, [path.z(), y]));
-        let links = count * end.is_drawn * possible(!y.went_by_delta);
-        let up = end.up(1, reversed.y, drawn_density(context, path.camera));
-        let from_drawn = chain(links, share(up), self.camera[t - 1]);
-        let mut others = chain(
-            0.0,
-            share(end.next_event / f64::from(reversed.z)),
-            from_drawn,
-        );
+        let count = share(context.count(1, t, [path.z().cell, y.cell]));
+        let links = count * start.is_drawn * possible(!y.went_by_delta);
+        let up = share(start.up() * f64::from(reversed.y)) * self.camera.per_drawn;
+        let from_drawn = chain(links, up, self.camera.sum);
+        let up = share(start.next_event / f64::from(reversed.z));
+        let mut others = chain(0.0, up, from_drawn);
         if t == 1 {
             others = context.job.settings.mis.share_of_image(others, 1.0);
         }
         1.0 / (1.0 + others)
     }
 
+    /// x_0 of a path of which the rest is one subpath.
+    #[inline]
+    fn start(&self, context: &PathContext<'_>, path: &JoinedPath<'_>) -> PathStart {
+        let next_event = || next_event_density(context, path.z(), path.y());
+        PathStart::new(
+            context,
+            path.z(),
+            self.next_event.unwrap_or_else(next_event),
+        )
+    }
+
     /// s ≥ 1: the strategies with fewer light vertices, and those with fewer camera vertices.
     fn connection(&self, context: &PathContext<'_>, path: &JoinedPath<'_>) -> f64 {
-        let JoinedPath { light, camera, .. } = *path;
-        let (s, t) = (light.len(), camera.len());
+        let (s, t) = (path.light.len(), path.camera.len());
         let share = |ratio| context.job.settings.mis.share(ratio);
-        let end = match s {
-            1 => PathStart::new(context, path.z(), path.y()),
-            _ => *self.light.start,
-        };
-        let reversed = path.reversed(context);
-        let fewer_light = {
-            let from_before = if let [.., before, z] = light {
-                let count = share(context.count(s - 1, t + 1, [before, z]));
-                let links = count * end.links(s - 1) * possible(!before.went_by_delta);
-                let drawn = drawn_density(context, &light[..s - 1]);
-                let down = end.down(s - 2, drawn, reversed.before[0]);
-                chain(links, share(down), self.light.sums[s - 2])
-            } else {
-                end.is_hit
-            };
-            let down = end.down(s - 1, drawn_density(context, light), reversed.z);
-            chain(0.0, share(down), from_before)
-        };
-        let fewer_camera = if let [.., before, y] = camera {
-            let count = share(context.count(s + 1, t - 1, [y, before]));
-            let links = count * possible(!before.went_by_delta);
-            let drawn = drawn_density(context, &camera[..t - 1]);
-            let up = end.up(s + 1, reversed.before[1], drawn);
-            let from_before = chain(links, share(up), self.camera[t - 2]);
-            let up = end.up(s, reversed.y, drawn_density(context, camera));
-            chain(0.0, share(up), from_before)
+        let Reversed { z, y, before } = path.reversed(context);
+        let [z, y] = [z, y].map(f64::from);
+        let before = before.map(|density| share(density.into()));
+        let (fewer_light, y) = if s == 1 {
+            let start = self.start(context, path);
+            let sums = start.sums(context);
+            (sums.shares(t, share(z), 0.0), start.up() * y)
         } else {
-            0.0
+            (self.light.shares(t, share(z), before[0]), y)
         };
-        let mut own = share(context.count(s, t, [path.z(), path.y()]));
+        let fewer_camera = self.camera.shares(s, share(y), before[1]);
+        let mut own = share(context.count(s, t, [path.z().cell, path.y().cell]));
         if s + t == 2 {
             own = context.job.settings.mis.share_of_image(own, fewer_light);
         }
@@ -260,8 +307,7 @@ impl PathStart {
     };
 
     #[inline]
-    fn new(context: &PathContext<'_>, x0: &Vertex, x1: &Vertex) -> Self {
-        let next_event = next_event_density(context, x0, x1);
+    fn new(context: &PathContext<'_>, x0: &Vertex, next_event: f32) -> Self {
         Self {
             emission: f64::from(x0.pdf_fwd),
             next_event: f64::from(next_event.max(f32::MIN_POSITIVE)),
@@ -270,39 +316,21 @@ impl PathStart {
         }
     }
 
-    /// 1 where the light lets strategy `s` ≥ 1 link x_{s-1} with x_s, else 0.
+    /// The sums at x_0: s = 0 alone has fewer light vertices, and p_0 / p_1 = b_0 / e.
     #[inline]
-    fn links(&self, s: usize) -> f64 {
-        if s == 1 { self.is_drawn } else { 1.0 }
-    }
-
-    /// p_{i+1} / p_i for i ≥ 1, where walks from the light and from the camera draw x_i with
-    /// densities `a` and `b`.
-    #[inline]
-    fn up(&self, i: usize, a: f32, b: f32) -> f64 {
-        if i == 1 {
-            self.emission / self.next_event * ratio(a, b)
-        } else {
-            ratio(a, b)
+    fn sums(&self, context: &PathContext<'_>) -> EndSums {
+        EndSums {
+            per_drawn: finite(context.job.settings.mis.share(1.0 / self.next_event)),
+            links: [self.is_hit; 2],
+            slope: 0.0,
+            sum: self.is_hit,
         }
     }
 
-    /// p_i / p_{i+1}.
+    /// The factor of a_1 / b_1 in p_2 / p_1.
     #[inline]
-    fn down(&self, i: usize, a: f32, b: f32) -> f64 {
-        match i {
-            0 => f64::from(b) / self.next_event,
-            1 => self.next_event / self.emission * ratio(b, a),
-            _ => ratio(b, a),
-        }
-    }
-}
-
-impl Vertex {
-    /// 1 where this vertex of a walk could be linked with the next instead, else 0.
-    #[inline]
-    fn links(&self, next: &Self) -> f64 {
-        possible(!self.went_by_delta && !next.went_by_delta)
+    fn up(&self) -> f64 {
+        self.emission / self.next_event
     }
 }
 
@@ -311,15 +339,16 @@ impl Vertex {
 #[inline]
 fn chain(share: f64, ratio: f64, sum: f64) -> f64 {
     if sum > 0.0 {
-        (share + ratio * sum).min(f64::MAX)
+        finite(share + ratio * sum)
     } else {
         share
     }
 }
 
+/// The largest number in place of an infinite one.
 #[inline]
-fn ratio(x: f32, y: f32) -> f64 {
-    f64::from(x) / f64::from(y)
+fn finite(number: f64) -> f64 {
+    number.min(f64::MAX)
 }
 
 #[inline]

@@ -69,7 +69,7 @@ impl Segment {
 
 /// 1 / `x`; 0 where that is no number.
 #[inline]
-fn inverse(x: f32) -> f32 {
+pub(super) fn inverse(x: f32) -> f32 {
     let inverse = 1.0 / x;
     if inverse < f32::INFINITY {
         inverse

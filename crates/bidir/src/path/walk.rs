@@ -187,6 +187,18 @@ impl Subpaths {
         &self.vertices
     }
 
+    /// Begins to load vertex number `i` and the one before it.
+    #[inline]
+    pub(crate) fn load_ahead(&self, i: usize) {
+        accel::load_ahead(&self.vertices[i.saturating_sub(1)..=i]);
+    }
+
+    /// Begins to load the place of vertex number `i`.
+    #[inline]
+    pub(crate) fn load_locus_ahead(&self, i: usize) {
+        accel::load_ahead(std::slice::from_ref(&self.vertices[i].locus));
+    }
+
     /// The number of vertices of walks, behind which the single points are.
     #[inline]
     pub(crate) fn walked(&self) -> usize {

@@ -69,10 +69,16 @@ impl Scene {
         clamped_coverage(texture.eval(&at))
     }
 
+    /// True where rays pass no surface.
+    #[inline]
+    pub(super) fn is_opaque(&self) -> bool {
+        self.coverages.is_empty()
+    }
+
     /// The nearest surface that a ray of a walk does not pass.
     #[inline]
     pub(super) fn closest(&self, ray: &accel::Ray, chances: Chances<'_>) -> Option<Hit> {
-        if self.coverages.is_empty() {
+        if self.is_opaque() {
             return self.bvh.closest(ray, accel::accept_all);
         }
         self.bvh.closest(ray, |hit| match self.coverage(ray, hit) {
@@ -84,7 +90,7 @@ impl Scene {
     /// Π (1 - α) over everything that a shadow ray meets.
     #[inline]
     pub(super) fn transmittance_along(&self, ray: &accel::Ray) -> f32 {
-        if self.coverages.is_empty() {
+        if self.is_opaque() {
             return f32::from(!self.bvh.is_blocked(ray));
         }
         let mut factors = Factors::default();

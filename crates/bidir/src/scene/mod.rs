@@ -17,6 +17,7 @@ pub use builder::{
 pub use coverage::Chances;
 pub use object::ObjectId;
 pub use space::RenderSpace;
+pub(crate) use visibility::ShadowRays;
 
 use object::Placed;
 

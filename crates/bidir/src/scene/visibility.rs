@@ -6,25 +6,61 @@
 use super::Scene;
 use crate::locus::Locus;
 
+/// Shadow rays that are traced together: memory for the next ones.
+#[derive(Debug, Default)]
+pub(crate) struct ShadowRays {
+    rays: Vec<accel::Ray>,
+    blocked: Vec<bool>,
+    transmittances: Vec<f32>,
+}
+
 impl Scene {
     /// How much of the light from one end to the other arrives, in `[0, 1]`: 0 where something opaque
     /// lies between, 1 where nothing does. At most one end is at infinity.
     #[inline]
     pub fn transmittance(&self, a: &Locus, b: &Locus) -> f32 {
-        if a.is_infinite() {
-            return self.transmittance(b, a);
-        }
-        let ray = if b.is_infinite() {
-            accel::Ray::new(a.ray_origin(b.point), b.point)
+        self.transmittance_along(&shadow_ray(a, b))
+    }
+
+    /// The [transmittance](Self::transmittance) between each of these pairs of ends, in their order: less work for
+    /// each than for one alone.
+    pub(crate) fn transmittances<'a, 'm>(
+        &self,
+        ends: impl Iterator<Item = &'a [Locus; 2]>,
+        memory: &'m mut ShadowRays,
+    ) -> &'m [f32] {
+        let ShadowRays {
+            rays,
+            blocked,
+            transmittances,
+        } = memory;
+        rays.clear();
+        rays.extend(ends.map(|[a, b]| shadow_ray(a, b)));
+        transmittances.clear();
+        if self.is_opaque() {
+            self.bvh.are_blocked(rays, blocked);
+            transmittances.extend(blocked.iter().map(|&is_blocked| f32::from(!is_blocked)));
         } else {
-            let across = b.point - a.point;
-            let from = a.ray_origin(across);
-            let to = b.ray_origin(-across);
-            accel::Ray {
-                t_max: 1.0,
-                ..accel::Ray::new(from, to - from)
-            }
-        };
-        self.transmittance_along(&ray)
+            transmittances.extend(rays.iter().map(|ray| self.transmittance_along(ray)));
+        }
+        transmittances
+    }
+}
+
+/// The ray from one end to the other, of which at most one is at infinity.
+#[inline]
+fn shadow_ray(a: &Locus, b: &Locus) -> accel::Ray {
+    if a.is_infinite() {
+        return shadow_ray(b, a);
+    }
+    if b.is_infinite() {
+        return accel::Ray::new(a.ray_origin(b.point), b.point);
+    }
+    let across = b.point - a.point;
+    let from = a.ray_origin(across);
+    let to = b.ray_origin(-across);
+    accel::Ray {
+        t_max: 1.0,
+        ..accel::Ray::new(from, to - from)
     }
 }

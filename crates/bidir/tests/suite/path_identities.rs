@@ -252,7 +252,7 @@ fn count(context: &PathContext<'_>, s: usize, path: &[Vertex]) -> f64 {
     match (s, path.len() - s) {
         (_, 1) => light_subpaths,
         (1, t) => next_events[usize::from(t > 2)],
-        (s, t) if s > 0 && is_guided => context.count(s, t, [&path[s - 1], &path[s]]),
+        (s, t) if s > 0 && is_guided => context.count(s, t, [path[s - 1].cell, path[s].cell]),
         _ => 1.0,
     }
 }

@@ -26,9 +26,13 @@ struct Comparison {
     sums: [RunningSums; 2],
     weights: Weights,
     densities: PathDensities,
+    /// e, if it is known.
+    next_event: Option<f32>,
     paths: usize,
     /// Of paths with five vertices or more, whose strategies share.
     shared: usize,
+    /// Of connections of diffuse vertices.
+    diffuse: usize,
 }
 
 impl Comparison {
@@ -45,8 +49,9 @@ impl Comparison {
         let pure = path.weight(context, &mut self.densities);
         let [of_light, of_camera] = &self.sums;
         let sums = PathSums {
-            light: of_light.light(0, 0),
-            camera: of_camera.camera(0),
+            light: of_light.at(light - 1),
+            camera: of_camera.at(camera - 1),
+            next_event: self.next_event,
         };
         let running = self.weights.weight(context, path, &sums);
         assert!(
@@ -79,6 +84,7 @@ impl Comparison {
             for s in 1 + usize::from(fresh)..=light.vertices.len() {
                 let (light, camera) = (&light.vertices[..s], &camera.vertices[..t]);
                 self.compare_connection(context, light, camera);
+                self.compare_diffuse(context, light, camera);
             }
         }
     }
@@ -93,6 +99,39 @@ impl Comparison {
         if !path.contribution(context).is_black() {
             self.compare(context, &path);
         }
+    }
+
+    /// A connection of diffuse vertices against the general form.
+    #[track_caller]
+    fn compare_diffuse(&mut self, context: &PathContext<'_>, light: &[Vertex], camera: &[Vertex]) {
+        let (s, t) = (light.len(), camera.len());
+        let [of_light, of_camera] = &self.sums;
+        let (Some(z), Some(y)) = (of_light.diffuse(s - 1), of_camera.diffuse(t - 1)) else {
+            return;
+        };
+        let path = JoinedPath::connection(light, camera);
+        let contribution = path.contribution(context);
+        let count = context.count(s, t, [light[s - 1].cell, camera[t - 1].cell]);
+        let Some((found, weight)) = z.connect(y, count as f32) else {
+            assert!(
+                contribution.is_black(),
+                "s = {s}, t = {t}: {contribution:?}"
+            );
+            return;
+        };
+        for (found, expected) in found.0.into_iter().zip(contribution.0) {
+            assert!(
+                (found - expected).abs() <= 3.0 * TOLERANCE * expected,
+                "s = {s}, t = {t}: {found} instead of {expected}"
+            );
+        }
+        let pure = path.weight(context, &mut self.densities);
+        assert!(
+            (weight - pure).abs() <= 3.0 * TOLERANCE * pure + SMALL,
+            "s = {s}, t = {t}: {weight} instead of {pure}; {}",
+            describe(context.job.settings)
+        );
+        self.diffuse += 1;
     }
 
     fn compare_hits(&mut self, context: &PathContext<'_>, camera: &Subpath<'_>) {
@@ -131,7 +170,10 @@ impl Comparison {
                 continue;
             };
             let x0 = Vertex::light(context, light, &drawn.at);
+            let is_fresh = context.job.settings.light_point == LightPointChoice::Fresh;
+            self.next_event = is_fresh.then_some(drawn.pdf);
             self.compare_connection(context, std::slice::from_ref(&x0), &camera[..t]);
+            self.next_event = None;
         }
     }
 }
@@ -189,8 +231,9 @@ fn describe(settings: &PathSettings) -> String {
     format!("{mis:?}, {light_point:?}, {light_choice:?}, {roulette}, {strategies}")
 }
 
+/// Returns how many connections of diffuse vertices there were.
 #[track_caller]
-fn check(scene: &Shot, pairs: u64) {
+fn check(scene: &Shot, pairs: u64) -> usize {
     let (mut comparison, mut least) = (Comparison::default(), 0);
     let proposals = some_proposals(scene);
     let light_start = some_light_start(scene);
@@ -225,9 +268,15 @@ fn check(scene: &Shot, pairs: u64) {
         });
         least += pairs as usize;
     }
-    let Comparison { paths, shared, .. } = comparison;
+    let Comparison {
+        paths,
+        shared,
+        diffuse,
+        ..
+    } = comparison;
     assert!(paths >= least, "{paths} paths of {least} pairs");
     assert!(shared * 20 >= least, "{shared} of {least} are shared");
+    diffuse
 }
 
 /// A floor, a wall, balls of smooth glass, smooth metal and smooth varnish, under lights of all
@@ -281,7 +330,8 @@ fn perspective(unit: f32) -> Camera {
 
 #[test]
 fn rooms_and_layers() {
-    check(&common::room(0.1), 20);
+    let diffuse = check(&common::room(0.1), 20);
+    assert!(diffuse > 1000, "{diffuse} connections are diffuse");
     check(&common::gallery(0.1), 20);
     check(&common::lamp_room(0.1), 20);
 }

@@ -146,7 +146,7 @@ impl Engine for EmbreeScene<'_> {
     fn count_hits(&self, question: Question, rays: &[Ray]) -> usize {
         let hits = |ray: &&Ray| match question {
             Question::Closest => self.calls.intersect(self.scenes[0], ray),
-            Question::Occluded => self.calls.occluded(self.scenes[0], ray),
+            Question::Occluded | Question::Together => self.calls.occluded(self.scenes[0], ray),
         };
         rays.iter().filter(hits).count()
     }

@@ -1,27 +1,28 @@
 //! s ≥ 1 and t ≥ 2: the connections of light vertices with camera vertices, before visibility.
 
 use super::super::batch::{NextEvent, drop_term};
-use super::super::cache::{LightCache, Place};
-use super::super::{Batch, CandidateCount, Sample};
+use super::super::cache::CachedEnd;
+use super::super::{Batch, Sample};
 use super::pairs::Pairs;
 use crate::contribution::{Term, is_summable};
 use crate::path::{
-    Job, JoinedPath, LightSums, PathContext, PathSums, RunningSums, Subpath, Subpaths, Vertex,
-    Weights,
+    DiffuseEnd, EndSums, Job, JoinedPath, PathContext, PathSums, RunningSums, Subpath, Subpaths,
+    Vertex, Weights,
 };
-use crate::sampler::{Dimension, Purpose};
 use crate::select::Candidate;
 use crate::spectrum::Spectrum;
 use crate::stats::{Stage, Stats};
 use crate::strategy::Strategy;
+use std::iter::Peekable;
+use std::slice::Iter;
 
 /// The origin of light vertices, besides those of next-event estimation.
 #[derive(Clone, Copy)]
 pub(in super::super) enum Source {
     /// The sample's own light subpath.
     Own,
-    /// The light vertex cache, by so many draws for each camera vertex.
-    Cache(CandidateCount),
+    /// The light vertex cache, of which [`draw_cached`](super::draw_cached) drew some.
+    Cache,
 }
 
 /// Evaluates the connections of all camera vertices.
@@ -29,7 +30,7 @@ pub(in super::super) enum Source {
 pub(in super::super) fn connect(job: &Job<'_>, batch: &mut Batch, source: Source) {
     let first = match source {
         Source::Own => batch.first_light(),
-        Source::Cache(_) => 0,
+        Source::Cache => 0,
     };
     let Batch {
         samples,
@@ -38,7 +39,7 @@ pub(in super::super) fn connect(job: &Job<'_>, batch: &mut Batch, source: Source
         next_events,
         camera_sums,
         light_sums,
-        cache,
+        cached,
         weights,
         candidates,
         candidates_end,
@@ -49,28 +50,31 @@ pub(in super::super) fn connect(job: &Job<'_>, batch: &mut Batch, source: Source
     let lights = Lights {
         walks: light,
         sums: light_sums,
-        cache,
     };
-    let of_sample = next_events.chunk_by(|a, b| a.sample == b.sample);
-    let mut of_sample = of_sample.peekable();
+    let mut drawn = Drawn {
+        next_events: next_events.iter().peekable(),
+        cached: cached.iter().peekable(),
+    };
     for (number, sample) in samples.iter().enumerate() {
         let walk = camera.get(number);
         let connector = Connector {
             context: sample.context(job),
             sample,
             camera: walk,
-            camera_sums: camera_sums.camera(walk.first),
+            camera_sums,
             weights,
             candidates,
             unoffered,
             stats,
         };
-        let next_events = of_sample.next_if(|events| events[0].sample as usize == number);
-        let next_events = next_events.unwrap_or_default();
-        connector.offer_all(next_events, &lights, source, first + number);
+        let own = match source {
+            Source::Own => Some(first + number),
+            Source::Cache => None,
+        };
+        connector.offer_all(number, &lights, &mut drawn, own);
         candidates_end.push(candidates.len());
     }
-    debug_assert!(of_sample.next().is_none());
+    debug_assert!(drawn.next_events.next().is_none() && drawn.cached.next().is_none());
     batch.stopwatch.end(Stage::Candidates);
 }
 
@@ -78,14 +82,25 @@ pub(in super::super) fn connect(job: &Job<'_>, batch: &mut Batch, source: Source
 struct Lights<'a> {
     walks: &'a Subpaths,
     sums: &'a RunningSums,
-    cache: &'a LightCache,
+}
+
+/// The light vertices that were drawn for camera vertices, in the order of these.
+struct Drawn<'a> {
+    next_events: Peekable<Iter<'a, NextEvent>>,
+    cached: Peekable<Iter<'a, CachedEnd>>,
 }
 
 /// A light vertex to connect, with the subpath up to it.
 struct LightEnd<'a> {
     /// From x_0 to the vertex.
     vertices: &'a [Vertex],
-    sums: LightSums<'a>,
+    sums: &'a EndSums,
+    /// The vertex as a diffuse one.
+    diffuse: Option<&'a DiffuseEnd>,
+    /// The light that the subpath begins on.
+    light: Option<u32>,
+    /// The density of a light point that was drawn for the camera vertex.
+    next_event: Option<f32>,
     /// The number of the vertex among all light vertices.
     z: usize,
     /// The number of the vertex in the sample; 0 for all light points of next-event estimation.
@@ -97,24 +112,41 @@ struct LightEnd<'a> {
 impl<'a> Lights<'a> {
     /// A light point of next-event estimation.
     #[inline]
-    fn point(&self, z: usize) -> LightEnd<'a> {
+    fn point(&self, drawn: &NextEvent) -> LightEnd<'a> {
+        let z = drawn.z;
+        let point = &self.walks.vertices()[z];
         LightEnd {
-            vertices: std::slice::from_ref(&self.walks.vertices()[z]),
-            sums: LightSums::NONE,
+            vertices: std::slice::from_ref(point),
+            sums: &EndSums::NONE,
+            diffuse: None,
+            light: point.light,
+            next_event: Some(drawn.pdf),
             z,
             number: 0,
             share: 1.0,
         }
     }
 
-    /// The vertex at `place`.
+    /// A vertex of the cache.
     #[inline]
-    fn at(&self, place: Place) -> LightEnd<'a> {
-        let Place { z, subpath, s } = place;
-        let (z, s) = (z as usize, usize::from(s));
+    fn cached(&self, cached: &CachedEnd) -> LightEnd<'a> {
+        LightEnd {
+            number: cached.entry as usize + 1,
+            share: cached.share,
+            light: cached.place.light,
+            ..self.at(cached.place.z as usize, cached.place.s.into())
+        }
+    }
+
+    /// Vertex number `z` of all, the last of `s` of its subpath.
+    #[inline]
+    fn at(&self, z: usize, s: usize) -> LightEnd<'a> {
         LightEnd {
             vertices: &self.walks.vertices()[z + 1 - s..=z],
-            sums: self.sums.light(subpath as usize, z + 1 - s),
+            sums: self.sums.at(z),
+            diffuse: self.sums.diffuse(z),
+            light: None,
+            next_event: None,
             z,
             number: s - 1,
             share: 1.0,
@@ -127,7 +159,7 @@ struct Connector<'a> {
     context: PathContext<'a>,
     sample: &'a Sample,
     camera: Subpath<'a>,
-    camera_sums: &'a [f64],
+    camera_sums: &'a RunningSums,
     weights: &'a mut Weights,
     candidates: &'a mut Vec<Candidate>,
     unoffered: &'a mut Vec<Candidate>,
@@ -135,31 +167,31 @@ struct Connector<'a> {
 }
 
 impl Connector<'_> {
-    /// Connects all camera vertices with the sample's light points and with other light vertices; `number` is that
-    /// of its own light subpath.
+    /// Connects all camera vertices of sample `number` with the light vertices that were drawn for them, and with
+    /// its own light subpath, number `own`, if it has one.
     fn offer_all(
         mut self,
-        next_events: &[NextEvent],
-        lights: &Lights<'_>,
-        source: Source,
         number: usize,
+        lights: &Lights<'_>,
+        drawn: &mut Drawn<'_>,
+        own: Option<usize>,
     ) {
         let mut pairs = Pairs::new(&self.context, &self.sample.camera);
-        let mut next_events = next_events.iter().peekable();
         for t in 2..=self.camera.vertices.len() {
             if self.camera.vertices[t - 1].is_delta() {
                 continue;
             }
-            // Light points are drawn in the same order.
-            while let Some(event) = next_events.next_if(|event| event.t as usize == t) {
-                self.offer(t, &lights.point(event.z));
+            let is_due = |of: [u32; 2]| of == [number as u32, t as u32];
+            while let Some(event) = drawn.next_events.next_if(|it| is_due([it.sample, it.t])) {
+                self.offer(t, &lights.point(event));
             }
-            match source {
-                Source::Own => self.offer_own(t, lights, number, &mut pairs),
-                Source::Cache(counts) => self.offer_cached(t, lights, counts.at(t)),
+            while let Some(cached) = drawn.cached.next_if(|it| is_due([it.sample, it.t])) {
+                self.offer(t, &lights.cached(cached));
+            }
+            if let Some(own) = own {
+                self.offer_own(t, lights, own, &mut pairs);
             }
         }
-        debug_assert!(next_events.next().is_none());
     }
 
     /// Connects camera vertex number `t` with the vertices of the sample's own light subpath.
@@ -169,33 +201,10 @@ impl Connector<'_> {
         let longest = walk.vertices.len().min(settings.max_vertices() - t);
         for s in settings.light_point.first_walked()..=longest {
             if let Some(share) = pairs.take(s + t) {
-                let end = lights.at(Place {
-                    z: (walk.first + s - 1) as u32,
-                    subpath: number as u32,
-                    s: s as u16,
-                });
-                self.offer(t, &LightEnd { share, ..end });
-            }
-        }
-    }
-
-    /// Connects camera vertex number `t` with `count` vertices of the cache, one of each of as many parts of it.
-    fn offer_cached(&mut self, t: usize, lights: &Lights<'_>, count: u16) {
-        let proposals = self.context.job.guide.proposals;
-        let at = Dimension::at(t - 1, Purpose::CachedVertex);
-        let u = f64::from(self.sample.camera.get_1d(at));
-        let cell = self.camera.vertices[t - 1].cell;
-        for m in 0..count {
-            let u = (f64::from(m) + u) / f64::from(count);
-            let Some(draw) = lights.cache.draw(proposals, cell, u) else {
-                continue;
-            };
-            let place = lights.cache.place(draw.entry);
-            if usize::from(place.s) + t <= self.context.job.settings.max_vertices() {
                 let end = LightEnd {
-                    number: draw.entry + 1,
-                    share: (draw.share / f64::from(count)) as f32,
-                    ..lights.at(place)
+                    light: walk.vertices[0].light,
+                    share,
+                    ..lights.at(walk.first + s - 1, s)
                 };
                 self.offer(t, &end);
             }
@@ -206,19 +215,15 @@ impl Connector<'_> {
     /// shadow ray.
     #[inline]
     fn offer(&mut self, t: usize, end: &LightEnd<'_>) {
-        let Some(term) = self.term(t, end) else {
+        let Some((term, root_visibility)) = self.term(t, end) else {
             return;
         };
         self.stats.count_candidate(term.strategy);
         let value = term.value();
         let luminance = self.context.luminance(value.map(f32::abs));
-        let [z, y] = [
-            &end.vertices[end.vertices.len() - 1],
-            &self.camera.vertices[t - 1],
-        ];
         let candidate = Candidate {
             term,
-            score: Candidate::score(luminance * self.context.root_visibility(z, y)),
+            score: Candidate::score(luminance * root_visibility),
             vertices: [end.z, self.camera.first + t - 1].map(|vertex| vertex as u32),
             light_vertex: end.number as u32,
         };
@@ -237,27 +242,55 @@ impl Connector<'_> {
         self.unoffered.push(candidate);
     }
 
-    /// The term of a connection. None: it is zero.
+    /// The term of a connection, and the √V̂ of its shadow ray. None: the term is zero.
     #[inline]
-    fn term(&mut self, t: usize, end: &LightEnd<'_>) -> Option<Term> {
-        let s = end.vertices.len();
+    fn term(&mut self, t: usize, end: &LightEnd<'_>) -> Option<(Term, f32)> {
+        let (s, y) = (end.vertices.len(), self.camera.first + t - 1);
         if !self.context.takes(s, t) {
             return None;
         }
-        let light = end.vertices[0].light?;
+        let light = end.light?;
+        let (contribution, weight, root_visibility) =
+            match (end.diffuse, self.camera_sums.diffuse(y)) {
+                (Some(z), Some(y)) => {
+                    let cells = [z.cell(), y.cell()];
+                    let count = self.context.count(s, t, cells) as f32;
+                    let (contribution, weight) = z.connect(y, count)?;
+                    let guide = &self.context.job.guide;
+                    (
+                        contribution,
+                        weight,
+                        guide.root_visibility(cells[0], cells[1]),
+                    )
+                }
+                _ => self.general(t, end)?,
+            };
+        let term = Term {
+            strategy: Strategy::new(s, t),
+            light,
+            contribution: contribution * end.share,
+            weight,
+        };
+        Some((term, root_visibility))
+    }
+
+    /// C of a connection of any two vertices, its weight, and the √V̂ of its shadow ray. None: C is zero.
+    fn general(&mut self, t: usize, end: &LightEnd<'_>) -> Option<(Spectrum, f32, f32)> {
         let path = JoinedPath::connection(end.vertices, &self.camera.vertices[..t]);
         let contribution = path.contribution(&self.context);
-        (contribution != Spectrum::ZERO).then(|| {
-            let sums = PathSums {
-                light: end.sums,
-                camera: self.camera_sums,
-            };
-            Term {
-                strategy: Strategy::new(s, t),
-                light,
-                contribution: contribution * end.share,
-                weight: self.weights.weight(&self.context, &path, &sums),
-            }
-        })
+        if contribution == Spectrum::ZERO {
+            return None;
+        }
+        let sums = PathSums {
+            light: end.sums,
+            camera: self.camera_sums.at(self.camera.first + t - 1),
+            next_event: end.next_event,
+        };
+        let weight = self.weights.weight(&self.context, &path, &sums);
+        let [z, y] = [
+            &end.vertices[end.vertices.len() - 1],
+            &self.camera.vertices[t - 1],
+        ];
+        Some((contribution, weight, self.context.root_visibility(z, y)))
     }
 }

@@ -29,6 +29,7 @@ pub(in super::super) fn direct(job: &Job<'_>, batch: &mut Batch) {
         samples,
         camera,
         entries,
+        shadow_rays,
         stats,
         ..
     } = batch;
@@ -54,7 +55,7 @@ pub(in super::super) fn direct(job: &Job<'_>, batch: &mut Batch) {
             }
         }
     }
-    trace(job.scene, entries, stats);
+    trace(job.scene, entries, shadow_rays, stats);
     batch.stopwatch.end(Stage::Direct);
 }
 

@@ -3,7 +3,7 @@
 use super::super::batch::enter;
 use super::super::{Batch, Link};
 use crate::contribution::Term;
-use crate::path::{Arrival, Job, JoinedPath, LightSums, PathContext, PathSums, Vertex, Weights};
+use crate::path::{Arrival, EndSums, Job, JoinedPath, PathContext, PathSums, Vertex, Weights};
 use crate::spectrum::Spectrum;
 use crate::stats::Stage;
 use crate::strategy::Strategy;
@@ -23,11 +23,12 @@ pub(in super::super) fn hits(job: &Job<'_>, batch: &mut Batch) {
     for (number, sample) in samples.iter().enumerate() {
         let context = sample.context(job);
         let walk = camera.get(number);
-        let sums = PathSums {
-            light: LightSums::NONE,
-            camera: camera_sums.camera(walk.first),
-        };
         let mut add = |camera: &[Vertex], arrival: &Arrival| {
+            let sums = PathSums {
+                light: &EndSums::NONE,
+                camera: camera_sums.at(walk.first + camera.len() - 1),
+                next_event: None,
+            };
             if let Some(term) = hit(&context, camera, arrival, weights, &sums) {
                 entries.push(enter(stats, (number, sample), term, Link::Walk));
             }

@@ -8,7 +8,7 @@ use crate::contribution::Term;
 use crate::film::SplatPlace;
 use crate::locus::Locus;
 use crate::math::Vec2;
-use crate::path::{Job, JoinedPath, PathContext, PathSums, Scattering, Vertex};
+use crate::path::{EndSums, Job, JoinedPath, PathContext, PathSums, Scattering, Vertex};
 use crate::sampler::{Dimension, Purpose};
 use crate::spectrum::Spectrum;
 use crate::stats::Stage;
@@ -33,16 +33,13 @@ pub(in super::super) fn light_image(job: &Job<'_>, batch: &mut Batch, weighting:
         light_sums,
         weights,
         splats,
+        shadow_rays,
         stats,
         ..
     } = batch;
     for (number, sample) in samples.iter().enumerate() {
         let context = sample.context(job);
         let walk = light.get(first + number);
-        let sums = PathSums {
-            light: light_sums.light(first + number, walk.first),
-            camera: &[],
-        };
         for s in 1..=walk.vertices.len() {
             if weighting == Weighting::Combined && !context.takes(s, 1) {
                 continue;
@@ -53,13 +50,20 @@ pub(in super::super) fn light_image(job: &Job<'_>, batch: &mut Batch, weighting:
             };
             let weight = match weighting {
                 Weighting::Alone => 1.0,
-                Weighting::Combined => weights.weight(&context, &image.path, &sums),
+                Weighting::Combined => {
+                    let sums = PathSums {
+                        light: light_sums.at(walk.first + s - 1),
+                        camera: &EndSums::NONE,
+                        next_event: None,
+                    };
+                    weights.weight(&context, &image.path, &sums)
+                }
             };
             let (term, link) = image.term(sample, weight);
             splats.push(enter(stats, (number, sample), term, link));
         }
     }
-    trace(job.scene, splats, stats);
+    trace(job.scene, splats, shadow_rays, stats);
     batch.stopwatch.end(Stage::LightImage);
 }
 

@@ -2,6 +2,7 @@
 
 mod connect;
 mod direct;
+mod draw;
 mod hits;
 mod light_image;
 mod next_event;
@@ -11,6 +12,7 @@ mod walk;
 
 pub(super) use connect::{Source, connect};
 pub(super) use direct::direct;
+pub(super) use draw::draw_cached;
 pub(super) use hits::hits;
 pub(super) use light_image::{Weighting, lens_vertex, light_image};
 pub(super) use next_event::next_events;

@@ -32,11 +32,12 @@ pub(in super::super) fn next_events(job: &Job<'_>, batch: &mut Batch, counts: Ca
             }
             let count = counts.at(t);
             for k in 0..count {
-                if let Some(x0) = light_point(&context, sample, y, t, [k, count]) {
+                if let Some((x0, pdf)) = light_point(&context, sample, y, t, [k, count]) {
                     next_events.push(NextEvent {
                         sample: number as u32,
                         t: t as u32,
                         z: light.add_point(&x0),
+                        pdf,
                     });
                 }
             }
@@ -44,14 +45,14 @@ pub(in super::super) fn next_events(job: &Job<'_>, batch: &mut Batch, counts: Ca
     }
 }
 
-/// Light point number `k` of `count` for `y`, camera vertex number `t`. Each counts 1 / `count`.
+/// Light point number `k` of `count` for `y`, camera vertex number `t`, and its density. Each counts 1 / `count`.
 fn light_point(
     context: &PathContext<'_>,
     sample: &Sample,
     y: &Vertex,
     t: usize,
     [k, count]: [u16; 2],
-) -> Option<Vertex> {
+) -> Option<(Vertex, f32)> {
     let at = |purpose| Dimension::at(t - 1, purpose);
     let part = |u: f32| ((f32::from(k) + u) / f32::from(count)).min(ONE_MINUS_EPSILON);
     let u_light = || part(sample.camera.get_1d(at(Purpose::NextEventLight)));
@@ -59,5 +60,5 @@ fn light_point(
     let (light, drawn) = sample_next_event(context, y, u_light, kronecker_point(u, k))?;
     let mut x0 = Vertex::light(context, light, &drawn.at);
     x0.beta = Spectrum::splat(drawn.coverage / (drawn.pdf * f32::from(count)));
-    Some(x0)
+    Some((x0, drawn.pdf))
 }

@@ -3,7 +3,7 @@
 use super::super::{Batch, Entry, Fate, Link};
 use crate::contribution::Contribution;
 use crate::path::Job;
-use crate::scene::Scene;
+use crate::scene::{Scene, ShadowRays};
 use crate::select::{Chosen, Draws, Selector};
 use crate::stats::{Stage, Stats};
 
@@ -20,25 +20,33 @@ pub(in super::super) fn select(rule: &dyn Selector, batch: &mut Batch) {
         ..
     } = batch;
     let mut begin = 0;
-    for (number, (sample, &end)) in samples.iter().zip(&*candidates_end).enumerate() {
+    for (sample, &end) in samples.iter().zip(&*candidates_end) {
         let first = chosen.len();
-        let candidates = &candidates[begin..end];
-        rule.select(candidates, Draws(&sample.camera), chosen);
-        for Chosen { candidate, prob } in &mut chosen[first..] {
-            let of = &candidates[*candidate as usize];
+        rule.select(&candidates[begin..end], Draws(&sample.camera), chosen);
+        for Chosen { candidate, .. } in &mut chosen[first..] {
             *candidate += begin as u32;
-            entries.push(Entry {
-                sample: number as u32,
-                contribution: Contribution {
-                    term: of.term,
-                    prob: *prob,
-                    transmittance: 1.0,
-                },
-                link: Link::Connection(of.ends(light, camera)),
-                fate: Fate::NotTraced,
-            });
+            let [z, _] = candidates[*candidate as usize].vertices;
+            light.load_locus_ahead(z as usize);
         }
         begin = end;
+    }
+    let mut number = 0;
+    for &Chosen { candidate, prob } in &*chosen {
+        let candidate = candidate as usize;
+        while candidate >= candidates_end[number] {
+            number += 1;
+        }
+        let of = &candidates[candidate];
+        entries.push(Entry {
+            sample: number as u32,
+            contribution: Contribution {
+                term: of.term,
+                prob,
+                transmittance: 1.0,
+            },
+            link: Link::Connection(of.ends(light, camera)),
+            fate: Fate::NotTraced,
+        });
     }
     batch.stopwatch.end(Stage::Select);
 }
@@ -46,25 +54,33 @@ pub(in super::super) fn select(rule: &dyn Selector, batch: &mut Batch) {
 /// Traces the shadow rays of all entries for the samples' own pixels.
 #[inline(never)]
 pub(in super::super) fn shadow_rays(job: &Job<'_>, batch: &mut Batch) {
-    trace(job.scene, &mut batch.entries, &mut batch.stats);
+    let Batch {
+        entries,
+        shadow_rays,
+        stats,
+        ..
+    } = batch;
+    trace(job.scene, entries, shadow_rays, stats);
     batch.stopwatch.end(Stage::Shadow);
 }
 
-/// Traces the shadow rays of `entries`, and notes what arrives.
-#[inline]
-pub(super) fn trace(scene: &Scene, entries: &mut [Entry], stats: &mut Stats) {
-    for entry in entries {
-        let Some([a, b]) = entry.link.ends() else {
-            continue;
-        };
-        if entry.fate == Fate::Dropped {
-            continue;
-        }
-        entry.fate = Fate::Added;
+/// Traces the shadow rays of `entries`, all together, and notes what arrives.
+pub(super) fn trace(
+    scene: &Scene,
+    entries: &mut [Entry],
+    memory: &mut ShadowRays,
+    stats: &mut Stats,
+) {
+    let ends = entries.iter().filter_map(Entry::shadow_ray);
+    let transmittances = scene.transmittances(ends, memory);
+    let traced = entries.iter_mut();
+    let traced = traced.filter(|entry| entry.shadow_ray().is_some());
+    for (entry, &transmittance) in traced.zip(transmittances) {
         let strategy = entry.contribution.term.strategy;
         stats.count_shadow_ray(strategy);
-        entry.contribution.transmittance = scene.transmittance(a, b);
-        if entry.contribution.transmittance <= 0.0 {
+        entry.contribution.transmittance = transmittance;
+        entry.fate = Fate::Added;
+        if transmittance <= 0.0 {
             stats.count_blocked(strategy);
             entry.fate = Fate::Blocked;
         }
