@@ -55,7 +55,7 @@ fn of_shapes() {
             share > 0.01
         });
         let triangles = triangle_soup(&mut random, count, 0.5);
-        check(&build(&triangles), &mut random, |share| share > 0.005);
+        check(&build(&triangles), &mut random, |share| share > 0.001);
     }
     let mesh = Mesh::sphere(5).map(displace);
     check(&build(&mesh.primitives()), &mut random, |share| {
