@@ -52,14 +52,14 @@ fn of_shapes() {
     });
     for count in [9, 150, 3000] {
         check(&build(&mixed(&mut random, count)), &mut random, |share| {
-            share > 0.01
+            share > 0.001
         });
         let triangles = triangle_soup(&mut random, count, 0.5);
         check(&build(&triangles), &mut random, |share| share > 0.001);
     }
     let mesh = Mesh::sphere(5).map(displace);
     check(&build(&mesh.primitives()), &mut random, |share| {
-        (0.2..0.9).contains(&share)
+        (0.05..0.9).contains(&share)
     });
 }
 
