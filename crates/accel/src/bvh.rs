@@ -150,8 +150,8 @@ impl Bvh {
         query.found
     }
 
-    /// Sets `blocked` to what [`is_blocked`](Self::is_blocked) says of each of `rays`, which is faster for dozens of
-    /// rays and more.
+    /// Sets `blocked` to what [`is_blocked`](Self::is_blocked) says of each of `rays`. With dozens of rays in a large
+    /// tree this is faster.
     pub fn are_blocked(&self, rays: &[Ray], blocked: &mut Vec<bool>) {
         blocked.clear();
         blocked.resize(rays.len(), false);

@@ -27,7 +27,7 @@ const RAYS: usize = 8;
 /// Nodes that a ray opens before the queue of leaves is worked off.
 const ROUNDS: usize = 2;
 
-/// So many blocks of triangles, 640 KiB, are likely to be in a cache.
+/// The number of triangle blocks, 640 KiB, below which caches are likely to hold all of them.
 const CACHED_BLOCKS: usize = 4096;
 
 /// Finds which of `rays` hit anything. `blocked` has as many elements, which are false.
@@ -84,7 +84,7 @@ impl Kernel for AreBlocked<'_> {
     }
 }
 
-/// The rays that did not start yet.
+/// The rays that have not started yet.
 struct Waiting<'a> {
     rays: &'a [Ray],
     next: usize,
