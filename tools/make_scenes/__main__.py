@@ -12,6 +12,7 @@ sys.dont_write_bytecode = True
 import apartment
 import broken
 import cornell
+import media
 import readme
 import room
 import torture_camera
@@ -29,6 +30,7 @@ def main():
     room.write_all(project)
     apartment.write_all(project)
     cornell.write_all(project)
+    media.write_all(project)
     torture_materials.write_all(project)
     torture_camera.write_all(project)
     torture_views.write_all(project)

@@ -28,6 +28,8 @@ _MAIN_NOTES = {
     "apartment.pbrt": "Many light subpaths start where they cannot matter to a given pixel.",
     "apartment-dark.pbrt": "Strongly indirect: light arrives through two doorways.",
     "cornell.pbrt": "A quick test of direct light, soft shadows and colour bleeding.",
+    "fog.pbrt": "A caustic in fog, behind the ball: no camera walk finds it.",
+    "liquids.pbrt": "Media within smooth glass: light that is absorbed, and light that scatters many times.",
 }
 
 _TORTURE = """

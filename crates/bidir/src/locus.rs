@@ -1,6 +1,7 @@
 //! Places that paths go through: points of surfaces and in space, and directions to infinity.
 
 use crate::math::Vec3;
+use crate::medium::{MediumId, MediumSides};
 
 /// The kind of a place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -9,6 +10,8 @@ pub enum LocusKind {
     Surface,
     /// A point in space.
     Space,
+    /// A point in space where a medium scatters.
+    Medium,
     /// A place at infinity.
     Infinity,
 }
@@ -24,6 +27,8 @@ pub struct Locus {
     pub error: f32,
     /// The kind.
     pub kind: LocusKind,
+    /// The media on both sides.
+    pub media: MediumSides,
 }
 
 impl Locus {
@@ -35,6 +40,7 @@ impl Locus {
             n_g,
             error,
             kind: LocusKind::Surface,
+            media: MediumSides::VACUUM,
         }
     }
 
@@ -46,7 +52,30 @@ impl Locus {
             n_g: Vec3::ZERO,
             error: 0.0,
             kind: LocusKind::Space,
+            media: MediumSides::VACUUM,
         }
+    }
+
+    /// A point where `medium` scatters.
+    #[inline]
+    pub fn in_medium(point: Vec3, medium: MediumId) -> Self {
+        Self {
+            kind: LocusKind::Medium,
+            ..Self::in_space(point).within(MediumSides::all(medium))
+        }
+    }
+
+    /// The same place between these media.
+    #[inline]
+    #[must_use]
+    pub fn within(self, media: MediumSides) -> Self {
+        Self { media, ..self }
+    }
+
+    /// The medium that a ray along `w` leaves through.
+    #[inline]
+    pub fn medium_toward(&self, w: Vec3) -> MediumId {
+        self.media.toward(self.n_g.dot(w))
     }
 
     /// The place at infinity that the unit `direction` points to.
@@ -69,7 +98,7 @@ impl Locus {
     pub fn abs_cos(&self, w: Vec3) -> f32 {
         match self.kind {
             LocusKind::Surface => self.n_g.dot(w).abs(),
-            LocusKind::Space | LocusKind::Infinity => 1.0,
+            LocusKind::Space | LocusKind::Medium | LocusKind::Infinity => 1.0,
         }
     }
 

@@ -176,6 +176,22 @@ impl ColorModel {
         }
     }
 
+    /// The mean over the lanes that carry light.
+    #[inline]
+    pub fn mean(self, spectrum: Spectrum) -> f32 {
+        match self {
+            Self::Rgb => (spectrum[0] + spectrum[1] + spectrum[2]) * (1.0 / 3.0),
+        }
+    }
+
+    /// One of the lanes that carry light, each as likely as others, by `u` in `[0, 1)`.
+    #[inline]
+    pub fn pick_lane(self, u: f32) -> usize {
+        match self {
+            Self::Rgb => (u * 3.0) as usize,
+        }
+    }
+
     /// The lanes of an emitted radiance or intensity.
     #[inline]
     pub fn illuminant(self, rgb: Rgb, _wavelengths: &Wavelengths) -> Spectrum {

@@ -39,6 +39,8 @@ struct Info {
     /// Instances whose object is shared.
     shared_instances: usize,
     materials: Counts,
+    /// Participating media, without the vacuum.
+    media: usize,
     lights: Counts,
     /// The number of lights in each group.
     light_groups: BTreeMap<String, usize>,
@@ -115,6 +117,7 @@ impl Info {
             instances: loaded.summary.instances,
             shared_instances: scene.instance_count(),
             materials: count(scene.materials(), Material::kind),
+            media: scene.media().len(),
             lights: count(scene.lights(), Light::kind),
             light_groups: light_groups(scene),
             textures: loaded.summary.textures,
@@ -148,7 +151,7 @@ impl Info {
     }
 
     /// Returns the properties with their names.
-    fn lines(&self) -> [(&'static str, String); 16] {
+    fn lines(&self) -> [(&'static str, String); 17] {
         let film = &self.film;
         let ([width, height], [x0, y0, x1, y1]) = (film.resolution, film.crop);
         let settings = self.settings.by_flag();
@@ -179,6 +182,7 @@ impl Info {
             ("triangles", self.triangles.to_string()),
             ("instances", self.instances_text()),
             ("materials", list(&self.materials)),
+            ("media", self.media.to_string()),
             ("lights", list(&self.lights)),
             ("light groups", list(&self.light_groups)),
             ("textures", self.textures.to_string()),

@@ -231,7 +231,7 @@ impl Bsdf {
     /// About which part of the light that arrives along `wo` is scattered, for path roulette.
     /// Deterministic in (`self`, `wo`), and positive where anything is scattered, but no
     /// exact integral. Range: `[0, 1]` per lane.
-    #[inline]
+    #[inline(always)] // Most surfaces are diffuse, which is one load.
     pub fn albedo(&self, wo: Vec3) -> Spectrum {
         match self {
             Self::Diffuse(bsdf) => bsdf.reflectance,

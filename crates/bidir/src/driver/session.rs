@@ -19,7 +19,7 @@ use crate::analysis::no_path;
 use crate::film::{Film, FilmError, MergeError, PassBuffer};
 use crate::guide::Guide;
 use crate::integrator::{Batch, IntegratorKind, Method, Sample, group_size};
-use crate::path::{Job, SampleCounts};
+use crate::path::{Job, SampleCounts, camera_medium};
 use crate::sampler::{Domain, Sampler};
 use crate::scene::Scene;
 use crate::select::Selector;
@@ -270,6 +270,7 @@ impl<'a> Session<'a> {
             settings: &self.settings.path,
             counts: self.counts(),
             guide: self.guide(),
+            medium: camera_medium(&self.scene, &self.view),
         }
     }
 

@@ -1,7 +1,7 @@
 //! The samples in flight, and what each stage leaves for the next: arrays that the next batch uses again.
 
 use super::cache::{CachedEnd, LightCache};
-use super::stages::lens_vertex;
+use super::stages::{Passage, lens_vertex};
 use super::{Entry, Fate, Link};
 use crate::contribution::{Term, is_summable};
 use crate::path::{
@@ -188,7 +188,17 @@ impl Batch {
         let (number, term) = (entry.sample as usize, &entry.contribution.term);
         let (s, t) = (usize::from(term.strategy.s), usize::from(term.strategy.t));
         let walk = self.camera.get(number);
-        let mut shares = |path: JoinedPath<'_>| path.shares(context, densities, parts);
+        let passage = entry
+            .link
+            .ends()
+            .map(|ends| Passage::between(context, || *ends));
+        let edge = passage.as_ref().and_then(Passage::edge);
+        let mut shares = |mut path: JoinedPath<'_>| {
+            if let Some(edge) = edge {
+                path.pass(edge);
+            }
+            path.shares(context, densities, parts)
+        };
         Some(match candidate {
             Some(candidate) => {
                 let z = candidate.vertices[0] as usize;

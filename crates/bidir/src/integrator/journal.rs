@@ -3,6 +3,7 @@
 use crate::contribution::{Contribution, Term};
 use crate::film::SplatPlace;
 use crate::locus::Locus;
+use crate::stats::Stats;
 
 /// The link between the two subpaths of a term.
 #[derive(Clone, Copy, Debug)]
@@ -68,10 +69,23 @@ impl Entry {
         }
     }
 
-    /// The ends of its shadow ray, unless its term was dropped.
+    /// The ends of its shadow ray, if one is to be traced.
     #[inline]
     pub(super) fn shadow_ray(&self) -> Option<&[Locus; 2]> {
-        self.link.ends().filter(|_| self.fate != Fate::Dropped)
+        self.link.ends().filter(|_| self.fate == Fate::NotTraced)
+    }
+
+    /// Notes how much its shadow ray lets through.
+    #[inline]
+    pub(super) fn arrive(&mut self, transmittance: f32, stats: &mut Stats) {
+        let strategy = self.contribution.term.strategy;
+        stats.count_shadow_ray(strategy);
+        self.contribution.transmittance = transmittance;
+        self.fate = Fate::Added;
+        if transmittance <= 0.0 {
+            stats.count_blocked(strategy);
+            self.fate = Fate::Blocked;
+        }
     }
 
     /// True where it adds to an image.

@@ -112,8 +112,8 @@ impl AreaLight {
         self.is_hidden = true;
     }
 
-    #[cfg(test)]
-    pub(super) fn shape_index(&self) -> usize {
+    /// The shape, by index.
+    pub(crate) fn shape_index(&self) -> usize {
         self.shape
     }
 

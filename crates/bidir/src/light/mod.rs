@@ -269,7 +269,7 @@ impl Light {
     }
 
     /// Draws a light point of `part` for a receiver at `reference`. None: the draw has no density.
-    #[inline]
+    #[inline(always)]
     pub fn sample_next_event(
         &self,
         context: &LightContext<'_>,

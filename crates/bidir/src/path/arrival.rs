@@ -20,6 +20,8 @@ pub struct Arrival {
     /// The density of the point as the walk drew it, without roulette. Measure: area, 1/m²; at infinity
     /// solid angle, 1/sr.
     pub pdf: f32,
+    /// The factor that turns a density of the direction `wo` into one of the vertex before.
+    pub to_previous: f32,
 }
 
 impl Arrival {
@@ -32,6 +34,7 @@ impl Arrival {
             wo: vertex.wo,
             beta: vertex.beta,
             pdf: vertex.pdf_fwd,
+            to_previous: vertex.to_previous,
         })
     }
 
@@ -44,6 +47,7 @@ impl Arrival {
             wo: -escape.direction,
             beta: escape.beta,
             pdf: escape.pdf_fwd,
+            to_previous: escape.to_previous,
         })
     }
 
@@ -65,8 +69,11 @@ impl Arrival {
     /// The light as the first vertex of the path, with the density of the walk as that of the other
     /// direction.
     pub fn vertex(&self, context: &PathContext<'_>) -> Vertex {
+        // Without media, the ends of the segment know the way back.
+        let through_media = context.job.scene.has_media();
         Vertex {
             pdf_rev: self.pdf,
+            to_previous: if through_media { self.to_previous } else { 0.0 },
             ..Vertex::light(context, self.light, &self.at)
         }
     }

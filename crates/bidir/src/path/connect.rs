@@ -7,6 +7,7 @@ use super::{LightChoiceKind, PathContext, PathDensities, Segment, Turn, Vertex, 
 use crate::bsdf::TransportMode;
 use crate::light::{ChosenEmitter, LightChoice, LightPoint, LightSample, Part};
 use crate::math::Vec2;
+use crate::scene::Edge;
 use crate::spectrum::Spectrum;
 
 /// How the two subpaths of a path came together.
@@ -42,10 +43,15 @@ impl<'a> JoinedPath<'a> {
         Self::new(light, camera, Junction::Connection)
     }
 
-    /// The path of a camera walk that went from the last vertex of `camera` to the light at `x0`.
+    /// The path of a camera walk that went from the last vertex of `camera` to the light at `x0`, which knows the way
+    /// back where that goes through media.
     #[inline]
     pub fn hit(x0: &'a Vertex, camera: &'a [Vertex]) -> Self {
-        Self::new(std::slice::from_ref(x0), camera, Junction::Hit)
+        let mut path = Self::new(std::slice::from_ref(x0), camera, Junction::Hit);
+        if x0.to_previous > 0.0 {
+            path.segment.to_b = x0.to_previous;
+        }
+        path
     }
 
     #[inline]
@@ -61,15 +67,21 @@ impl<'a> JoinedPath<'a> {
         }
     }
 
+    /// Lets the segment between z and y pass media.
+    #[inline]
+    pub(crate) fn pass(&mut self, edge: &Edge) {
+        self.segment.pass(edge);
+    }
+
     /// The light vertex at the junction.
     #[inline]
-    pub(super) fn z(&self) -> &'a Vertex {
+    pub(crate) fn z(&self) -> &'a Vertex {
         &self.light[self.light.len() - 1]
     }
 
     /// The camera vertex at the junction.
     #[inline]
-    pub(super) fn y(&self) -> &'a Vertex {
+    pub(crate) fn y(&self) -> &'a Vertex {
         &self.camera[self.camera.len() - 1]
     }
 

@@ -58,7 +58,7 @@ impl DiffuseEnd {
     };
 
     /// `vertex` of a walk of `mode`, with the sums there, which hold for all of its connections. [None](Self::NONE)
-    /// where it is not diffuse, where nothing is scattered, or where weights are not those of the balance heuristic
+    /// where it is not diffuse, where nothing is scattered, where there are media, or where weights are not those of the balance heuristic
     /// with one roulette for paths of any length.
     pub(super) fn new(
         context: &PathContext<'_>,
@@ -69,10 +69,11 @@ impl DiffuseEnd {
         let settings = context.job.settings;
         let is_even = settings.roulette.density_start().unwrap_or(0) == 0;
         let is_balance = settings.mis == MisHeuristic::Balance;
+        let is_clear = !context.job.scene.has_media();
         let [cos_s, cos_g] = [vertex.frame.z, vertex.locus.n_g].map(|n| n.dot(vertex.wo));
         match &vertex.scattering {
             Scattering::Surface(Bsdf::Diffuse(bsdf))
-                if is_balance && is_even && cos_s * cos_g > 0.0 =>
+                if is_balance && is_even && is_clear && cos_s * cos_g > 0.0 =>
             {
                 let rho = bsdf.reflectance;
                 let roulette = |albedo: f32| factor(context, usize::MAX, || albedo);

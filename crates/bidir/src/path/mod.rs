@@ -30,6 +30,7 @@ mod running;
 mod scatter;
 mod segment;
 mod shares;
+mod subpaths;
 mod vertex;
 mod walk;
 
@@ -46,10 +47,13 @@ pub use running::{EndSums, PathSums, RunningSums, Weights};
 pub use scatter::Turn;
 pub use segment::Segment;
 pub(crate) use shares::{ConnectionPart, Shares};
+pub use subpaths::{Escape, Subpath, Subpaths};
 pub use vertex::{Scattering, Vertex};
-pub use walk::{Escape, Subpath, Subpaths, camera_subpath, light_subpath};
+pub use walk::{camera_subpath, light_subpath};
 
 use crate::guide::Guide;
+use crate::math::Vec2;
+use crate::medium::MediumId;
 use crate::scene::Scene;
 use crate::spectrum::Wavelengths;
 use crate::view::View;
@@ -111,6 +115,8 @@ pub struct Job<'a> {
     pub counts: SampleCounts,
     /// The knowledge of training.
     pub guide: Guide<'a>,
+    /// The medium around the camera.
+    pub medium: MediumId,
 }
 
 impl<'a> Job<'a> {
@@ -122,7 +128,18 @@ impl<'a> Job<'a> {
             settings,
             counts: SampleCounts::of_own_subpaths(view.film()),
             guide: Guide::default(),
+            medium: camera_medium(scene, view),
         }
+    }
+}
+
+/// The medium around the camera; around everything where it is at infinity.
+pub fn camera_medium(scene: &Scene, view: &View) -> MediumId {
+    let lens = view.camera().sample_lens(|| Vec2::splat(0.5)).locus;
+    if lens.is_infinite() {
+        scene.around()
+    } else {
+        scene.medium_at(lens.point)
     }
 }
 

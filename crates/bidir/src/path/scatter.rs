@@ -5,6 +5,7 @@ use super::{PathContext, Scattering, Vertex};
 use crate::bsdf::TransportMode;
 use crate::light::LightPoint;
 use crate::math::{Vec2, Vec3};
+use crate::medium::MediumScattering;
 use crate::spectrum::Spectrum;
 
 /// A direction drawn at a vertex.
@@ -116,6 +117,9 @@ impl<'a> Turn<'a> {
                 };
                 bsdf.eval(wo.local, wi.local, mode) * from.normal_ratio()
             }
+            (Scattering::Medium(medium), _) => {
+                medium.coefficient * medium.phase.eval(wo.world, wi.world)
+            }
         }
     }
 
@@ -133,14 +137,16 @@ impl<'a> Turn<'a> {
             }
             (Scattering::Light, None) => 0.0,
             (Scattering::Surface(bsdf), _) => bsdf.pdf(self.wo.local, self.wi.local),
+            (Scattering::Medium(medium), _) => medium.phase.eval(self.wo.world, self.wi.world),
         }
     }
 
     /// The largest lane of the albedo that a walk along -`wo` meets here.
-    #[inline]
+    #[inline(always)]
     pub(super) fn albedo(&self) -> f32 {
         match &self.vertex.scattering {
             Scattering::Surface(bsdf) => bsdf.albedo(self.wo.local).max_lane(),
+            Scattering::Medium(medium) => medium.albedo.max_lane(),
             Scattering::Camera | Scattering::Light => 1.0,
         }
     }
@@ -151,6 +157,7 @@ impl Vertex {
     pub fn albedo(&self, w: Vec3) -> Spectrum {
         match &self.scattering {
             Scattering::Surface(bsdf) => bsdf.albedo(self.frame.to_local(w)),
+            Scattering::Medium(medium) => medium.albedo,
             Scattering::Camera | Scattering::Light => Spectrum::ONE,
         }
     }
@@ -166,15 +173,17 @@ impl Vertex {
     }
 
     /// Draws the next direction of a walk. None: nothing is scattered.
-    #[inline]
+    #[inline(always)] // Into both kinds of walks.
     pub(super) fn sample_scatter(
         &self,
         mode: TransportMode,
         u_lobe: impl FnOnce() -> f32,
         u: Vec2,
     ) -> Option<Scattered> {
-        let Scattering::Surface(bsdf) = &self.scattering else {
-            return None;
+        let bsdf = match &self.scattering {
+            Scattering::Surface(bsdf) => bsdf,
+            Scattering::Medium(medium) => return self.sample_phase(medium, u),
+            Scattering::Camera | Scattering::Light => return None,
         };
         let wo = Side::new(self, self.wo);
         let sample = bsdf.sample(wo.local, mode, u_lobe, u)?;
@@ -201,6 +210,21 @@ impl Vertex {
             pdf_reverse: sample.pdf_reverse,
             albedo_reverse: turn.reversed().albedo(),
             is_delta: sample.is_delta,
+        })
+    }
+
+    /// Draws the next direction of a walk by the phase function. None: the medium only absorbs.
+    #[inline(never)]
+    fn sample_phase(&self, medium: &MediumScattering, u: Vec2) -> Option<Scattered> {
+        let wi = medium.phase.sample(self.wo, u);
+        let pdf = medium.phase.eval(self.wo, wi);
+        (!medium.coefficient.is_black()).then(|| Scattered {
+            wi,
+            weight: medium.coefficient,
+            pdf,
+            pdf_reverse: pdf,
+            albedo_reverse: medium.albedo.max_lane(),
+            is_delta: false,
         })
     }
 }

@@ -5,6 +5,7 @@
 
 use crate::locus::Locus;
 use crate::math::Vec3;
+use crate::scene::Edge;
 
 /// The line between two ends, the first of which is called a and the second b; at most one is at
 /// infinity. All numbers are zero where both are the same point.
@@ -44,6 +45,13 @@ impl Segment {
             inverse(a.point.distance_squared(b.point))
         };
         Self::with(a, b, w, inverse2)
+    }
+
+    /// Lets it pass media: densities of points have a factor more. T is no part of G.
+    #[inline]
+    pub(crate) fn pass(&mut self, edge: &Edge) {
+        self.to_b *= edge.to_b;
+        self.to_a *= edge.to_a;
     }
 
     /// With one over the square of the distance, or 1 where there is none.

@@ -11,6 +11,7 @@ use crate::guide::Cell;
 use crate::light::{Facing, LightPoint, Receiver};
 use crate::locus::Locus;
 use crate::math::{Frame, Vec3};
+use crate::medium::{MediumId, MediumScattering, MediumSides};
 use crate::scene::SurfaceHit;
 use crate::spectrum::Spectrum;
 use crate::texture::TexturePoint;
@@ -26,6 +27,8 @@ pub enum Scattering {
     Light,
     /// The BSDF of a point of a surface, emissive or not.
     Surface(Bsdf),
+    /// The scattering of a point in a medium.
+    Medium(MediumScattering),
 }
 
 /// A vertex of a subpath.
@@ -47,7 +50,8 @@ pub struct Vertex {
     /// The density of this vertex drawn from its successor by a walk in the other direction,
     /// without roulette; set when the successor scatters.
     pub pdf_rev: f32,
-    /// The factor that turns a density of the direction `wo` here into one of the previous vertex.
+    /// The factor that turns a density of the direction `wo` here into one of the previous vertex; 0 where there is
+    /// none.
     pub to_previous: f32,
     /// The largest lane of the albedo seen from the previous vertex.
     pub albedo_fwd: f32,
@@ -89,12 +93,13 @@ impl Vertex {
         }
     }
 
-    /// A lens point, or a camera at infinity; `beta` is one over its density.
-    pub fn camera(lens: &LensSample) -> Self {
+    /// A lens point in a medium, or a camera at infinity; `beta` is one over its density.
+    pub fn camera(lens: &LensSample, medium: MediumId) -> Self {
+        let media = MediumSides::all(medium);
         Self {
             beta: Spectrum::splat(1.0 / lens.pdf),
             pdf_fwd: lens.pdf,
-            ..Self::new(lens.locus, Scattering::Camera)
+            ..Self::new(lens.locus.within(media), Scattering::Camera)
         }
     }
 
@@ -113,12 +118,17 @@ impl Vertex {
         at: &LightPoint,
         pdf_fwd: f32,
     ) -> Self {
+        let scene = context.job.scene;
+        let mut locus = at.locus;
+        if scene.has_media() {
+            locus.media = scene.light_media(light);
+        }
         Self {
             cell: context.job.guide.cell(at.locus.point, at.locus.n_g),
             pdf_fwd,
             light: Some(light),
             light_primitive: at.primitive,
-            ..Self::new(at.locus, Scattering::Light)
+            ..Self::new(locus, Scattering::Light)
         }
     }
 
@@ -154,6 +164,23 @@ impl Vertex {
         }
     }
 
+    /// A point in a medium reached along `-wo` with throughput `beta`.
+    pub fn medium(
+        context: &PathContext<'_>,
+        locus: Locus,
+        scattering: MediumScattering,
+        wo: Vec3,
+        beta: Spectrum,
+    ) -> Self {
+        Self {
+            wo,
+            beta,
+            albedo_fwd: scattering.albedo.max_lane(),
+            cell: context.job.guide.cell(locus.point, locus.n_g),
+            ..Self::new(locus, Scattering::Medium(scattering))
+        }
+    }
+
     /// The vertex as a point of the light that it lies on.
     #[inline]
     pub fn light_point(&self) -> LightPoint {
@@ -167,7 +194,7 @@ impl Vertex {
     pub(crate) fn place(&self) -> [Vec3; 2] {
         let n = match &self.scattering {
             Scattering::Surface(_) => self.frame.z,
-            Scattering::Camera | Scattering::Light => self.locus.n_g,
+            Scattering::Camera | Scattering::Light | Scattering::Medium(_) => self.locus.n_g,
         };
         [self.locus.point, n]
     }
@@ -182,6 +209,7 @@ impl Vertex {
                 Facing::Front(if n.dot(w) < 0.0 { -n } else { n })
             }
             Scattering::Surface(_) => Facing::Both(self.frame.z),
+            Scattering::Medium(_) => Facing::Anywhere,
             Scattering::Camera | Scattering::Light => Facing::Both(self.locus.n_g),
         };
         let point = self.locus.point;
@@ -194,7 +222,7 @@ impl Vertex {
     pub fn is_delta(&self) -> bool {
         match &self.scattering {
             Scattering::Surface(bsdf) => bsdf.is_delta(),
-            Scattering::Camera | Scattering::Light => false,
+            Scattering::Camera | Scattering::Light | Scattering::Medium(_) => false,
         }
     }
 

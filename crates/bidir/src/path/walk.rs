@@ -5,61 +5,30 @@
 //! A walk ends by escape, by roulette, where nothing scatters, or at the limit of path length. It
 //! adds nothing to any image.
 
-use super::{PathContext, Segment, Vertex};
+use super::{Escape, PathContext, Segment, Subpaths, Vertex};
 use crate::bsdf::TransportMode;
 use crate::camera::CameraRay;
 use crate::light::EmissionSample;
 use crate::locus::Locus;
 use crate::math::Vec3;
+use crate::medium::MediumSides;
 use crate::sampler::{Dimension, Purpose, SampleStream};
-use crate::scene::{Chances, SurfaceHit};
+use crate::scene::{Advance, Chances, Edge, Interaction, SurfaceHit};
 use crate::spectrum::Spectrum;
 use crate::stats::Stats;
 
-/// A camera walk that left the scene.
-#[derive(Clone, Copy, Debug)]
-pub struct Escape {
-    /// The unit direction.
-    pub direction: Vec3,
-    /// Throughput, the last scattering included.
-    pub beta: Spectrum,
-    /// The density of the direction, without roulette. Measure: solid angle, 1/sr.
-    pub pdf_fwd: f32,
-}
-
-/// One walk, from its end of the path.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Subpath<'a> {
-    /// The number of its first vertex among all of [`Subpaths`].
-    pub first: usize,
-    /// The vertices; empty where the walk could not start.
-    pub vertices: &'a [Vertex],
-    /// The walk's escape from the scene, if it left it.
-    pub escape: Option<Escape>,
-}
-
-/// The walks of a batch, one behind the other, and behind them single points.
-#[derive(Debug, Default)]
-pub struct Subpaths {
-    vertices: Vec<Vertex>,
-    walks: Vec<Walk>,
-}
-
-/// How a walk ended.
-#[derive(Clone, Copy, Debug)]
-struct Walk {
-    /// One past the number of its last vertex.
-    end: usize,
-    escape: Option<Escape>,
-}
-
 /// The state of a walk between two vertices.
 struct Step {
+    /// The origin of its ray.
+    origin: Vec3,
     direction: Vec3,
     beta: Spectrum,
     /// The density of `direction` at the last vertex.
     pdf_w: f32,
 }
+
+/// The end of a walk, with its escape if it left the scene.
+struct End(Option<Escape>);
 
 /// The data that a walk does not change.
 struct Walker<'a> {
@@ -87,15 +56,13 @@ pub fn camera_subpath(
     };
     // Cameras draw rays in proportion to their importance: its weight leaves the film's alone.
     let step = Step {
+        origin: ray.origin,
         direction: ray.direction,
         beta: Spectrum::splat(weight),
         pdf_w: context.job.view.camera().pdf_direction(ray.direction),
     };
-    let first = subpaths.vertices.len();
-    subpaths.vertices.push(Vertex::camera(&ray.lens));
-    let walked = &mut subpaths.vertices;
-    let escape = walker.walk(walked, first, ray.origin, step, &mut stats.rays.camera);
-    subpaths.end(escape);
+    let start = Vertex::camera(&ray.lens, context.job.medium);
+    walker.walk(subpaths, &start, step, &mut stats.rays.camera);
 }
 
 /// Walks a light subpath, and adds it to `subpaths`.
@@ -113,16 +80,16 @@ pub fn light_subpath(
         .scene
         .color()
         .illuminant(emission.emitted_cos, &context.wavelengths);
-    let step = Step {
-        direction: emission.direction,
-        beta: emitted * (emission.from.coverage / (start.pdf_fwd * emission.pdf_direction)),
-        pdf_w: emission.pdf_direction,
-    };
     let start_of_ray = Locus {
         point: emission.origin,
         ..start.locus
     };
-    let origin = start_of_ray.ray_origin(emission.direction);
+    let step = Step {
+        origin: start_of_ray.ray_origin(emission.direction),
+        direction: emission.direction,
+        beta: emitted * (emission.from.coverage / (start.pdf_fwd * emission.pdf_direction)),
+        pdf_w: emission.pdf_direction,
+    };
     let walker = Walker {
         context,
         mode: TransportMode::Importance,
@@ -130,15 +97,11 @@ pub fn light_subpath(
         // At least the lens is the camera's.
         max_vertices: context.job.settings.max_vertices() - 1,
     };
-    let first = subpaths.vertices.len();
-    subpaths.vertices.push(start);
-    let walked = &mut subpaths.vertices;
-    let escape = walker.walk(walked, first, origin, step, &mut stats.rays.light);
-    subpaths.end(escape);
+    walker.walk(subpaths, &start, step, &mut stats.rays.light);
 }
 
-/// Draws the start of a light subpath and the ray that leaves it. None: the draw has no density, or the light
-/// is cut out there.
+/// Draws the start of a light subpath and the ray that leaves it. None: the draw has no density, the light is cut
+/// out there, or a medium without end swallows it.
 fn draw_emission(
     context: &PathContext<'_>,
     stream: &SampleStream,
@@ -153,150 +116,143 @@ fn draw_emission(
     let emission = scene.lights()[light].sample_emission(&lights, u_position, u_direction)?;
     let from = &emission.from;
     let mut start = Vertex::on_light(context, light as u32, &from.at, prob * from.pdf);
+    if start.locus.is_infinite() && start.locus.media != MediumSides::VACUUM {
+        return None;
+    }
     start.beta = Spectrum::splat(from.coverage / start.pdf_fwd);
     (from.coverage > 0.0).then_some((start, emission))
 }
 
-impl Subpaths {
-    /// Forgets all, and keeps the memory.
-    pub fn clear(&mut self) {
-        self.vertices.clear();
-        self.walks.clear();
-    }
-
-    /// The number of walks.
-    pub fn count(&self) -> usize {
-        self.walks.len()
-    }
-
-    /// Walk number `i`.
-    #[inline]
-    pub fn get(&self, i: usize) -> Subpath<'_> {
-        let first = if i == 0 { 0 } else { self.walks[i - 1].end };
-        let Walk { end, escape } = self.walks[i];
-        Subpath {
-            first,
-            vertices: &self.vertices[first..end],
-            escape,
-        }
-    }
-
-    /// All vertices, those of the single points last.
-    #[inline]
-    pub fn vertices(&self) -> &[Vertex] {
-        &self.vertices
-    }
-
-    /// Begins to load vertex number `i` and the one before it.
-    #[inline]
-    pub(crate) fn load_ahead(&self, i: usize) {
-        accel::load_ahead(&self.vertices[i.saturating_sub(1)..=i]);
-    }
-
-    /// Begins to load the place of vertex number `i`.
-    #[inline]
-    pub(crate) fn load_locus_ahead(&self, i: usize) {
-        accel::load_ahead(std::slice::from_ref(&self.vertices[i].locus));
-    }
-
-    /// The number of vertices of walks, behind which the single points are.
-    #[inline]
-    pub(crate) fn walked(&self) -> usize {
-        self.walks.last().map_or(0, |walk| walk.end)
-    }
-
-    /// Adds a single point; returns its number among all vertices. Points are forgotten before the next walk.
-    #[inline]
-    pub(crate) fn add_point(&mut self, point: &Vertex) -> usize {
-        self.vertices.push(*point);
-        self.vertices.len() - 1
-    }
-
-    /// Forgets the single points.
-    pub(crate) fn forget_points(&mut self) {
-        self.vertices.truncate(self.walked());
-    }
-
-    /// Adds a walk of these vertices.
-    #[cfg(test)]
-    pub(crate) fn add(&mut self, vertices: impl Iterator<Item = Vertex>) {
-        self.vertices.extend(vertices);
-        self.end(None);
-    }
-
-    /// Ends a walk.
-    fn end(&mut self, escape: Option<Escape>) {
-        let end = self.vertices.len();
-        self.walks.push(Walk { end, escape });
-    }
-}
-
 impl Walker<'_> {
-    /// Extends the walk, `vertices` from `first` on, until it escapes, ends by roulette, or is full.
-    fn walk(
+    /// Adds a walk that begins with a vertex and a step.
+    fn walk(&self, subpaths: &mut Subpaths, start: &Vertex, step: Step, rays: &mut u64) {
+        let first = subpaths.vertices.len();
+        subpaths.vertices.push(*start);
+        let vertices = &mut subpaths.vertices;
+        let escape = if self.context.job.scene.has_media() {
+            self.extend_in_media(vertices, first, step, rays)
+        } else {
+            self.extend(vertices, first, step, rays, Self::advance)
+        };
+        subpaths.end(escape);
+    }
+
+    #[inline(never)]
+    fn extend_in_media(
         &self,
         vertices: &mut Vec<Vertex>,
         first: usize,
-        origin: Vec3,
         step: Step,
         rays: &mut u64,
     ) -> Option<Escape> {
-        let (mut origin, mut step) = (origin, step);
+        self.extend(vertices, first, step, rays, Self::advance_in_media)
+    }
+
+    /// Extends the walk, `vertices` from `first` on, until it escapes, ends by roulette, or is full.
+    #[inline(always)]
+    fn extend(
+        &self,
+        vertices: &mut Vec<Vertex>,
+        first: usize,
+        mut step: Step,
+        rays: &mut u64,
+        advance: impl Fn(&Self, &mut Vec<Vertex>, &Step, usize) -> Option<End>,
+    ) -> Option<Escape> {
         let start = magnitude(step.beta);
         let mut count = 1;
         while count < self.max_vertices {
             *rays += 1;
-            let chances = Chances::new(self.stream, count);
-            let hit = self
-                .context
-                .job
-                .scene
-                .intersect(origin, step.direction, chances);
-            let Some(hit) = hit else {
-                return Some(Escape {
-                    direction: step.direction,
-                    beta: step.beta,
-                    pdf_fwd: step.pdf_w,
-                });
-            };
-            self.add_surface(vertices, &hit, &step, count)?;
+            if let Some(End(escape)) = advance(self, vertices, &step, count) {
+                return escape;
+            }
             count += 1;
             if count == self.max_vertices {
                 return None;
             }
             step = self.scatter(&mut vertices[first..], start)?;
-            origin = vertices[vertices.len() - 1]
-                .locus
-                .ray_origin(step.direction);
         }
         None
     }
 
-    /// Adds vertex number `index`, the `hit` that `step` led to. None: by rounding it is the vertex before it, in a
-    /// corner; it has no density.
-    #[inline]
-    fn add_surface(
+    /// Adds vertex number `index`, the surface that `step` leads to.
+    #[inline(always)]
+    fn advance(&self, vertices: &mut Vec<Vertex>, step: &Step, index: usize) -> Option<End> {
+        let chances = Chances::new(self.stream, index);
+        let scene = self.context.job.scene;
+        let Some(hit) = scene.intersect(step.origin, step.direction, chances) else {
+            let from = vertices[vertices.len() - 1].locus;
+            return Some(End(self.escape(&from, step, None)));
+        };
+        vertices.push(self.surface(&hit, step, index));
+        reach(vertices, step, None)
+    }
+
+    /// The same where `step` may lead to a point in a medium.
+    #[inline(never)]
+    fn advance_in_media(
         &self,
         vertices: &mut Vec<Vertex>,
-        hit: &SurfaceHit,
         step: &Step,
         index: usize,
-    ) -> Option<()> {
-        let u_mix = || self.stream.get_1d(Dimension::at(index, Purpose::Mix));
-        let wo = -step.direction;
-        let mut vertex = Vertex::surface(self.context, hit, wo, step.beta, u_mix);
+    ) -> Option<End> {
         let from = vertices[vertices.len() - 1].locus;
-        let segment = Segment::along(&from, &vertex.locus, step.direction);
-        vertex.pdf_fwd = step.pdf_w * segment.to_b;
-        vertex.to_previous = segment.to_a;
-        if vertex.pdf_fwd == 0.0 {
-            return None;
-        }
+        let ray = accel::Ray::new(step.origin, step.direction);
+        let medium = from.medium_toward(step.direction);
+        let chances = Chances::new(self.stream, index);
+        let (scene, wavelengths) = (self.context.job.scene, &self.context.wavelengths);
+        let Advance {
+            interaction,
+            transmittance,
+        } = scene.advance(&ray, medium, chances, wavelengths);
+        let vertex = match &interaction {
+            Interaction::Escape => return Some(End(self.escape(&from, step, Some(transmittance)))),
+            Interaction::Surface(hit, media) => {
+                let mut vertex = self.surface(hit, step, index);
+                vertex.locus.media = *media;
+                vertex
+            }
+            Interaction::Medium(locus, scattering) => Vertex::medium(
+                self.context,
+                *locus,
+                *scattering,
+                -step.direction,
+                step.beta,
+            ),
+        };
+        let edge = scene.edge_of(transmittance, [&from, &vertex.locus], wavelengths);
         vertices.push(vertex);
-        Some(())
+        reach(vertices, step, Some(&edge))
+    }
+
+    #[inline(always)]
+    fn surface(&self, hit: &SurfaceHit, step: &Step, index: usize) -> Vertex {
+        let u_mix = || self.stream.get_1d(Dimension::at(index, Purpose::Mix));
+        Vertex::surface(self.context, hit, -step.direction, step.beta, u_mix)
+    }
+
+    /// The escape of a walk from the place `from` past media of this T. None: nothing arrives.
+    #[inline(never)]
+    fn escape(&self, from: &Locus, step: &Step, transmittance: Option<Spectrum>) -> Option<Escape> {
+        let to = Locus::at_infinity(step.direction);
+        let mut segment = Segment::along(from, &to, step.direction);
+        let mut beta = step.beta;
+        if let Some(transmittance) = transmittance {
+            let Self { context, .. } = self;
+            let (scene, wavelengths) = (context.job.scene, &context.wavelengths);
+            let edge = scene.edge_of(transmittance, [from, &to], wavelengths);
+            segment.pass(&edge);
+            beta *= edge.walked();
+        }
+        (segment.to_b > 0.0).then_some(Escape {
+            direction: step.direction,
+            beta,
+            pdf_fwd: step.pdf_w * segment.to_b,
+            to_previous: segment.to_a,
+        })
     }
 
     /// Scatters at the last of `vertices`. None: the walk ends there.
+    #[inline(always)]
     fn scatter(&self, vertices: &mut [Vertex], start: f32) -> Option<Step> {
         let index = vertices.len() - 1;
         let [.., previous, vertex] = vertices else {
@@ -320,11 +276,33 @@ impl Walker<'_> {
             return None;
         }
         Some(Step {
+            origin: vertex.locus.ray_origin(scattered.wi),
             direction: scattered.wi,
             beta: beta / survival,
             pdf_w: scattered.pdf,
         })
     }
+}
+
+/// Gives the last of `vertices`, to which `step` led through the media of `edge` if there are any, its densities. The
+/// walk ends where it has none: by rounding it is the vertex before it, in a corner, or nothing arrives.
+#[inline(always)] // Into both kinds of walks.
+fn reach(vertices: &mut Vec<Vertex>, step: &Step, edge: Option<&Edge>) -> Option<End> {
+    let [.., from, vertex] = &mut vertices[..] else {
+        return Some(End(None));
+    };
+    let mut segment = Segment::along(&from.locus, &vertex.locus, step.direction);
+    if let Some(edge) = edge {
+        segment.pass(edge);
+        vertex.beta *= edge.walked();
+    }
+    vertex.pdf_fwd = step.pdf_w * segment.to_b;
+    vertex.to_previous = segment.to_a;
+    if vertex.pdf_fwd == 0.0 {
+        vertices.pop();
+        return Some(End(None));
+    }
+    None
 }
 
 /// The largest lane, whatever its sign: a filter may be negative. Never zero, so that throughput

@@ -40,6 +40,8 @@ pub enum Purpose {
     CachedVertex,
     /// Which vertices of long subpaths are connected (vertex 0 of a camera subpath).
     Pairs,
+    /// The lane by which a walk draws the distance to the vertex, and the optical depth that it goes, in media.
+    Flight,
 }
 
 /// The address of a random number, or of a pair, within a sample.
@@ -51,6 +53,13 @@ impl Dimension {
     #[inline]
     pub const fn at(vertex: usize, purpose: Purpose) -> Self {
         Self(((vertex as u64) << 8) | purpose as u64)
+    }
+
+    /// The number that decides another purpose at the same vertex.
+    #[inline]
+    #[must_use]
+    pub const fn with_purpose(self, purpose: Purpose) -> Self {
+        Self::at((self.0 >> 8) as usize, purpose)
     }
 
     /// A well-spread key: an odd multiple, so that neighbouring dimensions differ in many bits.

@@ -7,6 +7,7 @@ use super::{Presence, RenderSpace, Scene, Surface};
 use crate::light::{AreaLight, EmissionSides, Light, LightChoice, LightContext, LightTree};
 use crate::material::Material;
 use crate::math::{DAffine3, Vec3};
+use crate::medium::{Medium, MediumId, MediumSides};
 use crate::shape::{Place, Shape};
 use crate::spectrum::{ColorModel, Rgb};
 use crate::texture::{ColorTexture, FloatTexture, clamped_coverage};
@@ -71,6 +72,12 @@ pub enum SceneError {
         /// The instance, in the order of addition.
         instance: usize,
     },
+    /// There are more media than places can name.
+    #[error("the scene has {count} media; at most {most} are possible", most = MediumId::MOST)]
+    TooManyMedia {
+        /// How many.
+        count: usize,
+    },
     /// There are more primitives than the intersector counts.
     #[error("the scene has too many primitives: {0}")]
     Intersector(String),
@@ -83,7 +90,7 @@ impl SceneError {
             Self::VertexIndex { shape, .. }
             | Self::AttributeCount { shape, .. }
             | Self::NotFinite { shape } => Some(*shape),
-            Self::Instance { .. } | Self::Intersector(_) => None,
+            Self::Instance { .. } | Self::TooManyMedia { .. } | Self::Intersector(_) => None,
         }
     }
 }
@@ -97,6 +104,9 @@ pub struct SceneBuilder {
     surfaces: Vec<Surface>,
     objects: Objects,
     coverages: Vec<FloatTexture>,
+    media: Vec<Medium>,
+    /// A point, and the medium there.
+    around: Option<(Vec3, MediumId)>,
     materials: Vec<Material>,
     lights: Vec<Light>,
     /// The group of each light, by index into the names.
@@ -158,9 +168,46 @@ impl SceneBuilder {
             material: material.0,
             light,
             presence: Presence::Whole,
+            sides: None,
             is_detailed: self.materials[material.0 as usize].needs().footprint,
         });
         self.shapes.push(shape);
+    }
+
+    /// Adds a medium. It is where the sides of [shapes](Self::sides) say, or [around](Self::around) everything.
+    pub fn medium(&mut self, medium: Medium) -> MediumId {
+        self.media.push(medium);
+        // Too many are found when the scene is built.
+        MediumId::new(self.media.len() - 1).unwrap_or_default()
+    }
+
+    /// Puts `medium` at a point, that of a camera: it is around everything unless a boundary encloses the point.
+    /// Without this, the vacuum is. Light from infinity gets through the vacuum alone.
+    pub fn medium_at(&mut self, point: Vec3, medium: MediumId) -> &mut Self {
+        self.around = Some((point, medium));
+        self
+    }
+
+    /// Sets the media on both sides of shape number `shape`. Without them, or where they are the same, the medium of
+    /// its surroundings is on both.
+    pub fn sides(&mut self, shape: usize, media: MediumSides) -> &mut Self {
+        self.surfaces[shape].sides = media.is_boundary().then_some(media);
+        self
+    }
+
+    /// Adds a boundary of media that is no surface: rays pass it. Returns the number of the shape.
+    pub fn boundary(&mut self, shape: Shape, media: MediumSides) -> usize {
+        let index = self.shapes.len();
+        self.surfaces.push(Surface::boundary(media));
+        self.shapes.push(shape);
+        index
+    }
+
+    /// Adds a [boundary](Self::boundary) to an object, in the object's space.
+    pub fn object_boundary(&mut self, object: ObjectId, shape: Shape, media: MediumSides) -> usize {
+        let index = self.boundary(shape, media);
+        self.objects.shapes[object.0 as usize].push(index);
+        index
     }
 
     /// Lets only the part `alpha` of shape number `shape` be there, in `[0, 1]` over its parameters:
@@ -256,6 +303,10 @@ impl SceneBuilder {
 
     /// Checks everything and builds the acceleration structure.
     pub fn build(self) -> Result<Scene, SceneError> {
+        if self.media.len() > MediumId::MOST {
+            let count = self.media.len();
+            return Err(SceneError::TooManyMedia { count });
+        }
         let isa = self.isa.unwrap_or_else(accel::Isa::detect);
         let Geometry {
             bvh,
@@ -274,7 +325,12 @@ impl SceneBuilder {
         let environment = (0..self.lights.len())
             .filter(|&i| is_environment(&self.lights[i]))
             .map(|i| i as u32);
-        Ok(Scene {
+        let is_boundary = |surface: &Surface| surface.presence == Presence::Boundary;
+        let mut scene = Scene {
+            is_opaque: self.coverages.is_empty() && !self.surfaces.iter().any(is_boundary),
+            media: self.media,
+            around: MediumId::VACUUM,
+            light_media: Vec::new(),
             space: self.space,
             color: self.color,
             environment: environment.collect(),
@@ -292,8 +348,36 @@ impl SceneBuilder {
             bvh,
             centre,
             radius,
-        })
+        };
+        if scene.has_media() {
+            if let Some((point, medium)) = self.around
+                && scene.enclosing(point).is_none()
+            {
+                scene.around = medium;
+            }
+            let lights = scene.lights.iter();
+            scene.light_media = lights.map(|light| media_of(&scene, light)).collect();
+        }
+        Ok(scene)
     }
+}
+
+/// The media on the sides of a light. One light lies in one medium, or on one boundary.
+fn media_of(scene: &Scene, light: &Light) -> MediumSides {
+    let at = match light {
+        Light::Area(light) => {
+            if let Some(sides) = scene.surfaces[light.shape_index()].sides {
+                return sides;
+            }
+            // It parts no media: those around it are within it, too.
+            let shape = &scene.shapes[light.shape_index()];
+            shape.primitive(0).bounds().center()
+        }
+        Light::Point(light) => light.position,
+        Light::Spot(light) => light.position,
+        Light::Distant(_) | Light::Infinite(_) => return MediumSides::all(scene.around),
+    };
+    MediumSides::all(scene.medium_at(at))
 }
 
 /// A sphere around all surfaces, and around the lights in space, with a little room.

@@ -15,6 +15,7 @@ use crate::math::Vec2;
 use crate::sampler::{Dimension, Purpose, SampleStream};
 use crate::texture::{TexturePoint, clamped_coverage};
 use accel::Hit;
+use smallvec::SmallVec;
 use std::ops::ControlFlow;
 
 /// The random numbers by which a ray of a walk passes surfaces that are not all there.
@@ -34,6 +35,13 @@ impl<'a> Chances<'a> {
         }
     }
 
+    /// The numbers that decide by which lane of light, and how far, the ray goes through media.
+    #[inline]
+    pub(super) fn flight(&self) -> [f32; 2] {
+        let dimension = self.dimension.with_purpose(Purpose::Flight);
+        self.stream.get_2d(dimension).to_array()
+    }
+
     /// The number that decides about `hit`. A ray may meet a primitive twice, and decides twice.
     #[inline]
     fn draw(&self, hit: &Hit) -> f32 {
@@ -45,64 +53,69 @@ impl<'a> Chances<'a> {
 }
 
 impl Scene {
-    /// α where a surface is hit: 1 where it is opaque, or where a texture is no number.
+    /// α where a surface is hit: 1 where it is opaque, or where a texture is no number. Calls `cross` where it is but
+    /// a boundary of media.
     #[inline]
-    fn coverage(&self, ray: &accel::Ray, hit: &Hit) -> f32 {
-        let (placed, primitive) = self.resolve(hit);
+    fn coverage(&self, ray: &accel::Ray, hit: &Hit, cross: impl FnOnce(&Hit)) -> f32 {
+        let (_, primitive) = self.resolve(hit);
         let (number, index) = (primitive.shape as usize, primitive.index as usize);
         let texture = match self.surfaces[number].presence {
             Presence::Whole => return 1.0,
             Presence::Part(texture) => &self.coverages[texture as usize],
+            Presence::Boundary => {
+                cross(hit);
+                return 0.0;
+            }
             Presence::Absent => return 0.0,
         };
         let (shape, uv) = (&self.shapes[number], Vec2::new(hit.u, hit.v));
         // Almost always the parameters are enough, and nothing else has to be known of the surface.
         let at = if texture.needs().surface {
-            let point = ray.origin + ray.direction * hit.t;
-            TexturePoint::new(&match placed {
-                None => shape.surface_point(index, uv, point),
-                Some(placed) => shape.surface_point_at(&placed.place, index, uv, point),
-            })
+            TexturePoint::new(&self.surface_at(ray, hit))
         } else {
             TexturePoint::of_parameters(shape.uv(index, uv))
         };
         clamped_coverage(texture.eval(&at))
     }
 
-    /// True where rays pass no surface.
+    /// The nearest surface that a ray of a walk does not pass. Calls `cross` for boundaries of media, those behind
+    /// that surface perhaps among them.
     #[inline]
-    pub(super) fn is_opaque(&self) -> bool {
-        self.coverages.is_empty()
-    }
-
-    /// The nearest surface that a ray of a walk does not pass.
-    #[inline]
-    pub(super) fn closest(&self, ray: &accel::Ray, chances: Chances<'_>) -> Option<Hit> {
-        if self.is_opaque() {
+    pub(super) fn closest(
+        &self,
+        ray: &accel::Ray,
+        chances: Chances<'_>,
+        cross: impl Fn(&Hit),
+    ) -> Option<Hit> {
+        if self.is_opaque {
             return self.bvh.closest(ray, accel::accept_all);
         }
-        self.bvh.closest(ray, |hit| match self.coverage(ray, hit) {
-            alpha if alpha >= 1.0 => true,
-            alpha => alpha > 0.0 && chances.draw(hit) < alpha,
-        })
+        self.bvh
+            .closest(ray, |hit| match self.coverage(ray, hit, &cross) {
+                alpha if alpha >= 1.0 => true,
+                alpha => alpha > 0.0 && chances.draw(hit) < alpha,
+            })
     }
 
-    /// Π (1 - α) over everything that a shadow ray meets.
+    /// Π (1 - α) over everything that a shadow ray meets. Calls `cross` for the boundaries of media, all of them
+    /// where anything arrives.
     #[inline]
-    pub(super) fn transmittance_along(&self, ray: &accel::Ray) -> f32 {
-        if self.is_opaque() {
+    pub(super) fn visible_part(&self, ray: &accel::Ray, mut cross: impl FnMut(&Hit)) -> f32 {
+        if self.is_opaque {
             return f32::from(!self.bvh.is_blocked(ray));
         }
         let mut factors = Factors::default();
-        let flow = self.bvh.each_hit(ray, |hit| match self.coverage(ray, hit) {
-            alpha if alpha >= 1.0 => ControlFlow::Break(()),
-            alpha => {
-                if alpha > 0.0 {
-                    factors.push(1.0 - alpha);
+        let flow = self
+            .bvh
+            .each_hit(ray, |hit| match self.coverage(ray, hit, &mut cross) {
+                alpha if alpha >= 1.0 => ControlFlow::Break(()),
+                alpha => {
+                    if alpha > 0.0 {
+                        factors.push(1.0 - alpha);
+                    }
+                    ControlFlow::Continue(())
                 }
-                ControlFlow::Continue(())
-            }
-        });
+            });
         if flow.is_break() {
             0.0
         } else {
@@ -113,36 +126,18 @@ impl Scene {
 
 /// Factors that come in any order, whose product does not depend on it.
 #[derive(Default)]
-struct Factors {
-    first: [f32; Self::FEW],
-    count: usize,
-    /// The factors beyond the first ones; empty, it takes no memory.
-    rest: Vec<f32>,
-}
+struct Factors(SmallVec<[f32; 32]>);
 
 impl Factors {
-    const FEW: usize = 32;
-
     #[inline]
     fn push(&mut self, factor: f32) {
-        match self.first.get_mut(self.count) {
-            Some(place) => *place = factor,
-            None => self.rest.push(factor),
-        }
-        self.count += 1;
+        self.0.push(factor);
     }
 
     /// The product in ascending order, rounded once.
     fn product(mut self) -> f32 {
-        let few = self.count.min(Self::FEW);
-        let factors = if self.rest.is_empty() {
-            &mut self.first[..few]
-        } else {
-            self.rest.extend_from_slice(&self.first);
-            &mut self.rest[..]
-        };
-        factors.sort_unstable_by(f32::total_cmp);
-        let product: f64 = factors.iter().map(|&factor| f64::from(factor)).product();
+        self.0.sort_unstable_by(f32::total_cmp);
+        let product: f64 = self.0.iter().map(|&factor| f64::from(factor)).product();
         product as f32
     }
 }

@@ -7,6 +7,7 @@ mod builder;
 mod check;
 mod coverage;
 mod object;
+mod passage;
 mod space;
 mod visibility;
 
@@ -16,6 +17,7 @@ pub use builder::{
 };
 pub use coverage::Chances;
 pub use object::ObjectId;
+pub use passage::{Advance, Edge, Interaction};
 pub use space::RenderSpace;
 pub(crate) use visibility::ShadowRays;
 
@@ -24,6 +26,7 @@ use object::Placed;
 use crate::light::{Light, LightChoice, LightContext, LightPoint, LightTree};
 use crate::material::Material;
 use crate::math::{Vec2, Vec3};
+use crate::medium::{Medium, MediumId, MediumSides};
 use crate::shape::{Differentials, Shape, SurfacePoint};
 use crate::spectrum::ColorModel;
 use crate::texture::FloatTexture;
@@ -42,8 +45,24 @@ struct Surface {
     material: u32,
     light: Option<u32>,
     presence: Presence,
+    /// The media that it parts. None: the same is on both sides.
+    sides: Option<MediumSides>,
     /// True where the material asks how the surface changes along its parameters.
     is_detailed: bool,
+}
+
+impl Surface {
+    /// Nothing but a boundary between `media`, if they differ.
+    fn boundary(media: MediumSides) -> Self {
+        let sides = media.is_boundary().then_some(media);
+        Self {
+            material: 0,
+            light: None,
+            presence: sides.map_or(Presence::Absent, |_| Presence::Boundary),
+            sides,
+            is_detailed: false,
+        }
+    }
 }
 
 /// How much of a surface is there.
@@ -53,6 +72,8 @@ enum Presence {
     Whole,
     /// The part given by a texture of the scene, by index.
     Part(u32),
+    /// Nothing but a boundary of media.
+    Boundary,
     /// Nothing: no ray meets it.
     Absent,
 }
@@ -80,8 +101,15 @@ pub struct Scene {
     /// The primitives of the world first, then those of the objects.
     primitives: Vec<PrimitiveRef>,
     instances: Vec<Placed>,
-    /// The textures of surfaces that are not all there. Without any, rays do not ask.
+    /// The textures of surfaces that are not all there.
     coverages: Vec<FloatTexture>,
+    /// True where rays pass no surface, and need not ask.
+    is_opaque: bool,
+    media: Vec<Medium>,
+    /// The medium around everything.
+    around: MediumId,
+    /// The media on the sides of each light.
+    light_media: Vec<MediumSides>,
     materials: Vec<Material>,
     lights: Vec<Light>,
     light_choice: LightChoice,
@@ -169,7 +197,8 @@ impl Scene {
 
     /// The materials of surfaces that rays can meet, once for each surface.
     pub fn materials_of_surfaces(&self) -> impl Iterator<Item = &Material> {
-        let met = |surface: &&Surface| !matches!(surface.presence, Presence::Absent);
+        let met =
+            |surface: &&Surface| !matches!(surface.presence, Presence::Absent | Presence::Boundary);
         let surfaces = self.surfaces.iter().filter(met);
         surfaces.map(|surface| self.material(surface.material))
     }
@@ -218,30 +247,64 @@ impl Scene {
         direction: Vec3,
         chances: Chances<'_>,
     ) -> Option<SurfaceHit> {
-        let hit = self.closest(&accel::Ray::new(origin, direction), chances)?;
-        let uv = Vec2::new(hit.u, hit.v);
-        let point = origin + direction * hit.t;
-        let (placed, primitive) = self.resolve(&hit);
+        let ray = accel::Ray::new(origin, direction);
+        let hit = self.closest(&ray, chances, |_| ())?;
+        Some(self.surface_hit(&ray, &hit))
+    }
+
+    /// The surface that a ray hits.
+    #[inline]
+    fn surface_hit(&self, ray: &accel::Ray, hit: &accel::Hit) -> SurfaceHit {
+        let (placed, primitive) = self.resolve(hit);
+        let surface = self.surface_of(ray, hit, placed, primitive);
         let (number, index) = (primitive.shape as usize, primitive.index as usize);
-        let shape = &self.shapes[number];
-        let surface = match placed {
-            None => shape.surface_point(index, uv, point),
-            Some(placed) => shape.surface_point_at(&placed.place, index, uv, point),
-        };
         let of_shape = self.surfaces[number];
         let light = of_shape
             .light
             .map(|light| (light, LightPoint::on_surface(&surface, primitive.index)));
+        let uv = Vec2::new(hit.u, hit.v);
         let place = placed.map(|placed| &placed.place);
         let differentials = of_shape
             .is_detailed
-            .then(|| shape.differentials(place, (index, uv), &surface));
-        Some(SurfaceHit {
+            .then(|| self.shapes[number].differentials(place, (index, uv), &surface));
+        SurfaceHit {
             surface,
             differentials,
             material: of_shape.material,
             light,
-        })
+        }
+    }
+
+    /// The point of a surface where a ray meets it.
+    #[inline]
+    fn surface_at(&self, ray: &accel::Ray, hit: &accel::Hit) -> SurfacePoint {
+        let (placed, primitive) = self.resolve(hit);
+        self.surface_of(ray, hit, placed, primitive)
+    }
+
+    /// The same where the target of the hit is known.
+    #[inline]
+    fn surface_of(
+        &self,
+        ray: &accel::Ray,
+        hit: &accel::Hit,
+        placed: Option<&Placed>,
+        primitive: PrimitiveRef,
+    ) -> SurfacePoint {
+        let (number, index) = (primitive.shape as usize, primitive.index as usize);
+        let (shape, uv) = (&self.shapes[number], Vec2::new(hit.u, hit.v));
+        let point = ray.origin + ray.direction * hit.t;
+        match placed {
+            None => shape.surface_point(index, uv, point),
+            Some(placed) => shape.surface_point_at(&placed.place, index, uv, point),
+        }
+    }
+
+    /// The media on the sides of light number `i`.
+    #[inline]
+    pub(crate) fn light_media(&self, i: u32) -> MediumSides {
+        let media = self.light_media.get(i as usize);
+        media.copied().unwrap_or_default()
     }
 
     /// The target of a hit: the instance, if it is of one, and the part of a shape.

@@ -19,7 +19,7 @@ impl Scene {
     /// lies between, 1 where nothing does. At most one end is at infinity.
     #[inline]
     pub fn transmittance(&self, a: &Locus, b: &Locus) -> f32 {
-        self.transmittance_along(&shadow_ray(a, b))
+        self.visible_part(&shadow_ray(a, b), |_| ())
     }
 
     /// The [transmittance](Self::transmittance) between each of these pairs of ends, in their order: less work for
@@ -37,11 +37,11 @@ impl Scene {
         rays.clear();
         rays.extend(ends.map(|[a, b]| shadow_ray(a, b)));
         transmittances.clear();
-        if self.is_opaque() {
+        if self.is_opaque {
             self.bvh.are_blocked(rays, blocked);
             transmittances.extend(blocked.iter().map(|&is_blocked| f32::from(!is_blocked)));
         } else {
-            transmittances.extend(rays.iter().map(|ray| self.transmittance_along(ray)));
+            transmittances.extend(rays.iter().map(|ray| self.visible_part(ray, |_| ())));
         }
         transmittances
     }
@@ -49,7 +49,7 @@ impl Scene {
 
 /// The ray from one end to the other, of which at most one is at infinity.
 #[inline]
-fn shadow_ray(a: &Locus, b: &Locus) -> accel::Ray {
+pub(super) fn shadow_ray(a: &Locus, b: &Locus) -> accel::Ray {
     if a.is_infinite() {
         return shadow_ray(b, a);
     }

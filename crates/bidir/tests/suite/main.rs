@@ -7,6 +7,7 @@ mod analytic;
 mod dropped;
 mod layers;
 mod materials;
+mod media;
 mod module_order;
 mod path_identities;
 mod relief;

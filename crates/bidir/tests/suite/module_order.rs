@@ -4,13 +4,14 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// From the lowest to the highest.
-const ORDER: [&str; 23] = [
+const ORDER: [&str; 24] = [
     "names",
     "math",
     "spectrum",
     "sampler",
     "strategy",
     "contribution",
+    "medium",
     "locus",
     "shape",
     "texture",

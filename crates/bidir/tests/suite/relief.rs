@@ -189,7 +189,9 @@ fn a_point_looks_the_same_to_every_walk() {
         let far = vertex(&context, target + Vec3::new(7.0, 40.0, -9.0), target);
         let [near, far] = [near, far].map(|vertex| match vertex.scattering {
             Scattering::Surface(bsdf) => (vertex.frame.z, bsdf.albedo(Vec3::Z)[0]),
-            Scattering::Camera | Scattering::Light => panic!("it is on the floor"),
+            Scattering::Camera | Scattering::Light | Scattering::Medium(_) => {
+                panic!("it is on the floor")
+            }
         });
         let turn = near.0.distance(far.0);
         assert!(turn < 2e-2, "the normal turns by {turn}");

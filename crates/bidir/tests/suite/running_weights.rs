@@ -8,6 +8,7 @@ use bidir::camera::{Camera, Orthographic, OrthographicSettings, Perspective, Per
 use bidir::guide::Guide;
 use bidir::light::{DistantLight, InfiniteLight, Light, PointLight};
 use bidir::math::{Affine3A, Vec2, Vec3};
+use bidir::medium::MediumId;
 use bidir::path::{
     Arrival, Job, JoinedPath, Junction, LightChoiceKind, LightPointChoice, MisHeuristic,
     PathContext, PathDensities, PathRoulette, PathSettings, PathSums, RunningSums, SampleCounts,
@@ -154,7 +155,7 @@ impl Comparison {
             .view
             .camera()
             .sample_lens(|| Vec2::new(0.3, 0.8));
-        let lens = Vertex::camera(&lens);
+        let lens = Vertex::camera(&lens, MediumId::VACUUM);
         for s in 1..=light.len() {
             if !(light[s - 1].locus.is_infinite() && lens.locus.is_infinite()) {
                 self.compare_connection(context, &light[..s], std::slice::from_ref(&lens));

@@ -157,9 +157,8 @@ impl<'a> Builder<'a> {
                 let shape = surface.place(&object.kept_from_own(), user, &place)?;
                 self.count(context, &shape, &place)?;
                 self.include(&shape, places.iter().map(|map| object.place_kept(map)));
-                let (shape, alpha) = (Shape::Mesh(shape), material.coverage.as_ref());
-                let assembly = &mut self.assembly;
-                assembly.add_to_object(object, shape, material.id, alpha, &place);
+                let (shape, skin) = (Shape::Mesh(shape), material.skin());
+                self.assembly.add_to_object(object, shape, &skin, &place);
                 continue;
             }
             for map in places {
@@ -269,8 +268,7 @@ impl<'a> Builder<'a> {
         self.count(context, &shape, place)?;
         self.include(&shape, [DAffine3::IDENTITY]);
         let parts = vec![(Shape::Mesh(shape), material.emission.clone())];
-        let alpha = material.coverage.as_ref();
-        self.assembly.add_shape(parts, material.id, alpha, place);
+        self.assembly.add_shape(parts, &material.skin(), place);
         Ok(())
     }
 

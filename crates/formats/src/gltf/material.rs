@@ -7,6 +7,8 @@ use super::json::{Material as Described, TextureInfo};
 use super::mesh::UvMap;
 use super::place::{GltfFault, Place};
 use super::texture::{Textures, uv_map};
+use crate::import::Skin;
+use bidir::medium::MediumSides;
 use bidir::scene::{Emission, MaterialId, SceneBuilder};
 use bidir::texture::FloatTexture;
 use reader::Reader;
@@ -21,6 +23,17 @@ pub(super) struct Built {
     pub(super) coverage: Option<FloatTexture>,
     /// The map from texture coordinates to the parameters of meshes.
     pub(super) uv: UvMap,
+}
+
+impl Built {
+    /// The surface of a shape of it.
+    pub(super) fn skin(&self) -> Skin<'_> {
+        Skin {
+            material: Some(self.id),
+            coverage: self.coverage.as_ref(),
+            media: MediumSides::VACUUM,
+        }
+    }
 }
 
 /// The material of a primitive, and the factor of its vertices on the base colour.

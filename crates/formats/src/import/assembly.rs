@@ -6,11 +6,16 @@ use super::{Context, Document, Layout, SceneSettings, Summary, Survey, VertexErr
 use crate::error::ErrorKind;
 use crate::source::Fault;
 use bidir::light::Light;
+use bidir::medium::{MediumId, MediumSides};
 use bidir::scene::{Emission, MaterialId, ObjectId, Scene, SceneBuilder, SceneError};
 use bidir::shape::Shape;
 use bidir::texture::FloatTexture;
 use bidir::view::View;
 use glam::{DAffine3, DVec3};
+
+/// The warning for lights at infinity beyond a medium.
+const UNREACHABLE: &str =
+    "light from infinity does not arrive: the medium around the camera has no end";
 
 /// A scene with the places `P` of its parts in the file.
 pub(crate) struct Assembly<P> {
@@ -57,6 +62,17 @@ impl SharedObject {
     pub(crate) fn place_kept(&self, map: &DAffine3) -> DAffine3 {
         *map * DAffine3::from_translation(self.origin)
     }
+}
+
+/// The kind of a shape's surface.
+#[derive(Clone, Copy)]
+pub(crate) struct Skin<'a> {
+    /// None: it is nothing but a boundary of media.
+    pub(crate) material: Option<MaterialId>,
+    /// How much of it is there. None: all.
+    pub(crate) coverage: Option<&'a FloatTexture>,
+    /// The media on its sides.
+    pub(crate) media: MediumSides,
 }
 
 /// A scene that was built.
@@ -116,15 +132,19 @@ impl<P: Clone> Assembly<P> {
     pub(crate) fn add_shape(
         &mut self,
         parts: Vec<(Shape, Option<Emission>)>,
-        material: MaterialId,
-        coverage: Option<&FloatTexture>,
+        skin: &Skin<'_>,
         place: &P,
     ) {
         let first_light = self.builder.next_light();
         for (part, emission) in parts {
-            self.summary.area_lights += usize::from(emission.is_some());
-            let number = self.builder.shape(part, material, emission);
-            self.note_shape(number, coverage, place);
+            let number = match skin.material {
+                Some(material) => {
+                    self.summary.area_lights += usize::from(emission.is_some());
+                    self.builder.shape(part, material, emission)
+                }
+                None => self.builder.boundary(part, skin.media),
+            };
+            self.note_shape(number, skin, place);
         }
         let lights = first_light..self.builder.next_light();
         if !lights.is_empty() {
@@ -132,11 +152,14 @@ impl<P: Clone> Assembly<P> {
         }
     }
 
-    fn note_shape(&mut self, number: usize, coverage: Option<&FloatTexture>, place: &P) {
+    fn note_shape(&mut self, number: usize, skin: &Skin<'_>, place: &P) {
         self.summary.shapes += 1;
         self.shapes.push(place.clone());
-        if let Some(coverage) = coverage {
-            self.builder.coverage(number, coverage.clone());
+        if skin.material.is_some() {
+            self.builder.sides(number, skin.media);
+            if let Some(coverage) = skin.coverage {
+                self.builder.coverage(number, coverage.clone());
+            }
         }
     }
 
@@ -158,12 +181,14 @@ impl<P: Clone> Assembly<P> {
         &mut self,
         object: SharedObject,
         shape: Shape,
-        material: MaterialId,
-        coverage: Option<&FloatTexture>,
+        skin: &Skin<'_>,
         place: &P,
     ) {
-        let number = self.builder.object_shape(object.id, shape, material);
-        self.note_shape(number, coverage, place);
+        let number = match skin.material {
+            Some(material) => self.builder.object_shape(object.id, shape, material),
+            None => self.builder.object_boundary(object.id, shape, skin.media),
+        };
+        self.note_shape(number, skin, place);
     }
 
     /// Adds an instance of the last object, whose own space `map` takes to where it is rendered.
@@ -221,6 +246,13 @@ impl<P: Clone> Assembly<P> {
         for (place, lights) in &self.lamps {
             if let Some(message) = lamp::dark_warning(&scene, lights.clone()) {
                 context.warn(place.clone(), message);
+            }
+        }
+        let is_swallowed =
+            |light: &Light| light.is_infinite() && scene.around() != MediumId::VACUUM;
+        for (place, lights) in &self.lamps {
+            if lights.clone().any(|light| is_swallowed(scene.light(light))) {
+                context.warn(place.clone(), UNREACHABLE);
             }
         }
         Ok(Built {

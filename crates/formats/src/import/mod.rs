@@ -16,7 +16,7 @@ mod precision;
 mod reading;
 mod space;
 
-pub(crate) use assembly::{Assembly, SharedObject, Size};
+pub(crate) use assembly::{Assembly, SharedObject, Size, Skin};
 pub(crate) use digest::Content;
 pub use digest::SceneDigest;
 pub use lamp::Lamp;

@@ -161,8 +161,6 @@ pub struct LightDescription {
     pub entity: Entity,
     /// World from light space.
     pub transforms: Transforms,
-    /// The outer one of these media surrounds it.
-    pub medium: MediumInterface,
 }
 
 /// A shape.

@@ -146,6 +146,7 @@ impl VertexReport {
             Scattering::Camera => "camera",
             Scattering::Light => "light",
             Scattering::Surface(_) => "surface",
+            Scattering::Medium(_) => "medium",
         };
         Self {
             kind,

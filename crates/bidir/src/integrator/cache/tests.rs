@@ -5,6 +5,7 @@ use crate::camera::LensSample;
 use crate::guide::PairSums;
 use crate::locus::Locus;
 use crate::math::Vec3;
+use crate::medium::MediumId;
 
 const SUBPATHS: usize = 20;
 /// The places of numbers that are drawn with, evenly spaced.
@@ -18,7 +19,7 @@ fn vertex(cell: Cell) -> Vertex {
     };
     Vertex {
         cell,
-        ..Vertex::camera(&lens)
+        ..Vertex::camera(&lens, MediumId::VACUUM)
     }
 }
 

@@ -274,9 +274,10 @@ impl Connector<'_> {
         Some((term, root_visibility))
     }
 
-    /// C of a connection of any two vertices, its weight, and the √V̂ of its shadow ray. None: C is zero.
+    /// C of a connection of any two vertices, its weight, and the √V̂ of its shadow ray. None: C is zero. Media
+    /// are guessed.
     fn general(&mut self, t: usize, end: &LightEnd<'_>) -> Option<(Spectrum, f32, f32)> {
-        let path = JoinedPath::connection(end.vertices, &self.camera.vertices[..t]);
+        let mut path = JoinedPath::connection(end.vertices, &self.camera.vertices[..t]);
         let contribution = path.contribution(&self.context);
         if contribution == Spectrum::ZERO {
             return None;
@@ -286,11 +287,15 @@ impl Connector<'_> {
             camera: self.camera_sums.at(self.camera.first + t - 1),
             next_event: end.next_event,
         };
+        let (z, y) = (path.z(), path.y());
+        let mut arrives = self.context.root_visibility(z, y);
+        let scene = self.context.job.scene;
+        if scene.has_media() {
+            let guess = scene.guessed_edge(&z.locus, &y.locus, &self.context.wavelengths);
+            path.pass(&guess);
+            arrives *= scene.color().mean(guess.transmittance);
+        }
         let weight = self.weights.weight(&self.context, &path, &sums);
-        let [z, y] = [
-            &end.vertices[end.vertices.len() - 1],
-            &self.camera.vertices[t - 1],
-        ];
-        Some((contribution, weight, self.context.root_visibility(z, y)))
+        Some((contribution, weight, arrives))
     }
 }

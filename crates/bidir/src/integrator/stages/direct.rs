@@ -8,6 +8,7 @@
 
 use super::super::batch::enter;
 use super::super::{Batch, Link, Sample};
+use super::media::Passage;
 use super::trace::trace;
 use crate::bsdf::TransportMode;
 use crate::contribution::Term;
@@ -36,22 +37,24 @@ pub(in super::super) fn direct(job: &Job<'_>, batch: &mut Batch) {
     for (number, sample) in samples.iter().enumerate() {
         let context = sample.context(job);
         let walk = camera.get(number);
-        let mut add = |term, link| entries.push(enter(stats, (number, sample), term, link));
         for (i, vertex) in walk.vertices.iter().enumerate().skip(1) {
             if let Some(arrival) = Arrival::at(vertex)
                 && let Some(term) = hit(&context, &walk.vertices[..i], &arrival)
             {
-                add(term, Link::Walk);
+                entries.push(enter(stats, (number, sample), term, Link::Walk));
             }
             let connects = i + 2 <= context.job.settings.max_vertices() && !vertex.is_delta();
-            if connects && let Some((term, ends)) = next_event(&context, sample, vertex, i) {
-                add(term, Link::Connection(ends));
+            if connects && let Some(found) = next_event(&context, sample, vertex, i) {
+                let (term, ends, passage) = found;
+                let mut entry = enter(stats, (number, sample), term, Link::Connection(ends));
+                passage.settle(&mut entry, stats);
+                entries.push(entry);
             }
         }
         let escape = walk.escape.into_iter();
         for arrival in escape.flat_map(|escape| Arrival::of_escape(context.job.scene, escape)) {
             if let Some(term) = hit(&context, walk.vertices, &arrival) {
-                add(term, Link::Walk);
+                entries.push(enter(stats, (number, sample), term, Link::Walk));
             }
         }
     }
@@ -81,24 +84,32 @@ fn hit(context: &PathContext<'_>, before: &[Vertex], arrival: &Arrival) -> Optio
     })
 }
 
-/// The term that connects `vertex`, number `i` of its walk, with a light point, and the ends of its shadow ray.
+/// The term that connects `vertex`, number `i` of its walk, with a light point, the ends of its shadow ray,
+/// and the media between them.
 /// None: it is zero.
 fn next_event(
     context: &PathContext<'_>,
     sample: &Sample,
     vertex: &Vertex,
     i: usize,
-) -> Option<(Term, [Locus; 2])> {
+) -> Option<(Term, [Locus; 2], Passage)> {
     let at = |purpose| Dimension::at(i, purpose);
     let u_light = || sample.camera.get_1d(at(Purpose::NextEventLight));
     let u = sample.camera.get_2d(at(Purpose::NextEventPosition));
     let (light, x0) = sample_next_event(context, vertex, u_light, u)?;
     let ends = [x0.at.locus, vertex.locus];
-    let segment = Segment::between(&ends[0], &ends[1]);
+    let mut segment = Segment::between(&ends[0], &ends[1]);
     let turn = vertex.turn(vertex.wo, -segment.w);
     let contribution = arriving(context, &turn, light, &x0, &segment);
     if contribution == Spectrum::ZERO {
         return None;
+    }
+    let passage = Passage::between(context, || {
+        let media = context.job.scene.light_media(light);
+        [ends[0].within(media), ends[1]]
+    });
+    if let Some(edge) = passage.edge() {
+        segment.pass(edge);
     }
     let p = if context.job.scene.light(light).is_delta() {
         0.0
@@ -111,7 +122,7 @@ fn next_event(
         contribution,
         weight: context.job.settings.mis.weight_of_two(x0.pdf, p),
     };
-    Some((term, ends))
+    Some((term, ends, passage))
 }
 
 /// L_e · G · scatter · β / q: the light of the light point x_0, drawn with density q, that arrives by the

@@ -3,6 +3,7 @@
 
 use super::super::batch::enter;
 use super::super::{Batch, Link, Sample};
+use super::media::Passage;
 use super::trace::trace;
 use crate::contribution::Term;
 use crate::film::SplatPlace;
@@ -45,9 +46,13 @@ pub(in super::super) fn light_image(job: &Job<'_>, batch: &mut Batch, weighting:
                 continue;
             }
             let lens = lens_vertex(&context, sample, s);
-            let Some(image) = LightImage::new(&context, &walk.vertices[..s], &lens) else {
+            let Some(mut image) = LightImage::new(&context, &walk.vertices[..s], &lens) else {
                 continue;
             };
+            let passage = Passage::between(&context, || image.ends());
+            if let Some(edge) = passage.edge() {
+                image.path.pass(edge);
+            }
             let weight = match weighting {
                 Weighting::Alone => 1.0,
                 Weighting::Combined => {
@@ -60,7 +65,9 @@ pub(in super::super) fn light_image(job: &Job<'_>, batch: &mut Batch, weighting:
                 }
             };
             let (term, link) = image.term(sample, weight);
-            splats.push(enter(stats, (number, sample), term, link));
+            let mut entry = enter(stats, (number, sample), term, link);
+            passage.settle(&mut entry, stats);
+            splats.push(entry);
         }
     }
     trace(job.scene, splats, shadow_rays, stats);
@@ -75,7 +82,8 @@ pub(in super::super) fn lens_vertex(
 ) -> Vertex {
     let at = Dimension::at(s, Purpose::LightImageLens);
     let camera = context.job.view.camera();
-    Vertex::camera(&camera.sample_lens(|| sample.light.get_2d(at)))
+    let lens = camera.sample_lens(|| sample.light.get_2d(at));
+    Vertex::camera(&lens, context.job.medium)
 }
 
 /// A light vertex as a lens point of its own sees it, before visibility.
@@ -124,11 +132,15 @@ impl<'a> LightImage<'a> {
         })
     }
 
+    /// The ends of its shadow ray.
+    fn ends(&self) -> [Locus; 2] {
+        [self.path.z().locus, self.camera_end]
+    }
+
     /// Its term with this weight, and its link.
     fn term(&self, sample: &Sample, weight: f32) -> (Term, Link) {
         let s = self.path.light.len();
         let at = Dimension::at(s, Purpose::LightImagePixel);
-        let ends = [self.path.light[s - 1].locus, self.camera_end];
         let place = SplatPlace {
             raster: self.raster,
             u: sample.light.get_2d(at),
@@ -139,7 +151,7 @@ impl<'a> LightImage<'a> {
             contribution: self.contribution,
             weight,
         };
-        (term, Link::LightImage(ends, place))
+        (term, Link::LightImage(self.ends(), place))
     }
 }
 

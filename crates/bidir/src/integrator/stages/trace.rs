@@ -1,6 +1,7 @@
 //! Choosing connections, and the shadow rays of those that were chosen.
 
 use super::super::{Batch, Entry, Fate, Link};
+use super::media::settle_chosen;
 use crate::contribution::Contribution;
 use crate::path::Job;
 use crate::scene::{Scene, ShadowRays};
@@ -54,6 +55,9 @@ pub(in super::super) fn select(rule: &dyn Selector, batch: &mut Batch) {
 /// Traces the shadow rays of all entries for the samples' own pixels.
 #[inline(never)]
 pub(in super::super) fn shadow_rays(job: &Job<'_>, batch: &mut Batch) {
+    if job.scene.has_media() {
+        settle_chosen(job, batch);
+    }
     let Batch {
         entries,
         shadow_rays,
@@ -76,13 +80,6 @@ pub(super) fn trace(
     let traced = entries.iter_mut();
     let traced = traced.filter(|entry| entry.shadow_ray().is_some());
     for (entry, &transmittance) in traced.zip(transmittances) {
-        let strategy = entry.contribution.term.strategy;
-        stats.count_shadow_ray(strategy);
-        entry.contribution.transmittance = transmittance;
-        entry.fate = Fate::Added;
-        if transmittance <= 0.0 {
-            stats.count_blocked(strategy);
-            entry.fate = Fate::Blocked;
-        }
+        entry.arrive(transmittance, stats);
     }
 }

@@ -98,7 +98,8 @@ fn all_receivers() -> Vec<Receiver> {
         .chain([on_a_lamp, Vec3::ZERO, Vec3::splat(1e4)]);
     points
         .flat_map(|point| {
-            [Facing::Front(n), Facing::Front(-n), Facing::Both(n)]
+            let (front, back) = (Facing::Front(n), Facing::Front(-n));
+            [front, back, Facing::Both(n), Facing::Anywhere]
                 .map(|facing| Receiver { point, facing })
         })
         .collect()

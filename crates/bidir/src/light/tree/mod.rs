@@ -53,6 +53,8 @@ pub enum Facing {
     Front(Vec3),
     /// From both sides.
     Both(Vec3),
+    /// From all directions alike.
+    Anywhere,
 }
 
 impl Facing {
@@ -60,6 +62,7 @@ impl Facing {
     fn normal(self) -> Vec3 {
         match self {
             Self::Front(n) | Self::Both(n) => n,
+            Self::Anywhere => Vec3::ZERO,
         }
     }
 }

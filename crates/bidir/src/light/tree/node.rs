@@ -190,6 +190,7 @@ fn reception(facing: Facing, cos: Vec4, seen: &Angle) -> Vec4 {
     let cos = match facing {
         Facing::Front(_) => cos,
         Facing::Both(_) => cos.abs(),
+        Facing::Anywhere => return Vec4::ONE,
     };
     let least = Angle::of_cos(cos).less(seen).cos;
     let lit = least.max(Vec4::splat(GRAZING));

@@ -59,7 +59,6 @@ pub(super) fn read(context: &mut Context<'_>) -> Result<CameraSettings, Fault> {
         let span = camera.entity.span;
         context.unsupported(span, "a moving camera", "its first position is used")?;
     }
-    context.refuse_medium(camera.medium.outside.as_ref())?;
     let span = camera.entity.span;
     let default = CameraSettings::default_at(span, context, &camera.transforms);
     let mut reader = Reader::new(context, &camera.entity);

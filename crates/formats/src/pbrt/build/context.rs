@@ -5,7 +5,7 @@ use crate::files::Files;
 use crate::image::{self, Encoding, ImageData};
 use crate::import::{self, Content, Document};
 use crate::limits;
-use crate::pbrt::scene::{MediumReference, SceneDescription};
+use crate::pbrt::scene::SceneDescription;
 use crate::pbrt::transform::Transforms;
 use crate::ply::{self, PlyMesh};
 use crate::source::{Fault, SourceMap, Span};
@@ -53,15 +53,6 @@ impl Context<'_> {
     /// The map from the space of something in the world, at the first time, to where it goes.
     pub(super) fn place(&self, world_from_local: &Transforms) -> DAffine3 {
         self.layout.render_from_world() * world_from_local.start
-    }
-
-    /// Refuses a participating medium; vacuum is its substitute.
-    pub(super) fn refuse_medium(&mut self, medium: Option<&MediumReference>) -> Result<(), Fault> {
-        let refuse = |medium: &MediumReference| {
-            let substitute = "vacuum is used instead";
-            self.unsupported(medium.span, "a participating medium", substitute)
-        };
-        medium.map_or(Ok(()), refuse)
     }
 
     /// Reads a mesh, which `span` names.

@@ -24,7 +24,6 @@ pub(super) fn build(
         let message = "lights cannot move: the first position of the light is used";
         context.warn(span, message);
     }
-    context.refuse_medium(light.medium.outside.as_ref())?;
     let world_from_light = &light.transforms.start;
     let mut reader = Reader::new(context, &light.entity);
     let built = match light.entity.kind.as_str() {

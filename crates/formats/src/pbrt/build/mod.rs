@@ -14,6 +14,7 @@ mod imagemap;
 mod light;
 mod mapping;
 mod material;
+mod media;
 mod mesh;
 mod object;
 mod patches;
@@ -29,14 +30,15 @@ mod texture_class;
 use super::scene::{Entity, SceneDescription, ShapeDescription};
 use crate::error::Result;
 use crate::files::Files;
-use crate::import::{self, Gathered, LoadOptions, Loaded, SharedObject, Size, Survey};
+use crate::import::{self, Gathered, LoadOptions, Loaded, SharedObject, Size, Skin, Survey};
 use crate::source::{Fault, Span};
 use bidir::scene::{Emission, MaterialId};
 use bidir::shape::Shape;
 use context::Context;
 use emission::AreaEmission;
-use glam::DAffine3;
+use glam::{DAffine3, DVec3};
 use material::Materials;
+use media::Media;
 use shape::Geometry;
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -65,6 +67,7 @@ pub fn build(description: &SceneDescription, options: &LoadOptions) -> Result<Lo
 struct Builder<'a> {
     assembly: Assembly,
     textures: Textures<'a>,
+    media: Media,
     /// By index; None where there is no surface.
     materials: Vec<Option<MaterialId>>,
     /// The emission of the last shape.
@@ -93,9 +96,11 @@ impl<'a> Builder<'a> {
         let mut builder = Self {
             assembly: Assembly::new(context, settings, Some(lens.eye)),
             textures: Textures::new(description),
+            media: Media::default(),
             materials: Vec::new(),
             last_emission: None,
         };
+        builder.add_camera_medium(context, lens.eye)?;
         builder.add_materials(context)?;
         let from_world = [context.layout.render_from_world()];
         for shape in &description.shapes {
@@ -103,8 +108,20 @@ impl<'a> Builder<'a> {
         }
         builder.add_objects(context)?;
         builder.textures.check_unused(context)?;
+        builder.media.check_unused(context)?;
         builder.add_lights(context)?;
         Ok((builder.assembly, view))
+    }
+
+    /// Puts the medium of the camera where it is.
+    fn add_camera_medium(&mut self, context: &mut Context<'_>, eye: DVec3) -> Result<(), Fault> {
+        let camera = &context.document.camera;
+        let medium = camera.as_ref().and_then(|it| it.medium.outside.as_ref());
+        let builder = &mut self.assembly.builder;
+        let medium = self.media.find(context, builder, medium)?;
+        let eye = context.layout.render_from_world().transform_point3(eye);
+        builder.medium_at(eye.as_vec3(), medium);
+        Ok(())
     }
 
     fn add_materials(&mut self, context: &mut Context<'_>) -> Result<(), Fault> {
@@ -135,14 +152,23 @@ impl<'a> Builder<'a> {
         destination: Destination<'_>,
     ) -> Result<(), Fault> {
         let span = shape.entity.span;
-        refuse_motion_and_media(context, shape)?;
+        refuse_motion(context, shape)?;
         let Some((geometry, alpha)) = Geometry::read(context, &mut self.textures, shape)? else {
             return Ok(());
         };
-        let Some(&Some(material)) = self.materials.get(shape.material) else {
+        let builder = &mut self.assembly.builder;
+        let media = self.media.sides(context, builder, &shape.medium)?;
+        let material = self.materials.get(shape.material).copied().flatten();
+        if material.is_none() && !media.is_boundary() {
             return Ok(());
+        }
+        let skin = Skin {
+            material,
+            coverage: alpha.as_ref(),
+            media,
         };
         let emission = match &shape.area_light {
+            _ if material.is_none() => None,
             Some(entity) => Some(self.emission(context, entity)?),
             None => None,
         };
@@ -157,17 +183,14 @@ impl<'a> Builder<'a> {
                     let survey = &mut self.assembly.survey;
                     let placed = place_shape(&geometry, shape, place, survey)?;
                     let parts = self.emitting_parts(placed, emission)?;
-                    self.assembly
-                        .add_shape(parts, material, alpha.as_ref(), &span);
+                    self.assembly.add_shape(parts, &skin, &span);
                 }
             }
             Destination::Object(object) => {
                 let place = object.kept_from_own();
                 let survey = self.assembly.object_survey();
                 let shape = place_shape(&geometry, shape, &place, survey)?;
-                let alpha = alpha.as_ref();
-                self.assembly
-                    .add_to_object(object, shape, material, alpha, &span);
+                self.assembly.add_to_object(object, shape, &skin, &span);
             }
         }
         Ok(())
@@ -251,17 +274,13 @@ fn used_materials(description: &SceneDescription) -> BTreeSet<usize> {
         .collect()
 }
 
-/// Refuses the features of a shape that the renderer lacks.
-fn refuse_motion_and_media(
-    context: &mut Context<'_>,
-    shape: &ShapeDescription,
-) -> Result<(), Fault> {
+/// Refuses a shape that moves.
+fn refuse_motion(context: &mut Context<'_>, shape: &ShapeDescription) -> Result<(), Fault> {
     if shape.transforms.is_animated() {
         let span = shape.entity.span;
         context.unsupported(span, "a moving shape", "its first position is used")?;
     }
-    let medium = &shape.medium;
-    context.refuse_medium(medium.inside.as_ref().or(medium.outside.as_ref()))
+    Ok(())
 }
 
 /// The shape in the space of `place`.

@@ -140,12 +140,10 @@ pub(super) fn light_source(parser: &mut Parser, tokens: &mut Tokens<'_>) -> Done
     let defaults = Arc::clone(&parser.scope.state.defaults.light);
     let entity = parser.entity(tokens, &known::LIGHTS, &defaults)?;
     let transforms = placement(parser, entity.span)?;
-    let medium = parser.scope.state.medium.clone();
-    parser.scene.lights.push(LightDescription {
-        entity,
-        transforms,
-        medium,
-    });
+    parser
+        .scene
+        .lights
+        .push(LightDescription { entity, transforms });
     Ok(())
 }
 

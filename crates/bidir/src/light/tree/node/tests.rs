@@ -36,6 +36,7 @@ impl Flat {
         let arrives = match receiver.facing {
             Facing::Front(n) => n.dot(w),
             Facing::Both(n) => n.dot(w).abs(),
+            Facing::Anywhere => 1.0,
         };
         leaves.max(0.0) * arrives.max(0.0)
     }
@@ -51,12 +52,12 @@ fn emitters() -> impl Strategy<Value = Vec<Flat>> {
 }
 
 fn receiver() -> impl Strategy<Value = Receiver> {
-    (unit(), 0.0f32..4.0, unit(), any::<bool>()).prop_map(|(p, distance, n, both)| Receiver {
+    (unit(), 0.0f32..4.0, unit(), 0..3).prop_map(|(p, distance, n, kind)| Receiver {
         point: p * distance,
-        facing: if both {
-            Facing::Both(n)
-        } else {
-            Facing::Front(n)
+        facing: match kind {
+            0 => Facing::Front(n),
+            1 => Facing::Both(n),
+            _ => Facing::Anywhere,
         },
     })
 }

@@ -4,6 +4,7 @@ mod digest;
 mod film;
 mod lights;
 mod materials;
+mod media;
 mod places;
 mod refusals;
 mod relief;

@@ -122,11 +122,6 @@ fn unsupported_features_are_refused_by_name() {
         "s.pbrt:1:12: the integrator `mlt` is not supported; \
          with --lenient, `bdpt` is used instead",
     );
-    check_world(
-        "MediumInterface \"fog\" Shape \"sphere\"",
-        "s.pbrt:2:17: a participating medium is not supported; \
-         with --lenient, vacuum is used instead",
-    );
 }
 
 #[test]

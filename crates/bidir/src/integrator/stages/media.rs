@@ -1,0 +1,104 @@
+//! Shadow rays through media. A weight depends on all of the media that a ray goes through, which only the ray finds
+//! out: so each is traced before its term is weighed.
+//!
+//! A candidate has the weight of a guess, by which it is chosen. Its probability depends on guesses alone, and the
+//! estimate remains unbiased with the weight that the ray leads to (docs/derivations/media.md).
+
+use super::super::{Batch, Entry, Fate};
+use crate::locus::Locus;
+use crate::path::{Job, JoinedPath, PathContext, PathSums};
+use crate::scene::Edge;
+use crate::stats::Stats;
+
+/// A shadow ray, traced if it may go through media.
+pub(in super::super) enum Passage {
+    /// Not traced: the scene has no media.
+    Clear,
+    /// The media that it went through. None: something opaque is there.
+    Traced(Option<Edge>),
+}
+
+impl Passage {
+    /// The passage between two ends.
+    #[inline]
+    pub(in super::super) fn between(
+        context: &PathContext<'_>,
+        ends: impl FnOnce() -> [Locus; 2],
+    ) -> Self {
+        let scene = context.job.scene;
+        if scene.has_media() {
+            let [a, b] = ends();
+            Self::Traced(scene.edge(&a, &b, &context.wavelengths))
+        } else {
+            Self::Clear
+        }
+    }
+
+    /// The media, where there are any and something arrives.
+    #[inline]
+    pub(in super::super) fn edge(&self) -> Option<&Edge> {
+        match self {
+            Self::Traced(edge) => edge.as_ref(),
+            Self::Clear => None,
+        }
+    }
+
+    /// Notes in `entry`, to which it belongs, that it arrives, and multiplies its contribution by T; or that it does
+    /// not.
+    #[inline]
+    pub(super) fn settle(&self, entry: &mut Entry, stats: &mut Stats) {
+        let Self::Traced(edge) = self else { return };
+        if entry.fate != Fate::NotTraced {
+            return;
+        }
+        match edge {
+            Some(edge) => {
+                entry.contribution.term.contribution *= edge.transmittance;
+                entry.arrive(1.0, stats);
+            }
+            None => entry.arrive(0.0, stats),
+        }
+    }
+}
+
+/// Traces the shadow rays of the chosen candidates one by one, and weighs their terms again.
+pub(super) fn settle_chosen(job: &Job<'_>, batch: &mut Batch) {
+    let Batch {
+        samples,
+        camera,
+        light,
+        camera_sums,
+        light_sums,
+        weights,
+        candidates,
+        chosen,
+        entries,
+        stats,
+        ..
+    } = batch;
+    let first = entries.len() - chosen.len();
+    for (entry, chosen) in entries[first..].iter_mut().zip(&*chosen) {
+        let context = samples[entry.sample as usize].context(job);
+        let [z, y] = candidates[chosen.candidate as usize]
+            .vertices
+            .map(|i| i as usize);
+        let strategy = entry.contribution.term.strategy;
+        let [s, t] = [strategy.s, strategy.t].map(usize::from);
+        let (light, camera) = (
+            &light.vertices()[z + 1 - s..=z],
+            &camera.vertices()[y + 1 - t..=y],
+        );
+        let mut path = JoinedPath::connection(light, camera);
+        let passage = Passage::between(&context, || [path.z().locus, path.y().locus]);
+        let sums = PathSums {
+            light: light_sums.at(z),
+            camera: camera_sums.at(y),
+            next_event: None,
+        };
+        if let Some(edge) = passage.edge() {
+            path.pass(edge);
+            entry.contribution.term.weight = weights.weight(&context, &path, &sums);
+        }
+        passage.settle(entry, stats);
+    }
+}

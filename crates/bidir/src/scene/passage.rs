@@ -1,0 +1,333 @@
+//! Media along rays: the boundaries that a ray crosses, the light that is left, and the places where it scatters.
+//!
+//! A ray begins in the medium of its origin, and the last boundary that it crossed decides. Surfaces that are nothing
+//! but boundaries (`Presence::Boundary`) stop no ray.
+
+use super::{Chances, Scene, SurfaceHit};
+use crate::locus::{Locus, LocusKind};
+use crate::math::Vec3;
+use crate::medium::{Medium, MediumId, MediumScattering, MediumSides};
+use crate::spectrum::{Spectrum, Wavelengths};
+use accel::{Hit, Ray};
+use smallvec::SmallVec;
+use std::cell::RefCell;
+use std::cmp::Ordering;
+
+/// The place that a ray of a walk comes to.
+#[derive(Clone, Copy, Debug)]
+pub enum Interaction {
+    /// A point of a surface, and the media on its sides.
+    Surface(SurfaceHit, MediumSides),
+    /// A point where a medium scatters.
+    Medium(Locus, MediumScattering),
+    /// Infinity.
+    Escape,
+}
+
+/// A ray of a walk.
+#[derive(Clone, Copy, Debug)]
+pub struct Advance {
+    /// Its end.
+    pub interaction: Interaction,
+    /// T on the way there.
+    pub transmittance: Spectrum,
+}
+
+/// The media between two ends of a segment, a and b.
+#[derive(Clone, Copy, Debug)]
+pub struct Edge {
+    /// The part of light that arrives, in `[0, 1]`.
+    pub transmittance: Spectrum,
+    /// The factor of media in the density of b drawn from a: mean(T) on a surface; mean(σ_t T) in a medium, 1/m.
+    pub to_b: f32,
+    /// The same for a drawn from b.
+    pub to_a: f32,
+}
+
+/// A boundary of media that a ray crosses.
+#[derive(Clone, Copy, Debug)]
+struct Crossing {
+    /// The distance along the ray.
+    t: f32,
+    /// True where the ray leaves the inside of the shape.
+    leaves: bool,
+    from: MediumId,
+    into: MediumId,
+}
+
+/// The boundaries that a ray crosses, in order.
+#[derive(Debug)]
+struct Passage {
+    start: MediumId,
+    crossings: SmallVec<[Crossing; 8]>,
+}
+
+/// A part of a ray in one medium.
+#[derive(Clone, Copy, Debug)]
+struct Span {
+    medium: MediumId,
+    begin: f32,
+    end: f32,
+}
+
+impl Edge {
+    /// T / p, with p the factor of media in the density of b: the factor in the throughput of a walk from a that drew
+    /// the distance. Zero where it cannot come there.
+    #[inline]
+    pub(crate) fn walked(&self) -> Spectrum {
+        if self.to_b > 0.0 {
+            self.transmittance * (1.0 / self.to_b)
+        } else {
+            Spectrum::ZERO
+        }
+    }
+}
+
+impl Passage {
+    /// The passage of a ray that begins in `start` and ends at `end`.
+    fn new(start: MediumId, crossings: impl IntoIterator<Item = Crossing>, end: f32) -> Self {
+        let crossings = crossings.into_iter().filter(|crossing| crossing.t < end);
+        let mut crossings: SmallVec<_> = crossings.collect();
+        // Where two shapes touch, the one is left before the other is entered.
+        let order = |a: &Crossing, b: &Crossing| match a.t.total_cmp(&b.t) {
+            Ordering::Equal => b.leaves.cmp(&a.leaves),
+            order => order,
+        };
+        crossings.sort_by(order);
+        Self { start, crossings }
+    }
+
+    /// The parts up to `end`.
+    fn spans(&self, end: f32) -> impl Iterator<Item = Span> + '_ {
+        let begins = self.crossings.iter().map(|crossing| crossing.t);
+        let ends = begins.clone().chain([end]);
+        let media = self.crossings.iter().map(|crossing| crossing.into);
+        let parts = [0.0].into_iter().chain(begins).zip(ends);
+        let media = [self.start].into_iter().chain(media);
+        parts
+            .zip(media)
+            .map(|((begin, end), medium)| Span { medium, begin, end })
+    }
+
+    /// The medium at the end.
+    fn last(&self) -> MediumId {
+        self.crossings.last().map_or(self.start, |last| last.into)
+    }
+}
+
+impl Span {
+    /// σ_t times the length, where a unit of the ray is `unit` long.
+    fn depth(self, extinction: Spectrum, unit: f32) -> Spectrum {
+        let length = (self.end - self.begin) * unit;
+        // Not even infinitely much of nothing takes anything away.
+        extinction.map(|sigma| if sigma > 0.0 { sigma * length } else { 0.0 })
+    }
+}
+
+impl Scene {
+    /// True where rays may go through media.
+    #[inline]
+    pub fn has_media(&self) -> bool {
+        !self.media.is_empty()
+    }
+
+    /// All media.
+    pub fn media(&self) -> &[Medium] {
+        &self.media
+    }
+
+    /// The medium around everything.
+    pub fn around(&self) -> MediumId {
+        self.around
+    }
+
+    /// σ_t of a medium. Unit: 1/m.
+    pub(crate) fn extinction(&self, medium: MediumId, wavelengths: &Wavelengths) -> Spectrum {
+        let medium = medium.index().map(|index| &self.media[index]);
+        medium.map_or(Spectrum::ZERO, |medium| {
+            medium.extinction(self.color, wavelengths)
+        })
+    }
+
+    /// Follows a ray of a walk from `medium`, past some surfaces and through media by `chances`.
+    #[inline(never)]
+    pub(crate) fn advance(
+        &self,
+        ray: &Ray,
+        medium: MediumId,
+        chances: Chances<'_>,
+        wavelengths: &Wavelengths,
+    ) -> Advance {
+        let crossings = RefCell::new(SmallVec::<[Crossing; 8]>::new());
+        let cross = |hit: &Hit| crossings.borrow_mut().extend(self.crossing(ray, hit));
+        let hit = self.closest(ray, chances, cross);
+        let end = hit.map_or(f32::INFINITY, |hit| hit.t);
+        let passage = Passage::new(medium, crossings.into_inner(), end);
+        let [u_lane, u_depth] = chances.flight();
+        let lane = self.color.pick_lane(u_lane);
+        let mut left = -libm::log1pf(-u_depth);
+        let mut depth = Spectrum::ZERO;
+        for span in passage.spans(end) {
+            let extinction = self.extinction(span.medium, wavelengths);
+            let whole = span.depth(extinction, 1.0);
+            if left < whole[lane] {
+                let t = span.begin + left / extinction[lane];
+                let part = Span { end: t, ..span }.depth(extinction, 1.0);
+                return Advance {
+                    interaction: self.collide(ray, t, span.medium, wavelengths),
+                    transmittance: arriving(depth + part),
+                };
+            }
+            left -= whole[lane];
+            depth += whole;
+        }
+        let surface = |hit: Hit| {
+            let (_, primitive) = self.resolve(&hit);
+            let sides = self.surfaces[primitive.shape as usize].sides;
+            let media = sides.unwrap_or(MediumSides::all(passage.last()));
+            Interaction::Surface(self.surface_hit(ray, &hit), media)
+        };
+        Advance {
+            interaction: hit.map_or(Interaction::Escape, surface),
+            transmittance: arriving(depth),
+        }
+    }
+
+    /// The interaction with a medium at `t` of a ray.
+    fn collide(
+        &self,
+        ray: &Ray,
+        t: f32,
+        medium: MediumId,
+        wavelengths: &Wavelengths,
+    ) -> Interaction {
+        let Some(of_medium) = medium.index().map(|index| &self.media[index]) else {
+            return Interaction::Escape;
+        };
+        let point = ray.origin + ray.direction * t;
+        let scattering = of_medium.scattering(self.color, wavelengths);
+        Interaction::Medium(Locus::in_medium(point, medium), scattering)
+    }
+
+    /// The media between two ends, of which at most one is at infinity. None: something opaque is there, or nothing
+    /// arrives.
+    #[inline(never)]
+    pub fn edge(&self, a: &Locus, b: &Locus, wavelengths: &Wavelengths) -> Option<Edge> {
+        let ray = super::visibility::shadow_ray(a, b);
+        let start = if a.is_infinite() { b } else { a };
+        let unit = ray.direction.length();
+        let mut crossings = SmallVec::<[Crossing; 8]>::new();
+        let cross = |hit: &Hit| crossings.extend(self.crossing(&ray, hit));
+        let visible = self.visible_part(&ray, cross);
+        if visible <= 0.0 {
+            return None;
+        }
+        let passage = Passage::new(start.medium_toward(ray.direction), crossings, ray.t_max);
+        let depths = passage
+            .spans(ray.t_max)
+            .map(|span| span.depth(self.extinction(span.medium, wavelengths), unit));
+        let transmittance = arriving(depths.fold(Spectrum::ZERO, |sum, depth| sum + depth));
+        let edge = self.edge_of(transmittance, [a, b], wavelengths);
+        let arrives = edge.transmittance * visible;
+        (!arrives.is_black()).then_some(Edge {
+            transmittance: arrives,
+            ..edge
+        })
+    }
+
+    /// A guess at the media between two ends from those next to them: the thinner of both, all the way. Something
+    /// always arrives.
+    #[inline(never)]
+    pub(crate) fn guessed_edge(&self, a: &Locus, b: &Locus, wavelengths: &Wavelengths) -> Edge {
+        /// A boundary that is not known of may lie between.
+        const LEAST: f32 = 1e-3;
+        let (w, span) = match (a.is_infinite(), b.is_infinite()) {
+            (true, _) => (-a.point, f32::INFINITY),
+            (false, true) => (b.point, f32::INFINITY),
+            (false, false) => (b.point - a.point, a.point.distance(b.point)),
+        };
+        let [at_a, at_b] = [a.medium_toward(w), b.medium_toward(-w)]
+            .map(|medium| self.extinction(medium, wavelengths));
+        let depth = at_a.zip(at_b, |a, b| {
+            if a > 0.0 && b > 0.0 {
+                a.min(b) * span
+            } else {
+                0.0
+            }
+        });
+        let transmittance = arriving(depth).map(|lane| lane.max(LEAST));
+        self.edge_of(transmittance, [a, b], wavelengths)
+    }
+
+    /// The edge of which T is known.
+    #[inline(never)]
+    pub(crate) fn edge_of(
+        &self,
+        transmittance: Spectrum,
+        [a, b]: [&Locus; 2],
+        wavelengths: &Wavelengths,
+    ) -> Edge {
+        let density = |end: &Locus| match end.kind {
+            LocusKind::Medium => {
+                let extinction = self.extinction(end.media.outside, wavelengths);
+                self.color.mean(extinction * transmittance)
+            }
+            LocusKind::Surface | LocusKind::Space | LocusKind::Infinity => {
+                self.color.mean(transmittance)
+            }
+        };
+        Edge {
+            transmittance,
+            to_b: density(b),
+            to_a: density(a),
+        }
+    }
+
+    /// The boundary that a ray crosses at `hit`. None: the surface is none.
+    fn crossing(&self, ray: &Ray, hit: &Hit) -> Option<Crossing> {
+        let (_, primitive) = self.resolve(hit);
+        let sides = self.surfaces[primitive.shape as usize].sides?;
+        let leaves = self.surface_at(ray, hit).n_g.dot(ray.direction) > 0.0;
+        Some(Crossing {
+            t: hit.t,
+            leaves,
+            from: sides.toward(if leaves { -1.0 } else { 1.0 }),
+            into: sides.toward(if leaves { 1.0 } else { -1.0 }),
+        })
+    }
+
+    /// The medium at a point in space, as the boundaries around it say: the side of the nearest one along most of
+    /// some rays.
+    pub fn medium_at(&self, point: Vec3) -> MediumId {
+        self.enclosing(point).unwrap_or(self.around)
+    }
+
+    /// The same. None: no boundary is around it.
+    pub(super) fn enclosing(&self, point: Vec3) -> Option<MediumId> {
+        /// Far from axes and diagonals, along which people build.
+        const RAYS: [Vec3; 3] = [
+            Vec3::new(0.36, 0.48, 0.8),
+            Vec3::new(-0.6, 0.64, -0.48),
+            Vec3::new(0.28, -0.96, 0.0),
+        ];
+        if !self.has_media() {
+            return None;
+        }
+        let [a, b, c] = RAYS.map(|direction| {
+            let ray = Ray::new(point, direction);
+            let is_boundary = |hit: &Hit| {
+                let (_, primitive) = self.resolve(hit);
+                self.surfaces[primitive.shape as usize].sides.is_some()
+            };
+            let hit = self.bvh.closest(&ray, is_boundary);
+            let crossing = hit.and_then(|hit| self.crossing(&ray, &hit));
+            crossing.map(|crossing| crossing.from)
+        });
+        if a == b || a == c { a } else { b }
+    }
+}
+
+/// exp(-τ).
+fn arriving(depth: Spectrum) -> Spectrum {
+    depth.map(|depth| libm::expf(-depth))
+}

@@ -1,0 +1,303 @@
+//! Participating media: images that are known, and estimators that agree.
+
+use crate::common::statistics::{Replicates, WHOLE, check_agree, replicates};
+use crate::common::{
+    Shot, ShotBuilder, add_walls, builder, diffuse, emission, glass, narrow_camera, quad, sphere,
+};
+use bidir::driver::Settings;
+use bidir::integrator::IntegratorKind;
+use bidir::light::{InfiniteLight, Light, SpotLight};
+use bidir::math::{Affine3A, Vec3};
+use bidir::medium::{HenyeyGreenstein, Medium, MediumId, MediumSides};
+use bidir::path::PathSettings;
+use bidir::select::ShadowRays;
+use bidir::shape::{Orientation, Shape, Sphere};
+use bidir::spectrum::Rgb;
+
+/// The film's mean and its quarters.
+const QUARTERS: &[usize] = &[WHOLE, 4];
+const VACUUM: MediumId = MediumId::VACUUM;
+
+fn settings(integrator: IntegratorKind, max_depth: Option<u32>) -> Settings {
+    Settings {
+        path: PathSettings {
+            max_depth,
+            ..PathSettings::default()
+        },
+        ..Settings::new(integrator)
+    }
+}
+
+fn medium(absorption: Rgb, scattering: Rgb, g: f32) -> Medium {
+    let phase = HenyeyGreenstein::new(g).expect("a mean cosine");
+    Medium::homogeneous(absorption, scattering, phase).expect("valid coefficients")
+}
+
+/// Absorbs a little, scatters more, and the more so the bluer the light.
+fn fog() -> Medium {
+    medium([0.02, 0.05, 0.1], [0.1, 0.2, 0.4], 0.5)
+}
+
+/// Makes a ball the boundary of `inside`.
+fn add_ball(builder: &mut ShotBuilder, ball: Shape, outside: MediumId, inside: MediumId) {
+    builder.boundary(ball, MediumSides { outside, inside });
+}
+
+/// Fills everything with a medium.
+fn fill(builder: &mut ShotBuilder, medium: Medium) {
+    let medium = builder.medium(medium);
+    builder.medium_at(Vec3::ZERO, medium);
+}
+
+fn finish(builder: ShotBuilder) -> Shot {
+    builder.build().expect("the scene is valid")
+}
+
+/// The inside of a sphere that reflects half of what it receives and emits the rest.
+fn furnace() -> ShotBuilder {
+    let mut builder = builder(8, 0.0);
+    let wall = builder.material(diffuse([0.5; 3]));
+    let inside = Sphere::new(Affine3A::IDENTITY, 2.0, Orientation::Reversed);
+    builder.shape(Shape::Sphere(inside), wall, emission([0.5; 3]));
+    builder
+}
+
+fn furnace_full_of(g: f32) -> Shot {
+    let mut builder = furnace();
+    fill(&mut builder, medium([0.0; 3], [0.2, 0.5, 1.0], g));
+    finish(builder)
+}
+
+/// Three balls, one in the other, that absorb nothing.
+fn nested_furnace() -> Shot {
+    let mut builder = furnace();
+    let thin = builder.medium(medium([0.0; 3], [0.3, 0.4, 0.5], 0.0));
+    let thick = builder.medium(medium([0.0; 3], [2.0, 1.0, 0.5], 0.6));
+    add_ball(&mut builder, sphere(Vec3::ZERO, 1.6), VACUUM, thin);
+    add_ball(&mut builder, sphere(Vec3::ZERO, 1.0), thin, thick);
+    add_ball(&mut builder, sphere(Vec3::ZERO, 0.5), thick, VACUUM);
+    finish(builder)
+}
+
+#[track_caller]
+fn check_is(name: &str, result: &Replicates, expected: [f64; 3]) {
+    check_agree(name, result, &result.exactly(expected), QUARTERS);
+}
+
+#[track_caller]
+fn check_furnace(name: &str, shot: &Shot, integrator: IntegratorKind, passes: u64) {
+    let result = replicates(shot, &settings(integrator, None), passes);
+    check_is(&format!("{name}, {integrator}"), &result, [1.0; 3]);
+}
+
+#[test]
+fn a_furnace_full_of_fog_that_absorbs_nothing_has_radiance_one() {
+    for integrator in [IntegratorKind::Path, IntegratorKind::Bdpt] {
+        check_furnace("forward", &furnace_full_of(0.8), integrator, 2048);
+    }
+}
+
+#[test]
+fn nested_media_that_absorb_nothing_are_not_seen_in_a_furnace() {
+    for integrator in [IntegratorKind::Path, IntegratorKind::Lvc] {
+        check_furnace("nested", &nested_furnace(), integrator, 2048);
+    }
+}
+
+/// A lamp behind one metre of a liquid that only absorbs.
+fn slab() -> Shot {
+    let camera = narrow_camera(Vec3::new(0.0, 0.0, -3.0), 8, 0.05);
+    let mut builder = ShotBuilder::new(camera, 8);
+    let wall = builder.material(diffuse([0.0; 3]));
+    let lamp = quad(Vec3::new(-1.0, -1.0, 2.0), Vec3::Y * 2.0, Vec3::X * 2.0);
+    builder.shape(Shape::Mesh(lamp), wall, emission([1.0; 3]));
+    let inside = builder.medium(medium([1.0, 0.5, 2.0], [0.0; 3], 0.0));
+    let front = quad(Vec3::new(-5.0, -5.0, 0.0), Vec3::Y * 10.0, Vec3::X * 10.0);
+    let back = quad(Vec3::new(-5.0, -5.0, 1.0), Vec3::X * 10.0, Vec3::Y * 10.0);
+    for side in [front, back] {
+        let outside = VACUUM;
+        builder.boundary(Shape::Mesh(side), MediumSides { outside, inside });
+    }
+    finish(builder)
+}
+
+#[track_caller]
+fn check_slab(integrator: IntegratorKind, passes: u64) {
+    // Beer and Lambert; the camera sees the slab at up to 4° from its normal, 0.1 % more of it in the mean.
+    let expected = [1.0, 0.5, 2.0].map(|depth: f64| libm::exp(-depth));
+    let result = replicates(&slab(), &settings(integrator, Some(3)), passes);
+    check_is(&integrator.to_string(), &result, expected);
+}
+
+#[test]
+fn a_slab_lets_through_an_exponential_of_its_depth() {
+    check_slab(IntegratorKind::Path, 4096);
+    check_slab(IntegratorKind::Bdpt, 4096);
+}
+
+/// A room with a lamp in the ceiling.
+fn room() -> ShotBuilder {
+    let mut builder = builder(8, 0.0);
+    let wall = builder.material(diffuse([0.7, 0.6, 0.5]));
+    add_walls(&mut builder, wall);
+    let lamp = quad(Vec3::new(-0.7, 1.9, -0.5), Vec3::X * 1.4, Vec3::Z);
+    builder.shape(Shape::Mesh(lamp), wall, emission([6.0, 5.0, 4.0]));
+    builder
+}
+
+fn foggy_room() -> Shot {
+    let mut builder = room();
+    fill(&mut builder, fog());
+    finish(builder)
+}
+
+/// A world and an estimator in it.
+struct World<'a> {
+    name: &'a str,
+    shot: Shot,
+    bdpt: Replicates,
+}
+
+impl<'a> World<'a> {
+    fn new(name: &'a str, shot: Shot, passes: u64) -> Self {
+        let bdpt = replicates(&shot, &settings(IntegratorKind::Bdpt, Some(5)), passes);
+        Self { name, shot, bdpt }
+    }
+
+    /// Checks that another estimator agrees with it.
+    #[track_caller]
+    fn check(&self, integrator: IntegratorKind, rule: ShadowRays, passes: u64) {
+        let mut settings = settings(integrator, Some(5));
+        settings.shadow_rays = rule;
+        let other = replicates(&self.shot, &settings, passes);
+        let name = format!("{}: {integrator} by {rule}", self.name);
+        check_agree(&name, &other, &self.bdpt, QUARTERS);
+    }
+}
+
+#[test]
+fn estimators_agree_in_a_room_full_of_fog() {
+    let world = World::new("fog", foggy_room(), 1024);
+    world.check(IntegratorKind::Lvc, ShadowRays::Budget(2), 1024);
+    world.check(IntegratorKind::Bdpt, ShadowRays::PerPair, 1536);
+}
+
+/// Comparisons that need millions of samples.
+mod statistics {
+    use super::*;
+
+    const ALL: ShadowRays = ShadowRays::All;
+
+    #[test]
+    #[ignore = "statistics: .ci/run statistics"]
+    fn every_estimator_knows_fog_in_a_furnace() {
+        for (name, g) in [("backward", -0.5), ("isotropic", 0.0), ("forward", 0.8)] {
+            let shot = furnace_full_of(g);
+            check_furnace(name, &shot, IntegratorKind::Path, 16384);
+            check_furnace(name, &shot, IntegratorKind::Bdpt, 4096);
+            check_furnace(name, &shot, IntegratorKind::Lvc, 4096);
+        }
+        check_furnace("nested", &nested_furnace(), IntegratorKind::Bdpt, 2048);
+    }
+
+    #[test]
+    #[ignore = "statistics: .ci/run statistics"]
+    fn the_light_tracer_knows_media() {
+        check_slab(IntegratorKind::Light, 131072);
+        check_slab(IntegratorKind::Lvc, 8192);
+    }
+
+    #[test]
+    #[ignore = "statistics: .ci/run statistics"]
+    fn the_path_tracer_and_all_rules_agree_in_fog() {
+        let world = World::new("fog", foggy_room(), 2048);
+        world.check(IntegratorKind::Path, ALL, 8192);
+        world.check(IntegratorKind::Lvc, ALL, 2048);
+        world.check(IntegratorKind::Bdpt, ShadowRays::Budget(2), 2048);
+        world.check(IntegratorKind::Bdpt, ShadowRays::RayRoulette(0.1), 2048);
+        world.check(IntegratorKind::Bdpt, ShadowRays::PerLightVertex, 2048);
+    }
+
+    /// The lamp stands in a bubble: without it, next-event estimation would have no variance.
+    #[test]
+    #[ignore = "statistics: .ci/run statistics"]
+    fn estimators_agree_on_a_spot_light_in_fog() {
+        let mut builder = builder(8, 0.0);
+        let wall = builder.material(diffuse([0.7, 0.6, 0.5]));
+        add_walls(&mut builder, wall);
+        let lamp = Vec3::new(-1.0, 1.0, 0.5);
+        let axis = Vec3::new(1.0, -0.8, 0.2).normalize();
+        let angles = [20.0, 30.0].map(f32::to_radians);
+        let spot = SpotLight::new(lamp, axis, [20.0, 25.0, 30.0], angles);
+        builder.light(Light::Spot(spot));
+        let around = builder.medium(fog());
+        builder.medium_at(Vec3::ZERO, around);
+        add_ball(&mut builder, sphere(lamp, 0.3), around, VACUUM);
+        let world = World::new("spot", finish(builder), 4096);
+        world.check(IntegratorKind::Path, ALL, 40960);
+        world.check(IntegratorKind::Lvc, ShadowRays::Budget(2), 4096);
+    }
+
+    /// The camera is in no medium, so that light subpaths do not come near to it.
+    #[test]
+    #[ignore = "statistics: .ci/run statistics"]
+    fn estimators_agree_on_rough_glass_full_of_ink() {
+        let mut builder = room();
+        let rough = builder.material(glass(0.4));
+        let inside = builder.medium(medium([2.0, 0.5, 0.1], [0.2, 0.3, 0.4], -0.3));
+        let ball = builder.shape(sphere(Vec3::new(-0.4, -0.5, 0.7), 0.7), rough, None);
+        let outside = VACUUM;
+        builder.sides(ball, MediumSides { outside, inside });
+        let world = World::new("ink", finish(builder), 4096);
+        world.check(IntegratorKind::Path, ALL, 16384);
+        world.check(IntegratorKind::Light, ALL, 16384);
+        world.check(IntegratorKind::Lvc, ShadowRays::PerPair, 4096);
+    }
+
+    #[test]
+    #[ignore = "statistics: .ci/run statistics"]
+    fn estimators_agree_on_a_cloud_under_a_sky() {
+        let mut builder = builder(8, 0.0);
+        let ground = builder.material(diffuse([0.5; 3]));
+        let floor = quad(Vec3::new(-6.0, -1.2, -6.0), Vec3::Z * 12.0, Vec3::X * 12.0);
+        builder.shape(Shape::Mesh(floor), ground, None);
+        builder.light(Light::Infinite(InfiniteLight::constant([1.0, 1.2, 1.5])));
+        // Lanes of 1 : 4 : 16.
+        let cloud = builder.medium(medium([0.02, 0.08, 0.32], [0.18, 0.72, 2.88], 0.3));
+        add_ball(
+            &mut builder,
+            sphere(Vec3::new(0.0, 0.1, 0.6), 0.8),
+            VACUUM,
+            cloud,
+        );
+        let world = World::new("cloud", finish(builder), 2048);
+        world.check(IntegratorKind::Path, ALL, 2048);
+        world.check(IntegratorKind::Lvc, ShadowRays::Budget(2), 2048);
+    }
+
+    #[test]
+    #[ignore = "statistics: .ci/run statistics"]
+    fn estimators_agree_with_the_camera_and_a_lamp_in_media_of_their_own() {
+        let mut builder = room();
+        let [near, far] =
+            [medium([0.1, 0.2, 0.3], [0.4; 3], 0.7), fog()].map(|medium| builder.medium(medium));
+        add_ball(
+            &mut builder,
+            sphere(Vec3::new(0.0, 0.0, -1.8), 0.15),
+            VACUUM,
+            near,
+        );
+        add_ball(
+            &mut builder,
+            sphere(Vec3::new(0.8, -0.4, 0.8), 0.7),
+            VACUUM,
+            far,
+        );
+        let material = builder.material(diffuse([0.3; 3]));
+        let bulb = sphere(Vec3::new(0.8, -0.4, 0.8), 0.2);
+        builder.shape(bulb, material, emission([9.0, 8.0, 7.0]));
+        let world = World::new("islands", finish(builder), 2048);
+        world.check(IntegratorKind::Path, ALL, 4096);
+        world.check(IntegratorKind::Lvc, ShadowRays::PerPair, 2048);
+    }
+}

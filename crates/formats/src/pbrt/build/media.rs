@@ -1,0 +1,147 @@
+//! Participating media, and which of them are on the sides of shapes.
+
+use super::color::{self, Purpose};
+use super::context::Context;
+use super::reader::Reader;
+use crate::pbrt::lexer::shorten;
+use crate::pbrt::parameters::ParameterType;
+use crate::pbrt::scene::{MediumDescription, MediumInterface, MediumReference};
+use crate::source::Fault;
+use bidir::medium::{HenyeyGreenstein, Medium, MediumId, MediumSides};
+use bidir::scene::SceneBuilder;
+use bidir::spectrum::Rgb;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// The media of a scene that something lies in.
+#[derive(Default)]
+pub(super) struct Media {
+    built: BTreeMap<Arc<str>, MediumId>,
+}
+
+impl Media {
+    /// The media on both sides of a shape.
+    pub(super) fn sides(
+        &mut self,
+        context: &mut Context<'_>,
+        builder: &mut SceneBuilder,
+        interface: &MediumInterface,
+    ) -> Result<MediumSides, Fault> {
+        let mut find = |of: &Option<_>| self.find(context, builder, of.as_ref());
+        Ok(MediumSides {
+            outside: find(&interface.outside)?,
+            inside: find(&interface.inside)?,
+        })
+    }
+
+    /// A medium by name, which is built when it is first asked for. Without a name it is the vacuum.
+    pub(super) fn find(
+        &mut self,
+        context: &mut Context<'_>,
+        builder: &mut SceneBuilder,
+        reference: Option<&MediumReference>,
+    ) -> Result<MediumId, Fault> {
+        let Some(MediumReference { name, span }) = reference else {
+            return Ok(MediumId::VACUUM);
+        };
+        if let Some(&known) = self.built.get(name) {
+            return Ok(known);
+        }
+        let media = &context.document.media;
+        let Some(medium) = media.iter().find(|medium| medium.name == **name) else {
+            let message = format!("the medium `{}` is not defined", shorten(name));
+            let names = media.iter().map(|medium| medium.name.as_str());
+            return Err(Fault::scene(*span, message).with_nearest(name, names));
+        };
+        let built = read(context, medium)?;
+        let built = built.map_or(MediumId::VACUUM, |medium| builder.medium(medium));
+        self.built.insert(Arc::clone(name), built);
+        Ok(built)
+    }
+
+    /// Checks the media that nothing lies in.
+    pub(super) fn check_unused(&self, context: &mut Context<'_>) -> Result<(), Fault> {
+        for medium in &context.document.media {
+            if !self.built.contains_key(medium.name.as_str()) {
+                context.unused(|context| read(context, medium))?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Reads a medium. None: its kind is not supported.
+fn read(context: &mut Context<'_>, medium: &MediumDescription) -> Result<Option<Medium>, Fault> {
+    let unit = context.layout.space.unit as f32;
+    let mut reader = Reader::new(context, &medium.entity);
+    let span = reader.span();
+    if medium.entity.kind != "homogeneous" {
+        let what = format!("the medium type `{}`", medium.entity.kind);
+        (reader.context).unsupported(span, &what, "vacuum is used instead")?;
+        return Ok(None);
+    }
+    let medium = homogeneous(&mut reader)?;
+    reader.finish()?;
+    Ok(Some(medium.in_unit(unit)))
+}
+
+fn homogeneous(reader: &mut Reader<'_, '_>) -> Result<Medium, Fault> {
+    let [absorption, scattering] = coefficients(reader)?;
+    let scale = reader.float_within("scale", 1.0, [0.0, f32::MAX])?;
+    let g = reader.float_within("g", 0.0, [-1.0, 1.0])?;
+    refuse_emission(reader)?;
+    let fault = |message: &str| Fault::scene(reader.span(), message);
+    let phase = HenyeyGreenstein::new(g)
+        .ok_or_else(|| fault("the medium scatters in one direction alone: g is 1 or -1"))?;
+    let scaled = [absorption, scattering].map(|sigma| sigma.map(|lane| lane * scale));
+    Medium::homogeneous(scaled[0], scaled[1], phase)
+        .ok_or_else(|| fault("the coefficients of the medium are too large"))
+}
+
+/// σ_a and σ_s. Unit: 1 / the scene's unit of length.
+fn coefficients(reader: &mut Reader<'_, '_>) -> Result<[Rgb; 2], Fault> {
+    let given = [
+        color::read(reader, "sigma_a", Purpose::Unbounded)?,
+        color::read(reader, "sigma_s", Purpose::Unbounded)?,
+    ];
+    let mut preset = [[1.0; 3]; 2];
+    if let Some((name, span)) = reader.string("preset")? {
+        let known = PRESETS.iter().find(|(known, ..)| *known == name);
+        if let Some(&(_, scattering, absorption)) = known {
+            preset = [absorption, scattering];
+        } else {
+            let what = format!("the preset `{}`", shorten(name));
+            let substitute = "a medium of which both coefficients are 1 is used instead";
+            reader.context.unsupported(span, &what, substitute)?;
+        }
+    }
+    Ok([0, 1].map(|i| given[i].unwrap_or(preset[i])))
+}
+
+/// Refuses a medium that glows.
+fn refuse_emission(reader: &mut Reader<'_, '_>) -> Result<(), Fault> {
+    let emission = color::read(reader, "Le", Purpose::Unbounded)?;
+    reader.ignore(ParameterType::Float, "Lescale");
+    if emission.is_some_and(|emission| emission.iter().any(|&lane| lane > 0.0)) {
+        let span = reader.span();
+        let substitute = "the medium does not glow";
+        return (reader.context).unsupported(span, "light of a medium", substitute);
+    }
+    Ok(())
+}
+
+/// Reduced scattering and absorption of substances, in 1/mm \[Jensen01\].
+const PRESETS: [(&str, Rgb, Rgb); 12] = [
+    ("Apple", [2.29, 2.39, 1.97], [0.0030, 0.0034, 0.046]),
+    ("Chicken1", [0.15, 0.21, 0.38], [0.015, 0.077, 0.19]),
+    ("Chicken2", [0.19, 0.25, 0.32], [0.018, 0.088, 0.20]),
+    ("Cream", [7.38, 5.47, 3.15], [0.0002, 0.0028, 0.0163]),
+    ("Ketchup", [0.18, 0.07, 0.03], [0.061, 0.97, 1.45]),
+    ("Marble", [2.19, 2.62, 3.00], [0.0021, 0.0041, 0.0071]),
+    ("Potato", [0.68, 0.70, 0.55], [0.0024, 0.0090, 0.12]),
+    ("Skimmilk", [0.70, 1.22, 1.90], [0.0014, 0.0025, 0.0142]),
+    ("Skin1", [0.74, 0.88, 1.01], [0.032, 0.17, 0.48]),
+    ("Skin2", [1.09, 1.59, 1.79], [0.013, 0.070, 0.145]),
+    ("Spectralon", [11.6, 20.4, 14.9], [0.0; 3]),
+    ("Wholemilk", [2.55, 3.21, 3.77], [0.0011, 0.0024, 0.014]),
+];

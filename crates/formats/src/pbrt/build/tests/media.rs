@@ -1,0 +1,135 @@
+//! Participating media: coefficients, boundaries, the medium around everything, and what is refused.
+
+use super::*;
+use bidir::math::Vec3;
+use bidir::medium::MediumId;
+use bidir::spectrum::Wavelengths;
+
+const FOG: &str = "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\"";
+
+/// σ_t of the only medium of a scene.
+#[track_caller]
+fn extinction(parameters: &str) -> [f32; 3] {
+    let text = format!("{FOG} {parameters} MediumInterface \"fog\" \"\" Shape \"sphere\"");
+    let text = format!("Material \"interface\" {text}");
+    let scene = world(&text);
+    let [medium] = scene.media() else {
+        panic!("{} media", scene.media().len())
+    };
+    let lanes = medium.extinction(scene.color(), &Wavelengths::default());
+    [lanes[0], lanes[1], lanes[2]]
+}
+
+#[track_caller]
+fn check_extinction(parameters: &str, expected: [f32; 3]) {
+    let found = extinction(parameters);
+    let close = |(a, b): (&f32, f32)| (a - b).abs() <= 1e-5 * b;
+    assert!(
+        found.iter().zip(expected).all(close),
+        "{parameters}: {found:?}"
+    );
+}
+
+#[test]
+fn coefficients_are_read() {
+    check_extinction("", [2.0; 3]);
+    let both = "\"rgb sigma_a\" [.1 .2 .3] \"rgb sigma_s\" [1 2 3]";
+    check_extinction(both, [1.1, 2.2, 3.3]);
+    check_extinction(&format!("{both} \"float scale\" 2"), [2.2, 4.4, 6.6]);
+    let preset = "\"string preset\" \"Ketchup\"";
+    check_extinction(preset, [0.241, 1.04, 1.48]);
+    check_extinction(
+        &format!("{preset} \"rgb sigma_a\" [0 0 0]"),
+        [0.18, 0.07, 0.03],
+    );
+}
+
+#[test]
+fn coefficients_follow_the_unit_of_a_small_scene() {
+    // A thousandth of everything: lengths are kept in another unit, optical depths stay.
+    let text = "LookAt 0 0 -3e-6 0 0 0 0 1 0 Camera \"perspective\" WorldBegin \
+                MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"float scale\" 1e6 \
+                Material \"interface\" MediumInterface \"fog\" \"\" \
+                Shape \"sphere\" \"float radius\" 1e-6";
+    let scene = load_text(text, &STRICT).scene;
+    let unit = scene.space().unit as f32;
+    let found = scene.media()[0].extinction(scene.color(), &Wavelengths::default())[0];
+    assert!(
+        (found / (2e6 * unit) - 1.0).abs() < 1e-5,
+        "{found}, unit {unit}"
+    );
+}
+
+#[test]
+fn boundaries_enclose_media() {
+    let scene = world(&format!(
+        "{FOG} MediumInterface \"fog\" \"\" Material \"interface\" Shape \"sphere\""
+    ));
+    assert_ne!(scene.medium_at(Vec3::ZERO), MediumId::VACUUM);
+    assert_eq!(scene.medium_at(Vec3::splat(2.0)), MediumId::VACUUM);
+    assert_eq!(scene.around(), MediumId::VACUUM);
+}
+
+#[test]
+fn an_interface_between_equal_media_is_nothing() {
+    let scene = world(&format!(
+        "{FOG} MediumInterface \"fog\" \"fog\" Material \"interface\" Shape \"sphere\""
+    ));
+    assert_eq!(scene.unique_primitives(), 0);
+}
+
+#[test]
+fn the_medium_of_a_camera_outside_all_boundaries_is_around_everything() {
+    let scene = |shape: &str| {
+        let text = format!(
+            "{FOG} MediumInterface \"\" \"fog\" Camera \"perspective\" WorldBegin \
+             LightSource \"infinite\" Material \"interface\" {shape}"
+        );
+        load_text(&text, &STRICT)
+    };
+    let open = scene("MediumInterface \"\" \"\" Shape \"disk\"");
+    assert_ne!(open.scene.around(), MediumId::VACUUM);
+    let [warning] = &open.warnings[..] else {
+        panic!("{:?}", open.warnings)
+    };
+    assert!(warning.contains("does not arrive"), "{warning}");
+    let closed = scene("MediumInterface \"fog\" \"\" Shape \"sphere\"");
+    assert_eq!(closed.scene.around(), MediumId::VACUUM);
+    assert_eq!(closed.warnings, [""; 0]);
+}
+
+#[test]
+fn media_that_make_no_sense_are_refused() {
+    check_world(
+        &format!("{FOG} MediumInterface \"frog\" Shape \"sphere\""),
+        "s.pbrt:2:67: the medium `frog` is not defined; did you mean `fog`?",
+    );
+    check_world(
+        &format!("{FOG} \"float g\" 1 MediumInterface \"fog\" \"\" Shape \"sphere\""),
+        "s.pbrt:2:37: the medium scatters in one direction alone: g is 1 or -1",
+    );
+    check_world(
+        &format!("{FOG} \"float scale\" -1"),
+        "s.pbrt:2:65: `scale` is -1, but must be at least 0",
+    );
+}
+
+#[test]
+fn media_of_other_kinds_are_named() {
+    check_world(
+        "MakeNamedMedium \"smoke\" \"string type\" \"cloud\" MediumInterface \"smoke\" \"\" \
+         Shape \"sphere\"",
+        "s.pbrt:2:39: the medium type `cloud` is not supported; \
+         with --lenient, vacuum is used instead",
+    );
+    check_world(
+        &format!("{FOG} \"rgb Le\" [1 1 1] MediumInterface \"fog\" \"\" Shape \"sphere\""),
+        "s.pbrt:2:37: light of a medium is not supported; \
+         with --lenient, the medium does not glow",
+    );
+    check_world(
+        &format!("{FOG} \"string preset\" \"Coke\" MediumInterface \"fog\" \"\" Shape \"sphere\""),
+        "s.pbrt:2:67: the preset `Coke` is not supported; \
+         with --lenient, a medium of which both coefficients are 1 is used instead",
+    );
+}
