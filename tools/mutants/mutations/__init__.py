@@ -5,6 +5,7 @@ An entry is (name, file, old text, new text, test). The old text occurs exactly 
 
 from .laboratory import LABORATORY
 from .materials import MATERIALS
+from .media import MEDIA
 from .paths import PATHS
 from .pictures import PICTURES
 from .principled import PRINCIPLED
@@ -12,4 +13,5 @@ from .scenes import SCENES
 from .textures import TEXTURES
 from .views import VIEWS
 
-MUTATIONS = PATHS + PICTURES + SCENES + MATERIALS + PRINCIPLED + TEXTURES + VIEWS + LABORATORY
+MUTATIONS = (PATHS + PICTURES + SCENES + MATERIALS + MEDIA + PRINCIPLED + TEXTURES + VIEWS
+             + LABORATORY)

@@ -24,6 +24,11 @@ def analytic(filter_):
     return ("bidir", SUITE, "analytic::" + filter_)
 
 
+def media(filter_):
+    """Tests of fog and liquids."""
+    return ("bidir", SUITE, "media::" + filter_)
+
+
 def materials(filter_):
     """Tests of estimators against each other on every material."""
     return ("bidir", SUITE, "materials::" + filter_)
