@@ -92,7 +92,8 @@ impl FirstSurface {
     fn find(job: &Job<'_>, batch: &mut Batch) -> Option<Self> {
         let sample = &batch.samples[0];
         let context = sample.context(job);
-        if batch.camera.count() > 0 {
+        // A walk may scatter in a medium before it.
+        if batch.camera.count() > 0 && !job.scene.has_media() {
             let surface = batch.camera.get(0).vertices.get(1)?;
             return Some(Self::new(&context, surface));
         }

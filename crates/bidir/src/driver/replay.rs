@@ -8,7 +8,7 @@ use crate::contribution::{Contribution, Term};
 use crate::film::{FilmSettings, SplatPlace};
 use crate::integrator::{Batch, Entry, Fate, Link, Sample};
 use crate::locus::Locus;
-use crate::path::{Job, Strategy, Subpath};
+use crate::path::{Job, PathContext, Strategy, Subpath};
 use crate::select::Selector;
 use crate::spectrum::Spectrum;
 
@@ -73,7 +73,8 @@ impl Replay {
         selector: &dyn Selector,
     ) -> Self {
         let certain = batch.entries.len() - batch.chosen.len();
-        let term = |entry: &Entry| ReplayedTerm::new(job, entry, None);
+        let context = batch.samples[0].context(job);
+        let term = |entry: &Entry| ReplayedTerm::new(&context, entry, None);
         let mut terms: Vec<_> = batch.entries[..certain].iter().map(term).collect();
         let probs = selector.probabilities(&batch.candidates);
         for ((candidate, entry), prob) in batch.connections().zip(probs) {
@@ -82,7 +83,7 @@ impl Replay {
                 prob,
             };
             let entry = entry.copied().unwrap_or_else(|| batch.untraced(candidate));
-            terms.push(ReplayedTerm::new(job, &entry, Some(selection)));
+            terms.push(ReplayedTerm::new(&context, &entry, Some(selection)));
         }
         let unoffered = batch.unoffered.iter().map(|other| batch.untraced(other));
         terms.extend(unoffered.map(|entry| term(&entry)));
@@ -143,9 +144,21 @@ impl Replay {
 }
 
 impl ReplayedTerm {
-    fn new(job: &Job<'_>, entry: &Entry, selection: Option<Selection>) -> Self {
-        let (scene, ends) = (job.scene, entry.link.ends());
-        let transmittance = ends.map_or(1.0, |[a, b]| scene.transmittance(a, b));
+    fn new(context: &PathContext<'_>, entry: &Entry, selection: Option<Selection>) -> Self {
+        let (job, ends) = (&context.job, entry.link.ends());
+        let mut term = entry.contribution.term;
+        let transmittance = match ends {
+            None => 1.0,
+            Some([a, b]) if job.scene.has_media() => {
+                let edge = job.scene.edge(a, b, &context.wavelengths);
+                // Rays that were traced have put T into their terms.
+                if let (Fate::NotTraced, Some(edge)) = (entry.fate, &edge) {
+                    term.contribution *= edge.transmittance;
+                }
+                f32::from(edge.is_some())
+            }
+            Some([a, b]) => job.scene.transmittance(a, b),
+        };
         let (landing, scale) = match &entry.link {
             Link::Walk | Link::Connection(_) => (None, 1.0),
             Link::LightImage(_, place) => {
@@ -158,7 +171,7 @@ impl ReplayedTerm {
             Fate::NotTraced | Fate::Blocked | Fate::Dropped => Spectrum::ZERO,
         };
         Self {
-            term: entry.contribution.term,
+            term,
             fate: entry.fate,
             ends: ends.copied(),
             selection,

@@ -1,7 +1,7 @@
 //! The samples in flight, and what each stage leaves for the next: arrays that the next batch uses again.
 
 use super::cache::{CachedEnd, LightCache};
-use super::stages::{Passage, lens_vertex};
+use super::stages::{ShadowPassage, lens_vertex};
 use super::{Entry, Fate, Link};
 use crate::contribution::{Term, is_summable};
 use crate::path::{
@@ -191,8 +191,8 @@ impl Batch {
         let passage = entry
             .link
             .ends()
-            .map(|ends| Passage::between(context, || *ends));
-        let edge = passage.as_ref().and_then(Passage::edge);
+            .map(|ends| ShadowPassage::between(context, || *ends));
+        let edge = passage.as_ref().and_then(ShadowPassage::edge);
         let mut shares = |mut path: JoinedPath<'_>| {
             if let Some(edge) = edge {
                 path.pass(edge);

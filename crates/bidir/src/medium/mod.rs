@@ -14,7 +14,7 @@
 //! means over lanes: it draws its distance by one lane, each as likely as others, so that the density is one
 //! function of the path, from whichever end it is walked (docs/derivations/media.md).
 //!
-//! The medium is told by places: every [`Locus`](crate::locus::Locus) has one on each side.
+//! Places name media: every [`Locus`](crate::locus::Locus) has one on each side.
 
 mod phase;
 
@@ -88,11 +88,14 @@ pub struct Medium {
 }
 
 impl Medium {
-    /// A medium of these coefficients, σ_a and σ_s, in 1/m. None: one of them is negative or not finite.
+    /// A medium of these coefficients, σ_a and σ_s, in 1/m. None: one of them is negative, or σ_t is not finite.
     pub fn homogeneous(absorption: Rgb, scattering: Rgb, phase: HenyeyGreenstein) -> Option<Self> {
-        let mut all = absorption.iter().chain(&scattering);
-        let is_valid = all.all(|sigma| (0.0..=f32::MAX).contains(sigma));
-        is_valid.then_some(Self {
+        let valid = 0.0..=f32::MAX;
+        let mut pairs = absorption.iter().zip(&scattering);
+        let is_valid = |(a, s): (&f32, &f32)| {
+            valid.contains(a) && valid.contains(s) && valid.contains(&(a + s))
+        };
+        pairs.all(is_valid).then_some(Self {
             absorption,
             scattering,
             phase,
@@ -116,17 +119,6 @@ impl Medium {
             coefficient,
             albedo: coefficient.zip(extinction, part),
             phase: self.phase,
-        }
-    }
-
-    /// The same medium in a space whose unit of length is `unit` times that of its own.
-    #[must_use]
-    pub fn in_unit(self, unit: f32) -> Self {
-        let scale = |sigma: f32| sigma * unit;
-        Self {
-            absorption: self.absorption.map(scale),
-            scattering: self.scattering.map(scale),
-            ..self
         }
     }
 }

@@ -26,7 +26,7 @@ impl HenyeyGreenstein {
 
     /// p of light that arrives from `wo` and leaves to `wi`, or the other way round; both unit, away from the vertex.
     /// It is the density of [`sample`](Self::sample) too.
-    #[inline(never)] // So that code for surfaces is as if it were not there.
+    #[inline(never)] // Out of line, so that code for surfaces stays small.
     pub fn eval(self, wo: Vec3, wi: Vec3) -> f32 {
         let g = self.g;
         // (1 - g)² + 2 g (1 - cosθ), in which nothing cancels where both are small.

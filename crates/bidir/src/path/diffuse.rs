@@ -58,8 +58,8 @@ impl DiffuseEnd {
     };
 
     /// `vertex` of a walk of `mode`, with the sums there, which hold for all of its connections. [None](Self::NONE)
-    /// where it is not diffuse, where nothing is scattered, where there are media, or where weights are not those of the balance heuristic
-    /// with one roulette for paths of any length.
+    /// where it is not diffuse, where nothing is scattered, where the scene has media, or where weights are not those
+    /// of the balance heuristic with one roulette for paths of any length.
     pub(super) fn new(
         context: &PathContext<'_>,
         vertex: &Vertex,

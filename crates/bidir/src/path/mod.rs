@@ -8,7 +8,8 @@
 //!     light subpath, walked →     link     ← walked, camera subpath
 //! ```
 //!
-//! - Densities are **area densities**, 1/m², but for x_0 on a light at infinity: solid angle, 1/sr.
+//! - Densities are **area densities**, 1/m², but for vertices in media, 1/m³, and x_0 on a light at infinity: solid
+//!   angle, 1/sr.
 //! - `beta` of a vertex is the throughput up to it, without the scattering at it, divided by the
 //!   density of drawing it.
 //! - s = 0: the camera subpath hits a light. s = 1: next-event estimation, with a light point of
@@ -52,7 +53,6 @@ pub use vertex::{Scattering, Vertex};
 pub use walk::{camera_subpath, light_subpath};
 
 use crate::guide::Guide;
-use crate::math::Vec2;
 use crate::medium::MediumId;
 use crate::scene::Scene;
 use crate::spectrum::Wavelengths;
@@ -133,13 +133,12 @@ impl<'a> Job<'a> {
     }
 }
 
-/// The medium around the camera; around everything where it is at infinity.
+/// The medium around the camera. One of parallel rays has that of its middle all over.
 pub fn camera_medium(scene: &Scene, view: &View) -> MediumId {
-    let lens = view.camera().sample_lens(|| Vec2::splat(0.5)).locus;
-    if lens.is_infinite() {
-        scene.around()
+    if scene.has_media() {
+        scene.medium_at(view.camera().pose().origin)
     } else {
-        scene.medium_at(lens.point)
+        MediumId::VACUUM
     }
 }
 

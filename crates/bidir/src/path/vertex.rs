@@ -1,8 +1,8 @@
 //! Vertices: f = Π scatter · Π G over geometric cosines, one function of the path, whichever end a
 //! walk began at [Veach97, §5.3]. Here are a vertex's data; `scatter` and G (`segment`) stand beside it.
 //!
-//! `scatter` is in 1/sr at a surface; densities are per area, 1/m² (solid angle, 1/sr, for a light
-//! at infinity). Visibility and roulette are no part of a vertex.
+//! `scatter` is in 1/sr at a surface, in 1/(m sr) in a medium; densities are per area, 1/m² (per volume, 1/m³, in
+//! a medium; solid angle, 1/sr, for a light at infinity). Visibility and roulette are no part of a vertex.
 
 use super::{PathContext, Segment};
 use crate::bsdf::Bsdf;
@@ -216,13 +216,14 @@ impl Vertex {
         Receiver { point, facing }
     }
 
-    /// True if all scattering is a Dirac distribution, so that nothing can connect here.
+    /// True if all scattering is a Dirac distribution, or a medium only absorbs: nothing can connect here.
     /// [`went_by_delta`](Self::went_by_delta) is about the walk's own step.
     #[inline]
     pub fn is_delta(&self) -> bool {
         match &self.scattering {
             Scattering::Surface(bsdf) => bsdf.is_delta(),
-            Scattering::Camera | Scattering::Light | Scattering::Medium(_) => false,
+            Scattering::Medium(medium) => medium.coefficient.is_black(),
+            Scattering::Camera | Scattering::Light => false,
         }
     }
 

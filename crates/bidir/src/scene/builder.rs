@@ -181,8 +181,8 @@ impl SceneBuilder {
         MediumId::new(self.media.len() - 1).unwrap_or_default()
     }
 
-    /// Puts `medium` at a point, that of a camera: it is around everything unless a boundary encloses the point.
-    /// Without this, the vacuum is. Light from infinity gets through the vacuum alone.
+    /// Puts `medium` at a point, that of a camera: a ray that leaves it comes, across all boundaries, to the medium that
+    /// is around everything. Without this, that is the vacuum. Light from infinity gets through the vacuum alone.
     pub fn medium_at(&mut self, point: Vec3, medium: MediumId) -> &mut Self {
         self.around = Some((point, medium));
         self
@@ -350,10 +350,8 @@ impl SceneBuilder {
             radius,
         };
         if scene.has_media() {
-            if let Some((point, medium)) = self.around
-                && scene.enclosing(point).is_none()
-            {
-                scene.around = medium;
+            if let Some((point, medium)) = self.around {
+                scene.around = scene.medium_beyond(point, medium);
             }
             let lights = scene.lights.iter();
             scene.light_media = lights.map(|light| media_of(&scene, light)).collect();
@@ -362,16 +360,15 @@ impl SceneBuilder {
     }
 }
 
-/// The media on the sides of a light. One light lies in one medium, or on one boundary.
+/// The media on the sides of a light: those of its shape, or the one that some point of it lies in.
 fn media_of(scene: &Scene, light: &Light) -> MediumSides {
     let at = match light {
         Light::Area(light) => {
-            if let Some(sides) = scene.surfaces[light.shape_index()].sides {
-                return sides;
+            let surface = scene.surfaces[light.shape_index()];
+            match surface.sides {
+                Some(sides) if surface.presence != Presence::Absent => return sides,
+                _ => scene.point_on(light.shape_index()),
             }
-            // It parts no media: those around it are within it, too.
-            let shape = &scene.shapes[light.shape_index()];
-            shape.primitive(0).bounds().center()
         }
         Light::Point(light) => light.position,
         Light::Spot(light) => light.position,

@@ -12,6 +12,7 @@ use accel::{Hit, Ray};
 use smallvec::SmallVec;
 use std::cell::RefCell;
 use std::cmp::Ordering;
+use std::ops::ControlFlow;
 
 /// The place that a ray of a walk comes to.
 #[derive(Clone, Copy, Debug)]
@@ -36,7 +37,7 @@ pub struct Advance {
 /// The media between two ends of a segment, a and b.
 #[derive(Clone, Copy, Debug)]
 pub struct Edge {
-    /// The part of light that arrives, in `[0, 1]`.
+    /// The part of light that arrives, in `[0, 1]`: T, times the part of surfaces that is not there.
     pub transmittance: Spectrum,
     /// The factor of media in the density of b drawn from a: mean(T) on a surface; mean(σ_t T) in a medium, 1/m.
     pub to_b: f32,
@@ -72,7 +73,7 @@ struct Span {
 
 impl Edge {
     /// T / p, with p the factor of media in the density of b: the factor in the throughput of a walk from a that drew
-    /// the distance. Zero where it cannot come there.
+    /// the distance, and that met no surface on its way. Zero where it cannot come there.
     #[inline]
     pub(crate) fn walked(&self) -> Spectrum {
         if self.to_b > 0.0 {
@@ -119,7 +120,10 @@ impl Span {
     /// σ_t times the length, where a unit of the ray is `unit` long.
     fn depth(self, extinction: Spectrum, unit: f32) -> Spectrum {
         let length = (self.end - self.begin) * unit;
-        // Not even infinitely much of nothing takes anything away.
+        if length.is_infinite() && self.medium != MediumId::VACUUM {
+            return Spectrum::splat(f32::INFINITY);
+        }
+        // An infinite span of a clear lane would be no number.
         extinction.map(|sigma| if sigma > 0.0 { sigma * length } else { 0.0 })
     }
 }
@@ -170,11 +174,14 @@ impl Scene {
         for span in passage.spans(end) {
             let extinction = self.extinction(span.medium, wavelengths);
             let whole = span.depth(extinction, 1.0);
-            if left < whole[lane] {
+            if left < whole[lane]
+                && extinction[lane] > 0.0
+                && let Some(index) = span.medium.index()
+            {
                 let t = span.begin + left / extinction[lane];
                 let part = Span { end: t, ..span }.depth(extinction, 1.0);
                 return Advance {
-                    interaction: self.collide(ray, t, span.medium, wavelengths),
+                    interaction: self.collide(ray, t, index, wavelengths),
                     transmittance: arriving(depth + part),
                 };
             }
@@ -193,19 +200,11 @@ impl Scene {
         }
     }
 
-    /// The interaction with a medium at `t` of a ray.
-    fn collide(
-        &self,
-        ray: &Ray,
-        t: f32,
-        medium: MediumId,
-        wavelengths: &Wavelengths,
-    ) -> Interaction {
-        let Some(of_medium) = medium.index().map(|index| &self.media[index]) else {
-            return Interaction::Escape;
-        };
+    /// The interaction with medium number `index` at `t` of a ray.
+    fn collide(&self, ray: &Ray, t: f32, index: usize, wavelengths: &Wavelengths) -> Interaction {
         let point = ray.origin + ray.direction * t;
-        let scattering = of_medium.scattering(self.color, wavelengths);
+        let medium = MediumId::new(index).unwrap_or_default();
+        let scattering = self.media[index].scattering(self.color, wavelengths);
         Interaction::Medium(Locus::in_medium(point, medium), scattering)
     }
 
@@ -239,7 +238,7 @@ impl Scene {
     /// always arrives.
     #[inline(never)]
     pub(crate) fn guessed_edge(&self, a: &Locus, b: &Locus, wavelengths: &Wavelengths) -> Edge {
-        /// A boundary that is not known of may lie between.
+        /// An unknown boundary may lie between.
         const LEAST: f32 = 1e-3;
         let (w, span) = match (a.is_infinite(), b.is_infinite()) {
             (true, _) => (-a.point, f32::INFINITY),
@@ -296,35 +295,60 @@ impl Scene {
         })
     }
 
-    /// The medium at a point in space, as the boundaries around it say: the side of the nearest one along most of
-    /// some rays.
+    /// The medium at a point in space: most of some rays say so by the nearest boundary on their way, or else it is the
+    /// one around everything.
     pub fn medium_at(&self, point: Vec3) -> MediumId {
-        self.enclosing(point).unwrap_or(self.around)
-    }
-
-    /// The same. None: no boundary is around it.
-    pub(super) fn enclosing(&self, point: Vec3) -> Option<MediumId> {
-        /// Far from axes and diagonals, along which people build.
-        const RAYS: [Vec3; 3] = [
-            Vec3::new(0.36, 0.48, 0.8),
-            Vec3::new(-0.6, 0.64, -0.48),
-            Vec3::new(0.28, -0.96, 0.0),
-        ];
-        if !self.has_media() {
-            return None;
-        }
-        let [a, b, c] = RAYS.map(|direction| {
+        let is_boundary = |hit: &Hit| self.crosses(hit);
+        by_most(|direction| {
             let ray = Ray::new(point, direction);
-            let is_boundary = |hit: &Hit| {
-                let (_, primitive) = self.resolve(hit);
-                self.surfaces[primitive.shape as usize].sides.is_some()
-            };
             let hit = self.bvh.closest(&ray, is_boundary);
             let crossing = hit.and_then(|hit| self.crossing(&ray, &hit));
-            crossing.map(|crossing| crossing.from)
-        });
-        if a == b || a == c { a } else { b }
+            crossing.map_or(self.around, |crossing| crossing.from)
+        })
     }
+
+    /// The medium around everything, where most of some rays from `medium` at a point come to.
+    pub(super) fn medium_beyond(&self, point: Vec3, medium: MediumId) -> MediumId {
+        by_most(|direction| {
+            let ray = Ray::new(point, direction);
+            let mut crossings = SmallVec::<[Crossing; 8]>::new();
+            let _ = self.bvh.each_hit(&ray, |hit| {
+                crossings.extend(self.crossing(&ray, hit));
+                ControlFlow::Continue(())
+            });
+            Passage::new(medium, crossings, f32::INFINITY).last()
+        })
+    }
+
+    fn crosses(&self, hit: &Hit) -> bool {
+        let (_, primitive) = self.resolve(hit);
+        self.surfaces[primitive.shape as usize].sides.is_some()
+    }
+
+    /// A point on shape number `shape`, one of the world, or near it where rays do not meet it.
+    pub(super) fn point_on(&self, shape: usize) -> Vec3 {
+        let bounds = self.shapes[shape].primitive(0).bounds();
+        let (centre, corner) = (bounds.center(), bounds.max + bounds.max - bounds.min);
+        let ray = Ray::new(corner, centre - corner);
+        let is_of_shape = |hit: &Hit| {
+            let (placed, primitive) = self.resolve(hit);
+            placed.is_none() && primitive.shape as usize == shape
+        };
+        let hit = self.bvh.closest(&ray, is_of_shape);
+        hit.map_or(centre, |hit| ray.origin + ray.direction * hit.t)
+    }
+}
+
+/// The answer of most of three rays, of the second where they differ.
+fn by_most(answer: impl Fn(Vec3) -> MediumId) -> MediumId {
+    /// Far from axes and diagonals, along which people build.
+    const RAYS: [Vec3; 3] = [
+        Vec3::new(0.36, 0.48, 0.8),
+        Vec3::new(-0.6, 0.64, -0.48),
+        Vec3::new(0.28, -0.96, 0.0),
+    ];
+    let [a, b, c] = RAYS.map(answer);
+    if a == c { a } else { b }
 }
 
 /// exp(-τ).

@@ -15,7 +15,7 @@ pub(crate) struct ShadowRays {
 }
 
 impl Scene {
-    /// How much of the light from one end to the other arrives, in `[0, 1]`: 0 where something opaque
+    /// How much of the light from one end to the other arrives past surfaces, in `[0, 1]`: 0 where something opaque
     /// lies between, 1 where nothing does. At most one end is at infinity.
     #[inline]
     pub fn transmittance(&self, a: &Locus, b: &Locus) -> f32 {

@@ -14,6 +14,13 @@ use bidir::select::ShadowRays;
 use bidir::shape::{Orientation, Shape, Sphere};
 use bidir::spectrum::Rgb;
 
+const ESTIMATORS: [IntegratorKind; 4] = [
+    IntegratorKind::Path,
+    IntegratorKind::Bdpt,
+    IntegratorKind::Lvc,
+    IntegratorKind::Light,
+];
+
 /// The film's mean and its quarters.
 const QUARTERS: &[usize] = &[WHOLE, 4];
 const VACUUM: MediumId = MediumId::VACUUM;
@@ -75,7 +82,7 @@ fn nested_furnace() -> Shot {
     let thick = builder.medium(medium([0.0; 3], [2.0, 1.0, 0.5], 0.6));
     add_ball(&mut builder, sphere(Vec3::ZERO, 1.6), VACUUM, thin);
     add_ball(&mut builder, sphere(Vec3::ZERO, 1.0), thin, thick);
-    add_ball(&mut builder, sphere(Vec3::ZERO, 0.5), thick, VACUUM);
+    add_ball(&mut builder, sphere(Vec3::ZERO, 0.5), thick, thin);
     finish(builder)
 }
 
@@ -101,6 +108,22 @@ fn a_furnace_full_of_fog_that_absorbs_nothing_has_radiance_one() {
 fn nested_media_that_absorb_nothing_are_not_seen_in_a_furnace() {
     for integrator in [IntegratorKind::Path, IntegratorKind::Lvc] {
         check_furnace("nested", &nested_furnace(), integrator, 2048);
+    }
+}
+
+#[test]
+fn light_from_infinity_does_not_pass_a_medium_without_end() {
+    let mut builder = builder(8, 0.0);
+    let ground = builder.material(diffuse([0.5; 3]));
+    let floor = quad(Vec3::new(-6.0, -1.2, -6.0), Vec3::Z * 12.0, Vec3::X * 12.0);
+    builder.shape(Shape::Mesh(floor), ground, None);
+    builder.light(Light::Infinite(InfiniteLight::constant([1.0; 3])));
+    // Two lanes are clear.
+    fill(&mut builder, medium([0.0, 0.0, 1.0], [0.0; 3], 0.0));
+    let shot = finish(builder);
+    for integrator in ESTIMATORS {
+        let result = replicates(&shot, &settings(integrator, Some(3)), 32);
+        assert!(result.mean().abs() <= 0.0, "{integrator}");
     }
 }
 

@@ -8,7 +8,7 @@
 
 use super::super::batch::enter;
 use super::super::{Batch, Link, Sample};
-use super::media::Passage;
+use super::media::ShadowPassage;
 use super::trace::trace;
 use crate::bsdf::TransportMode;
 use crate::contribution::Term;
@@ -92,22 +92,22 @@ fn next_event(
     sample: &Sample,
     vertex: &Vertex,
     i: usize,
-) -> Option<(Term, [Locus; 2], Passage)> {
+) -> Option<(Term, [Locus; 2], ShadowPassage)> {
     let at = |purpose| Dimension::at(i, purpose);
     let u_light = || sample.camera.get_1d(at(Purpose::NextEventLight));
     let u = sample.camera.get_2d(at(Purpose::NextEventPosition));
     let (light, x0) = sample_next_event(context, vertex, u_light, u)?;
-    let ends = [x0.at.locus, vertex.locus];
+    let mut ends = [x0.at.locus, vertex.locus];
+    if context.job.scene.has_media() {
+        ends[0].media = context.job.scene.light_media(light);
+    }
     let mut segment = Segment::between(&ends[0], &ends[1]);
     let turn = vertex.turn(vertex.wo, -segment.w);
     let contribution = arriving(context, &turn, light, &x0, &segment);
     if contribution == Spectrum::ZERO {
         return None;
     }
-    let passage = Passage::between(context, || {
-        let media = context.job.scene.light_media(light);
-        [ends[0].within(media), ends[1]]
-    });
+    let passage = ShadowPassage::between(context, || ends);
     if let Some(edge) = passage.edge() {
         segment.pass(edge);
     }

@@ -3,7 +3,7 @@
 
 use super::super::batch::enter;
 use super::super::{Batch, Link, Sample};
-use super::media::Passage;
+use super::media::ShadowPassage;
 use super::trace::trace;
 use crate::contribution::Term;
 use crate::film::SplatPlace;
@@ -49,12 +49,13 @@ pub(in super::super) fn light_image(job: &Job<'_>, batch: &mut Batch, weighting:
             let Some(mut image) = LightImage::new(&context, &walk.vertices[..s], &lens) else {
                 continue;
             };
-            let passage = Passage::between(&context, || image.ends());
+            let passage = ShadowPassage::between(&context, || image.ends());
             if let Some(edge) = passage.edge() {
                 image.path.pass(edge);
             }
             let weight = match weighting {
                 Weighting::Alone => 1.0,
+                Weighting::Combined if passage.is_blocked() => 0.0,
                 Weighting::Combined => {
                     let sums = PathSums {
                         light: light_sums.at(walk.first + s - 1),

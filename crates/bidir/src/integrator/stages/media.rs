@@ -11,14 +11,14 @@ use crate::scene::Edge;
 use crate::stats::Stats;
 
 /// A shadow ray, traced if it may go through media.
-pub(in super::super) enum Passage {
+pub(in super::super) enum ShadowPassage {
     /// Not traced: the scene has no media.
     Clear,
     /// The media that it went through. None: something opaque is there.
     Traced(Option<Edge>),
 }
 
-impl Passage {
+impl ShadowPassage {
     /// The passage between two ends.
     #[inline]
     pub(in super::super) fn between(
@@ -41,6 +41,12 @@ impl Passage {
             Self::Traced(edge) => edge.as_ref(),
             Self::Clear => None,
         }
+    }
+
+    /// True where it is known that nothing arrives.
+    #[inline]
+    pub(super) fn is_blocked(&self) -> bool {
+        matches!(self, Self::Traced(None))
     }
 
     /// Notes in `entry`, to which it belongs, that it arrives, and multiplies its contribution by T; or that it does
@@ -89,7 +95,7 @@ pub(super) fn settle_chosen(job: &Job<'_>, batch: &mut Batch) {
             &camera.vertices()[y + 1 - t..=y],
         );
         let mut path = JoinedPath::connection(light, camera);
-        let passage = Passage::between(&context, || [path.z().locus, path.y().locus]);
+        let passage = ShadowPassage::between(&context, || [path.z().locus, path.y().locus]);
         let sums = PathSums {
             light: light_sums.at(z),
             camera: camera_sums.at(y),

@@ -16,7 +16,7 @@ pub(super) use direct::direct;
 pub(super) use draw::draw_cached;
 pub(super) use hits::hits;
 pub(super) use light_image::{Weighting, lens_vertex, light_image};
-pub(super) use media::Passage;
+pub(super) use media::ShadowPassage;
 pub(super) use next_event::next_events;
 pub(super) use trace::{select, shadow_rays};
 pub(crate) use walk::camera_ray;

@@ -80,12 +80,13 @@ fn read(context: &mut Context<'_>, medium: &MediumDescription) -> Result<Option<
         (reader.context).unsupported(span, &what, "vacuum is used instead")?;
         return Ok(None);
     }
-    let medium = homogeneous(&mut reader)?;
+    let medium = homogeneous(&mut reader, unit)?;
     reader.finish()?;
-    Ok(Some(medium.in_unit(unit)))
+    Ok(Some(medium))
 }
 
-fn homogeneous(reader: &mut Reader<'_, '_>) -> Result<Medium, Fault> {
+/// A medium in a space of which `unit` is the unit of length.
+fn homogeneous(reader: &mut Reader<'_, '_>, unit: f32) -> Result<Medium, Fault> {
     let [absorption, scattering] = coefficients(reader)?;
     let scale = reader.float_within("scale", 1.0, [0.0, f32::MAX])?;
     let g = reader.float_within("g", 0.0, [-1.0, 1.0])?;
@@ -93,29 +94,27 @@ fn homogeneous(reader: &mut Reader<'_, '_>) -> Result<Medium, Fault> {
     let fault = |message: &str| Fault::scene(reader.span(), message);
     let phase = HenyeyGreenstein::new(g)
         .ok_or_else(|| fault("the medium scatters in one direction alone: g is 1 or -1"))?;
-    let scaled = [absorption, scattering].map(|sigma| sigma.map(|lane| lane * scale));
+    let scaled = [absorption, scattering].map(|sigma| sigma.map(|lane| lane * scale * unit));
     Medium::homogeneous(scaled[0], scaled[1], phase)
         .ok_or_else(|| fault("the coefficients of the medium are too large"))
 }
 
-/// σ_a and σ_s. Unit: 1 / the scene's unit of length.
+/// σ_a and σ_s: those of the preset, if there is one. Unit: 1 / the scene's unit of length.
 fn coefficients(reader: &mut Reader<'_, '_>) -> Result<[Rgb; 2], Fault> {
     let given = [
         color::read(reader, "sigma_a", Purpose::Unbounded)?,
         color::read(reader, "sigma_s", Purpose::Unbounded)?,
     ];
-    let mut preset = [[1.0; 3]; 2];
     if let Some((name, span)) = reader.string("preset")? {
         let known = PRESETS.iter().find(|(known, ..)| *known == name);
         if let Some(&(_, scattering, absorption)) = known {
-            preset = [absorption, scattering];
-        } else {
-            let what = format!("the preset `{}`", shorten(name));
-            let substitute = "a medium of which both coefficients are 1 is used instead";
-            reader.context.unsupported(span, &what, substitute)?;
+            return Ok([absorption, scattering]);
         }
+        let what = format!("the preset `{}`", shorten(name));
+        let substitute = "the medium's own coefficients are used instead";
+        reader.context.unsupported(span, &what, substitute)?;
     }
-    Ok([0, 1].map(|i| given[i].unwrap_or(preset[i])))
+    Ok(given.map(|given| given.unwrap_or([1.0; 3])))
 }
 
 /// Refuses a medium that glows.

@@ -40,7 +40,7 @@ fn coefficients_are_read() {
     check_extinction(preset, [0.241, 1.04, 1.48]);
     check_extinction(
         &format!("{preset} \"rgb sigma_a\" [0 0 0]"),
-        [0.18, 0.07, 0.03],
+        [0.241, 1.04, 1.48],
     );
 }
 
@@ -99,6 +99,25 @@ fn the_medium_of_a_camera_outside_all_boundaries_is_around_everything() {
 }
 
 #[test]
+fn glass_in_a_medium_without_end_does_not_end_it() {
+    let ball = |at: &str| {
+        format!(
+            "AttributeBegin Translate {at} MediumInterface \"juice\" \"fog\" \
+             Material \"dielectric\" Shape \"sphere\" \"float radius\" 2 AttributeEnd "
+        )
+    };
+    let balls = ["1.8 2.4 4", "-3 3.2 -2.4", "1.4 -4.8 0"].map(ball);
+    let text = format!(
+        "{FOG} MakeNamedMedium \"juice\" \"string type\" \"homogeneous\" \
+         MediumInterface \"\" \"fog\" Camera \"perspective\" WorldBegin {}",
+        balls.concat()
+    );
+    let scene = load_text(&text, &STRICT).scene;
+    assert_ne!(scene.around(), MediumId::VACUUM);
+    assert_eq!(scene.medium_at(Vec3::ZERO), scene.around());
+}
+
+#[test]
 fn media_that_make_no_sense_are_refused() {
     check_world(
         &format!("{FOG} MediumInterface \"frog\" Shape \"sphere\""),
@@ -130,6 +149,6 @@ fn media_of_other_kinds_are_named() {
     check_world(
         &format!("{FOG} \"string preset\" \"Coke\" MediumInterface \"fog\" \"\" Shape \"sphere\""),
         "s.pbrt:2:67: the preset `Coke` is not supported; \
-         with --lenient, a medium of which both coefficients are 1 is used instead",
+         with --lenient, the medium's own coefficients are used instead",
     );
 }
