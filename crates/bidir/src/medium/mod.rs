@@ -4,7 +4,7 @@
 //!
 //! T(a, b) = exp(-τ), τ = ∫ σ_t, σ_t = σ_a + σ_s
 //!
-//! of the light arrives [Chandrasekhar60], lane by lane. A vertex in a medium scatters σ_s p, where p is the
+//! of the light arrives \[Chandrasekhar60\], lane by lane. A vertex in a medium scatters σ_s p, where p is the
 //! [phase function](HenyeyGreenstein).
 //!
 //! A walk that leaves a with a density p_ω of directions reaches b with the density

@@ -1,4 +1,4 @@
-//! p(cosθ) = (1 - g²) / (4π (1 + g² - 2 g cosθ)^{3/2}) [Henyey41], θ between the directions in which light
+//! p(cosθ) = (1 - g²) / (4π (1 + g² - 2 g cosθ)^{3/2}) \[Henyey41\], θ between the directions in which light
 //! travels before and after.
 
 use crate::math::{Frame, PI, Vec2, Vec3, safe_sqrt, sin_cos, sqr};

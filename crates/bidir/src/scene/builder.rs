@@ -174,7 +174,7 @@ impl SceneBuilder {
         self.shapes.push(shape);
     }
 
-    /// Adds a medium. It is where the sides of [shapes](Self::sides) say, or [around](Self::around) everything.
+    /// Adds a medium. It is where the [sides](Self::sides) of shapes say, or [around a point](Self::medium_at).
     pub fn medium(&mut self, medium: Medium) -> MediumId {
         self.media.push(medium);
         // Too many are found when the scene is built.
