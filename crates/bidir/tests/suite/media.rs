@@ -132,7 +132,7 @@ fn slab() -> Shot {
     let camera = narrow_camera(Vec3::new(0.0, 0.0, -3.0), 8, 0.05);
     let mut builder = ShotBuilder::new(camera, 8);
     let wall = builder.material(diffuse([0.0; 3]));
-    let lamp = quad(Vec3::new(-1.0, -1.0, 2.0), Vec3::Y * 2.0, Vec3::X * 2.0);
+    let lamp = quad(Vec3::new(-1.0, -1.0, 3.0), Vec3::Y * 2.0, Vec3::X * 2.0);
     builder.shape(Shape::Mesh(lamp), wall, emission([1.0; 3]));
     let inside = builder.medium(medium([1.0, 0.5, 2.0], [0.0; 3], 0.0));
     let front = quad(Vec3::new(-5.0, -5.0, 0.0), Vec3::Y * 10.0, Vec3::X * 10.0);
