@@ -6,7 +6,9 @@ pub(crate) mod walks;
 
 use bidir::bsdf::Wall;
 use bidir::camera::{Camera, Perspective, PerspectiveSettings};
+use bidir::driver::Settings;
 use bidir::film::{FilmSettings, Filter};
+use bidir::integrator::IntegratorKind;
 use bidir::light::EmissionSides;
 use bidir::material::{
     Anisotropy, CLEAR, CoatSettings, CoatedConductorMaterial, CoatedDiffuseMaterial,
@@ -14,6 +16,7 @@ use bidir::material::{
     ScaledColor, ScaledFloat,
 };
 use bidir::math::{Affine3A, Vec2, Vec3};
+use bidir::path::PathSettings;
 use bidir::scene::{Emission, MaterialId, Scene, SceneBuilder, SceneError};
 use bidir::shape::{Mesh, Orientation, Shape, Sphere};
 use bidir::spectrum::Rgb;
@@ -22,6 +25,17 @@ use bidir::view::View;
 use statistics::Shown;
 use std::ops::{Deref, DerefMut};
 use std::sync::Arc;
+
+/// The defaults of an integrator, with this limit of length.
+pub(crate) fn settings(integrator: IntegratorKind, max_depth: Option<u32>) -> Settings {
+    Settings {
+        path: PathSettings {
+            max_depth,
+            ..PathSettings::default()
+        },
+        ..Settings::new(integrator)
+    }
+}
 
 /// A camera at `eye` that looks along +z through a film of `size` pixels.
 pub(crate) fn camera(eye: Vec3, size: u32, lens_radius: f32) -> Camera {

@@ -3,28 +3,17 @@
 use crate::common::statistics::{Replicates, WHOLE, check_agree, check_agree_to, replicates};
 use crate::common::{Shot, ShotBuilder};
 use crate::common::{
-    builder, builder_with, diffuse, emission, glass, metal, narrow_camera, quad, sphere,
+    builder, builder_with, diffuse, emission, glass, metal, narrow_camera, quad, settings, sphere,
 };
-use bidir::driver::Settings;
 use bidir::film::{Filter, FilterKind};
 use bidir::integrator::{CandidateCount, IntegratorKind};
 use bidir::light::{InfiniteLight, Light};
 use bidir::math::{Affine3A, PI, Vec2, Vec3};
-use bidir::path::{PathRoulette, PathSettings};
+use bidir::path::PathRoulette;
 use bidir::scene::SceneBuilder;
 use bidir::select::ShadowRays;
 use bidir::shape::{Disk, Orientation, Shape, Sphere};
 use bidir::spectrum::Rgb;
-
-fn settings(integrator: IntegratorKind, max_depth: Option<u32>) -> Settings {
-    Settings {
-        path: PathSettings {
-            max_depth,
-            ..PathSettings::default()
-        },
-        ..Settings::new(integrator)
-    }
-}
 
 /// The inside of a sphere that reflects ρ of what it receives and emits 1 - ρ: radiance 1
 /// everywhere.

@@ -2,14 +2,13 @@
 
 use crate::common::statistics::{Replicates, WHOLE, check_agree, replicates};
 use crate::common::{
-    Shot, ShotBuilder, add_walls, builder, diffuse, emission, glass, narrow_camera, quad, sphere,
+    Shot, ShotBuilder, add_walls, builder, diffuse, emission, glass, narrow_camera, quad, settings,
+    sphere,
 };
-use bidir::driver::Settings;
 use bidir::integrator::IntegratorKind;
 use bidir::light::{InfiniteLight, Light, SpotLight};
 use bidir::math::{Affine3A, Vec3};
 use bidir::medium::{HenyeyGreenstein, Medium, MediumId, MediumSides};
-use bidir::path::PathSettings;
 use bidir::select::ShadowRays;
 use bidir::shape::{Orientation, Shape, Sphere};
 use bidir::spectrum::Rgb;
@@ -24,16 +23,6 @@ const ESTIMATORS: [IntegratorKind; 4] = [
 /// The film's mean and its quarters.
 const QUARTERS: &[usize] = &[WHOLE, 4];
 const VACUUM: MediumId = MediumId::VACUUM;
-
-fn settings(integrator: IntegratorKind, max_depth: Option<u32>) -> Settings {
-    Settings {
-        path: PathSettings {
-            max_depth,
-            ..PathSettings::default()
-        },
-        ..Settings::new(integrator)
-    }
-}
 
 fn medium(absorption: Rgb, scattering: Rgb, g: f32) -> Medium {
     let phase = HenyeyGreenstein::new(g).expect("a mean cosine");
