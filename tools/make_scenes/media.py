@@ -1,4 +1,4 @@
-"""Scenes with participating media: a caustic in fog, juice and milk."""
+"""Scenes with participating media: a caustic in fog, a cloud, juice and milk."""
 
 from primitives import slab
 from torture_base import GREY, diffuse, down, light, room, sphere, towards_camera, up
@@ -13,6 +13,7 @@ def medium(out, name, absorption, scattering, extra=""):
 
 def write_all(project):
     fog(project)
+    cloud(project)
     liquids(project)
 
 
@@ -33,6 +34,32 @@ def fog(project):
     out.begin()
     out.line('Material "dielectric" "float eta" 1.5')
     sphere(out, (0, 1.1, 0), 0.45)
+    out.end()
+    out.finish()
+
+
+def cloud(project):
+    out = SceneText(project, "cloud.pbrt", [
+        "A cloud over a field, in the light of a low sun and a sky.",
+        "Its density is noise in a box, which an ellipsoid cuts."])
+    out.line("Translate 0 0.3 0")
+    out.line('MakeNamedMedium "cloud" "string type" "cloud"')
+    out.line('  "rgb sigma_a" [0 0 0] "rgb sigma_s" [28 28 28] "float g" 0.6')
+    out.line('  "float density" 1.5 "float frequency" 2.5')
+    out.line('  "point3 p0" [-1.6 0.45 -1] "point3 p1" [1.6 1 1]')
+    out.line("Identity")
+    out.header((400, 300), ((0, 0.5, -4.2), (0, 0.85, 0), 42, ""), maxdepth=60)
+    out.line('LightSource "infinite" "rgb L" [0.25 0.42 0.8]')
+    out.line('LightSource "distant" "point3 from" [-2 2.2 -1.4] "point3 to" [0 0 0]')
+    out.line('  "rgb L" [3.2 2.9 2.4]')
+    diffuse(out, (0.18, 0.22, 0.12))
+    out.mesh(up(-40, 40, 0, -40, 40))
+    out.begin()
+    out.line("Translate 0 0.75 0")
+    out.line("Scale 1.6 0.55 1")
+    out.line('MediumInterface "cloud" ""')
+    out.line('Material "interface"')
+    out.line('Shape "sphere"')
     out.end()
     out.finish()
 

@@ -29,6 +29,7 @@ _MAIN_NOTES = {
     "apartment-dark.pbrt": "Strongly indirect: light arrives through two doorways.",
     "cornell.pbrt": "A quick test of direct light, soft shadows and colour bleeding.",
     "fog.pbrt": "A caustic in fog, behind the ball: no camera walk finds it.",
+    "cloud.pbrt": "Noise in a grid of cells, bounded by an ellipsoid: light that scatters many times.",
     "liquids.pbrt": "Media within smooth glass: light that is absorbed, and light that scatters many times.",
 }
 

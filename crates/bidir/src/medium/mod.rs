@@ -16,11 +16,19 @@
 //!
 //! Places name media: every [`Locus`](crate::locus::Locus) has one on each side.
 
+mod cells;
+mod flight;
+mod grid;
 mod phase;
 
+pub(crate) use flight::{Drawn, Stretch};
+pub(crate) use grid::Detail;
+pub use grid::Grid;
 pub use phase::HenyeyGreenstein;
 
+use crate::math::Vec3;
 use crate::spectrum::{ColorModel, Rgb, Spectrum, Wavelengths};
+use accel::Aabb;
 
 /// A medium of a scene, by number.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -79,41 +87,141 @@ impl MediumSides {
     }
 }
 
-/// A medium that is the same everywhere.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// A medium of a scene.
+#[derive(Clone, Debug)]
 pub struct Medium {
-    absorption: Rgb,
-    scattering: Rgb,
+    field: Field,
     phase: HenyeyGreenstein,
 }
 
-impl Medium {
-    /// A medium of these coefficients, σ_a and σ_s, in 1/m. None: one of them is negative, or σ_t is not finite.
-    pub fn homogeneous(absorption: Rgb, scattering: Rgb, phase: HenyeyGreenstein) -> Option<Self> {
+/// The coefficients at a place. Unit: 1/m.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Coefficients {
+    /// σ_t.
+    extinction: Rgb,
+    /// σ_s.
+    scattering: Rgb,
+}
+
+/// The coefficients everywhere.
+#[derive(Clone, Debug)]
+enum Field {
+    Homogeneous(Coefficients),
+    /// Coefficients times a density, in a box.
+    Density(Coefficients, Grid<1>),
+    /// Coefficients of their own for each channel, in a box.
+    Chromatic {
+        extinction: Grid<3>,
+        scattering: Grid<3>,
+    },
+}
+
+impl Coefficients {
+    /// Those of absorption and of scattering. None: one of them is negative, or their sum is not finite.
+    pub fn new(absorption: Rgb, scattering: Rgb) -> Option<Self> {
         let valid = 0.0..=f32::MAX;
         let mut pairs = absorption.iter().zip(&scattering);
         let is_valid = |(a, s): (&f32, &f32)| {
             valid.contains(a) && valid.contains(s) && valid.contains(&(a + s))
         };
-        pairs.all(is_valid).then_some(Self {
-            absorption,
+        pairs.all(is_valid).then(|| Self {
+            extinction: std::array::from_fn(|i| absorption[i] + scattering[i]),
             scattering,
+        })
+    }
+
+    /// Those of a medium of this density.
+    fn scaled(self, density: f32) -> Self {
+        let scale = |rgb: Rgb| rgb.map(|channel| channel * density);
+        Self {
+            extinction: scale(self.extinction),
+            scattering: scale(self.scattering),
+        }
+    }
+}
+
+impl Medium {
+    /// A medium that is the same everywhere.
+    pub const fn homogeneous(coefficients: Coefficients, phase: HenyeyGreenstein) -> Self {
+        let field = Field::Homogeneous(coefficients);
+        Self { field, phase }
+    }
+
+    /// A medium with the coefficients times the density of a grid, and outside of its box nothing.
+    pub const fn of_density(
+        coefficients: Coefficients,
+        density: Grid<1>,
+        phase: HenyeyGreenstein,
+    ) -> Self {
+        let field = Field::Density(coefficients, density);
+        Self { field, phase }
+    }
+
+    /// A medium with the coefficients of two grids, 1/m, and outside of their box nothing. None: the grids have not
+    /// the same box and size, or scatter more than they take.
+    pub fn chromatic(
+        extinction: Grid<3>,
+        scattering: Grid<3>,
+        phase: HenyeyGreenstein,
+    ) -> Option<Self> {
+        extinction.bounds_each(&scattering).then_some(Self {
+            field: Field::Chromatic {
+                extinction,
+                scattering,
+            },
             phase,
         })
     }
 
-    /// σ_t. Unit: 1/m.
+    /// The box that the medium fills. None: it has no end.
+    pub fn bounds(&self) -> Option<Aabb> {
+        match &self.field {
+            Field::Homogeneous(_) => None,
+            Field::Density(_, grid) => Some(grid.bounds()),
+            Field::Chromatic { extinction, .. } => Some(extinction.bounds()),
+        }
+    }
+
+    /// The coefficients at a point, which lies in the medium.
+    fn at(&self, point: Vec3) -> Coefficients {
+        match &self.field {
+            Field::Homogeneous(coefficients) => *coefficients,
+            Field::Density(coefficients, grid) => {
+                let [density] = grid.at(point);
+                coefficients.scaled(density)
+            }
+            Field::Chromatic {
+                extinction,
+                scattering,
+            } => Coefficients {
+                extinction: extinction.at(point),
+                scattering: scattering.at(point),
+            },
+        }
+    }
+
+    /// σ_t at a point. Unit: 1/m.
     #[inline]
-    pub fn extinction(&self, color: ColorModel, wavelengths: &Wavelengths) -> Spectrum {
-        let all = std::array::from_fn(|i| self.absorption[i] + self.scattering[i]);
-        color.unbounded(all, wavelengths)
+    pub fn extinction(
+        &self,
+        point: Vec3,
+        color: ColorModel,
+        wavelengths: &Wavelengths,
+    ) -> Spectrum {
+        color.unbounded(self.at(point).extinction, wavelengths)
     }
 
     /// The scattering of a vertex in the medium.
     #[inline]
-    pub fn scattering(&self, color: ColorModel, wavelengths: &Wavelengths) -> MediumScattering {
-        let coefficient = color.unbounded(self.scattering, wavelengths);
-        let extinction = self.extinction(color, wavelengths);
+    pub fn scattering(
+        &self,
+        point: Vec3,
+        color: ColorModel,
+        wavelengths: &Wavelengths,
+    ) -> MediumScattering {
+        let at = self.at(point);
+        let [coefficient, extinction] =
+            [at.scattering, at.extinction].map(|rgb| color.unbounded(rgb, wavelengths));
         let part = |s: f32, t: f32| if t > 0.0 { s / t } else { 0.0 };
         MediumScattering {
             coefficient,
@@ -133,3 +241,6 @@ pub struct MediumScattering {
     /// p.
     pub phase: HenyeyGreenstein,
 }
+
+#[cfg(test)]
+mod tests;

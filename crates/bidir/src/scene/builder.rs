@@ -313,7 +313,7 @@ impl SceneBuilder {
             primitives,
             instances,
         } = self.objects.build(&self.shapes, &self.surfaces, isa)?;
-        let (centre, radius) = bounding_sphere(&bvh, &self.lights);
+        let (centre, radius) = bounding_sphere(&bvh, &self.lights, &self.media);
         let context = LightContext {
             shapes: &self.shapes,
             centre,
@@ -377,9 +377,10 @@ fn media_of(scene: &Scene, light: &Light) -> MediumSides {
     MediumSides::all(scene.medium_at(at))
 }
 
-/// A sphere around all surfaces, and around the lights in space, with a little room.
-fn bounding_sphere(bvh: &accel::Bvh, lights: &[Light]) -> (Vec3, f32) {
-    let bounds = bvh.bounds();
+/// A sphere around all surfaces, bounded media, and lights in space, with a little room.
+fn bounding_sphere(bvh: &accel::Bvh, lights: &[Light], media: &[Medium]) -> (Vec3, f32) {
+    let boxes = media.iter().filter_map(Medium::bounds);
+    let bounds = boxes.fold(bvh.bounds(), accel::Aabb::union);
     let (mut min, mut max) = (bounds.min, bounds.max);
     for light in lights {
         let position = match light {

@@ -6,7 +6,7 @@
 use super::{Chances, Scene, SurfaceHit};
 use crate::locus::{Locus, LocusKind};
 use crate::math::Vec3;
-use crate::medium::{Medium, MediumId, MediumScattering, MediumSides};
+use crate::medium::{Detail, Drawn, Medium, MediumId, MediumScattering, MediumSides, Stretch};
 use crate::spectrum::{Spectrum, Wavelengths};
 use accel::{Hit, Ray};
 use smallvec::SmallVec;
@@ -117,14 +117,10 @@ impl Passage {
 }
 
 impl Span {
-    /// σ_t times the length, where a unit of the ray is `unit` long.
-    fn depth(self, extinction: Spectrum, unit: f32) -> Spectrum {
-        let length = (self.end - self.begin) * unit;
-        if length.is_infinite() && self.medium != MediumId::VACUUM {
-            return Spectrum::splat(f32::INFINITY);
-        }
-        // An infinite span of a clear lane would be no number.
-        extinction.map(|sigma| if sigma > 0.0 { sigma * length } else { 0.0 })
+    /// As a stretch of a ray of which a unit is `unit` long.
+    fn of(self, ray: &Ray, unit: f32) -> Stretch<'_> {
+        let range = [self.begin, self.end];
+        Stretch { ray, range, unit }
     }
 }
 
@@ -145,11 +141,29 @@ impl Scene {
         self.around
     }
 
-    /// σ_t of a medium. Unit: 1/m.
-    pub(crate) fn extinction(&self, medium: MediumId, wavelengths: &Wavelengths) -> Spectrum {
-        let medium = medium.index().map(|index| &self.media[index]);
+    /// A medium. None: the vacuum.
+    fn medium(&self, id: MediumId) -> Option<&Medium> {
+        id.index().map(|index| &self.media[index])
+    }
+
+    /// True where light from infinity arrives through the medium around everything.
+    pub fn is_open(&self) -> bool {
+        let around = self.medium(self.around);
+        around.is_none_or(|medium| medium.bounds().is_some())
+    }
+
+    /// τ of a stretch in a medium, in the detail asked for.
+    fn depth(
+        &self,
+        medium: MediumId,
+        stretch: &Stretch<'_>,
+        detail: Detail,
+        wavelengths: &Wavelengths,
+    ) -> Spectrum {
+        let lanes = |rgb| self.color.unbounded(rgb, wavelengths);
+        let medium = self.medium(medium);
         medium.map_or(Spectrum::ZERO, |medium| {
-            medium.extinction(self.color, wavelengths)
+            medium.depth(stretch, detail, lanes)
         })
     }
 
@@ -168,25 +182,25 @@ impl Scene {
         let end = hit.map_or(f32::INFINITY, |hit| hit.t);
         let passage = Passage::new(medium, crossings.into_inner(), end);
         let [u_lane, u_depth] = chances.flight();
-        let lane = self.color.pick_lane(u_lane);
-        let mut left = -libm::log1pf(-u_depth);
+        let mut drawn = Drawn {
+            lane: self.color.pick_lane(u_lane),
+            depth: -libm::log1pf(-u_depth),
+        };
+        let lanes = |rgb| self.color.unbounded(rgb, wavelengths);
         let mut depth = Spectrum::ZERO;
         for span in passage.spans(end) {
-            let extinction = self.extinction(span.medium, wavelengths);
-            let whole = span.depth(extinction, 1.0);
-            if left < whole[lane]
-                && extinction[lane] > 0.0
-                && let Some(index) = span.medium.index()
-            {
-                let t = span.begin + left / extinction[lane];
-                let part = Span { end: t, ..span }.depth(extinction, 1.0);
+            let Some(index) = span.medium.index() else {
+                continue;
+            };
+            let flight = self.media[index].fly(&span.of(ray, 1.0), drawn, lanes);
+            depth += flight.depth;
+            if let Some(t) = flight.reached {
                 return Advance {
                     interaction: self.collide(ray, t, index, wavelengths),
-                    transmittance: arriving(depth + part),
+                    transmittance: arriving(depth),
                 };
             }
-            left -= whole[lane];
-            depth += whole;
+            drawn.depth -= flight.depth[drawn.lane];
         }
         let surface = |hit: Hit| {
             let (_, primitive) = self.resolve(&hit);
@@ -204,7 +218,7 @@ impl Scene {
     fn collide(&self, ray: &Ray, t: f32, index: usize, wavelengths: &Wavelengths) -> Interaction {
         let point = ray.origin + ray.direction * t;
         let medium = MediumId::new(index).unwrap_or_default();
-        let scattering = self.media[index].scattering(self.color, wavelengths);
+        let scattering = self.media[index].scattering(point, self.color, wavelengths);
         Interaction::Medium(Locus::in_medium(point, medium), scattering)
     }
 
@@ -224,7 +238,7 @@ impl Scene {
         let passage = Passage::new(start.medium_toward(ray.direction), crossings, ray.t_max);
         let depths = passage
             .spans(ray.t_max)
-            .map(|span| span.depth(self.extinction(span.medium, wavelengths), unit));
+            .map(|span| self.depth(span.medium, &span.of(&ray, unit), Detail::Full, wavelengths));
         let transmittance = arriving(depths.fold(Spectrum::ZERO, |sum, depth| sum + depth));
         let edge = self.edge_of(transmittance, [a, b], wavelengths);
         let arrives = edge.transmittance * visible;
@@ -240,20 +254,24 @@ impl Scene {
     pub(crate) fn guessed_edge(&self, a: &Locus, b: &Locus, wavelengths: &Wavelengths) -> Edge {
         /// An unknown boundary may lie between.
         const LEAST: f32 = 1e-3;
-        let (w, span) = match (a.is_infinite(), b.is_infinite()) {
-            (true, _) => (-a.point, f32::INFINITY),
-            (false, true) => (b.point, f32::INFINITY),
-            (false, false) => (b.point - a.point, a.point.distance(b.point)),
+        let ray = super::visibility::shadow_ray(a, b);
+        let stretch = Stretch {
+            ray: &ray,
+            range: [ray.t_min, ray.t_max],
+            unit: ray.direction.length(),
         };
-        let [at_a, at_b] = [a.medium_toward(w), b.medium_toward(-w)]
-            .map(|medium| self.extinction(medium, wavelengths));
-        let depth = at_a.zip(at_b, |a, b| {
-            if a > 0.0 && b > 0.0 {
-                a.min(b) * span
-            } else {
-                0.0
-            }
-        });
+        let (from, to) = if a.is_infinite() { (b, a) } else { (a, b) };
+        let media = [
+            from.medium_toward(ray.direction),
+            to.medium_toward(-ray.direction),
+        ];
+        let through = |medium| self.depth(medium, &stretch, Detail::Means, wavelengths);
+        let near = through(media[0]);
+        let depth = if media[0] == media[1] {
+            near
+        } else {
+            near.zip(through(media[1]), f32::min)
+        };
         let transmittance = arriving(depth).map(|lane| lane.max(LEAST));
         self.edge_of(transmittance, [a, b], wavelengths)
     }
@@ -268,7 +286,10 @@ impl Scene {
     ) -> Edge {
         let density = |end: &Locus| match end.kind {
             LocusKind::Medium => {
-                let extinction = self.extinction(end.media.outside, wavelengths);
+                let medium = self.medium(end.media.outside);
+                let extinction = medium.map_or(Spectrum::ZERO, |medium| {
+                    medium.extinction(end.point, self.color, wavelengths)
+                });
                 self.color.mean(extinction * transmittance)
             }
             LocusKind::Surface | LocusKind::Space | LocusKind::Infinity => {

@@ -31,7 +31,7 @@ mod tests;
 pub use image::Image;
 pub use map::{Beyond, Change, ImageFilter, ImageMap, Wrap};
 pub use mapping::{Mapping, TextureSpace};
-pub use noise::{Marble, Noise, NoiseKind};
+pub use noise::{Marble, Noise, NoiseKind, fractal_noise};
 pub use pattern::{Bilerp, Cells, Checkerboard, Dots};
 pub use point::{Footprint, TexturePoint};
 pub use range::Range;

@@ -111,6 +111,15 @@ fn smoothstep(x: f32) -> f32 {
     t * t * (3.0 - 2.0 * t)
 }
 
+/// Σ ωⁱ noise(λⁱ p) over `octaves`, with ω = `roughness`, in every detail.
+pub fn fractal_noise(p: Vec3, octaves: u32, roughness: f32) -> f32 {
+    let octaves = Octaves {
+        count: octaves,
+        gain: roughness,
+    };
+    fbm(octaves, p, 0.0)
+}
+
 fn fbm(octaves: Octaves, p: Vec3, width: f32) -> f32 {
     octaves.sum(p, width, 0.0, |value| value)
 }

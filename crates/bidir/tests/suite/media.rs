@@ -8,7 +8,7 @@ use crate::common::{
 use bidir::integrator::IntegratorKind;
 use bidir::light::{InfiniteLight, Light, SpotLight};
 use bidir::math::{Affine3A, Vec3};
-use bidir::medium::{HenyeyGreenstein, Medium, MediumId, MediumSides};
+use bidir::medium::{Coefficients, Grid, HenyeyGreenstein, Medium, MediumId, MediumSides};
 use bidir::select::ShadowRays;
 use bidir::shape::{Orientation, Shape, Sphere};
 use bidir::spectrum::Rgb;
@@ -26,7 +26,30 @@ const VACUUM: MediumId = MediumId::VACUUM;
 
 fn medium(absorption: Rgb, scattering: Rgb, g: f32) -> Medium {
     let phase = HenyeyGreenstein::new(g).expect("a mean cosine");
-    Medium::homogeneous(absorption, scattering, phase).expect("valid coefficients")
+    Medium::homogeneous(coefficients(absorption, scattering), phase)
+}
+
+fn coefficients(absorption: Rgb, scattering: Rgb) -> Coefficients {
+    Coefficients::new(absorption, scattering).expect("valid coefficients")
+}
+
+/// A medium of a density in a box.
+fn smoke(coefficients: Coefficients, grid: Grid<1>, g: f32) -> Medium {
+    let phase = HenyeyGreenstein::new(g).expect("a mean cosine");
+    Medium::of_density(coefficients, grid, phase)
+}
+
+/// A grid of `n`³ cells between two corners, with a density that is a function of the numbers of a cell.
+fn grid(n: usize, [low, high]: [Vec3; 2], density: impl Fn([usize; 3]) -> f32) -> Grid<1> {
+    let place = Affine3A::from_translation(low) * Affine3A::from_scale(high - low);
+    let at = |i: usize| [i % n, i / n % n, i / (n * n)];
+    let values = (0..n * n * n).map(|i| [density(at(i))]).collect();
+    Grid::new([n; 3], values, place).expect("a grid")
+}
+
+/// Puffs, with nothing between some of them.
+fn puffs([x, y, z]: [usize; 3]) -> f32 {
+    ((x * 5 + y * 3 + z * 7) % 6) as f32 * f32::from(u8::from(x > 3 || y > 5))
 }
 
 /// Absorbs a little, scatters more, and the more so the bluer the light.
@@ -75,6 +98,18 @@ fn nested_furnace() -> Shot {
     finish(builder)
 }
 
+/// Puffs of smoke that absorb nothing, in a box without a boundary.
+fn furnace_with_smoke() -> Shot {
+    let mut builder = furnace();
+    let corners = [Vec3::splat(-1.0), Vec3::splat(1.0)];
+    let density = grid(10, corners, puffs);
+    fill(
+        &mut builder,
+        smoke(coefficients([0.0; 3], [0.2, 0.4, 0.8]), density, 0.4),
+    );
+    finish(builder)
+}
+
 #[track_caller]
 fn check_is(name: &str, result: &Replicates, expected: [f64; 3]) {
     check_agree(name, result, &result.exactly(expected), QUARTERS);
@@ -101,6 +136,13 @@ fn nested_media_that_absorb_nothing_are_not_seen_in_a_furnace() {
 }
 
 #[test]
+fn smoke_that_absorbs_nothing_is_not_seen_in_a_furnace() {
+    for integrator in [IntegratorKind::Path, IntegratorKind::Bdpt] {
+        check_furnace("smoke", &furnace_with_smoke(), integrator, 2048);
+    }
+}
+
+#[test]
 fn light_from_infinity_does_not_pass_a_medium_without_end() {
     let mut builder = builder(8, 0.0);
     let ground = builder.material(diffuse([0.5; 3]));
@@ -116,14 +158,14 @@ fn light_from_infinity_does_not_pass_a_medium_without_end() {
     }
 }
 
-/// A lamp behind one metre of a liquid that only absorbs.
-fn slab() -> Shot {
+/// A lamp behind one metre of `liquid`, which only absorbs.
+fn slab(liquid: Medium) -> Shot {
     let camera = narrow_camera(Vec3::new(0.0, 0.0, -3.0), 8, 0.05);
     let mut builder = ShotBuilder::new(camera, 8);
     let wall = builder.material(diffuse([0.0; 3]));
     let lamp = quad(Vec3::new(-1.0, -1.0, 3.0), Vec3::Y * 2.0, Vec3::X * 2.0);
     builder.shape(Shape::Mesh(lamp), wall, emission([1.0; 3]));
-    let inside = builder.medium(medium([1.0, 0.5, 2.0], [0.0; 3], 0.0));
+    let inside = builder.medium(liquid);
     let front = quad(Vec3::new(-5.0, -5.0, 0.0), Vec3::Y * 10.0, Vec3::X * 10.0);
     let back = quad(Vec3::new(-5.0, -5.0, 1.0), Vec3::X * 10.0, Vec3::Y * 10.0);
     for side in [front, back] {
@@ -137,8 +179,19 @@ fn slab() -> Shot {
 fn check_slab(integrator: IntegratorKind, passes: u64) {
     // Beer and Lambert; the camera sees the slab at up to 4° from its normal, 0.1 % more of it in the mean.
     let expected = [1.0, 0.5, 2.0].map(|depth: f64| libm::exp(-depth));
-    let result = replicates(&slab(), &settings(integrator, Some(3)), passes);
-    check_is(&integrator.to_string(), &result, expected);
+    let coefficients = coefficients([1.0, 0.5, 2.0], [0.0; 3]);
+    let around = [Vec3::splat(-6.0), Vec3::splat(6.0)];
+    let cells = |n| smoke(coefficients, grid(n, around, |_| 1.0), 0.0);
+    let phase = HenyeyGreenstein::new(0.0).expect("a mean cosine");
+    let liquids = [
+        ("liquid", Medium::homogeneous(coefficients, phase)),
+        ("one cell", cells(1)),
+        ("32³ cells", cells(32)),
+    ];
+    for (name, liquid) in liquids {
+        let result = replicates(&slab(liquid), &settings(integrator, Some(3)), passes);
+        check_is(&format!("{name}, {integrator}"), &result, expected);
+    }
 }
 
 #[test]
@@ -210,6 +263,7 @@ mod statistics {
             check_furnace(name, &shot, IntegratorKind::Lvc, 4096);
         }
         check_furnace("nested", &nested_furnace(), IntegratorKind::Bdpt, 2048);
+        check_furnace("smoke", &furnace_with_smoke(), IntegratorKind::Lvc, 4096);
     }
 
     #[test]
@@ -285,6 +339,21 @@ mod statistics {
         let world = World::new("cloud", finish(builder), 2048);
         world.check(IntegratorKind::Path, ALL, 2048);
         world.check(IntegratorKind::Lvc, ShadowRays::Budget(2), 2048);
+    }
+
+    #[test]
+    #[ignore = "statistics: .ci/run statistics"]
+    fn estimators_agree_on_smoke_between_lamp_and_wall() {
+        let mut builder = room();
+        let corners = [Vec3::new(-0.9, -0.2, -0.6), Vec3::new(0.8, 1.2, 1.1)];
+        let light = coefficients([0.02, 0.05, 0.1], [0.2, 0.4, 0.8]);
+        fill(&mut builder, smoke(light, grid(10, corners, puffs), 0.4));
+        let world = World::new("smoke", finish(builder), 2048);
+        world.check(IntegratorKind::Path, ALL, 4096);
+        world.check(IntegratorKind::Light, ALL, 8192);
+        world.check(IntegratorKind::Lvc, ShadowRays::Budget(2), 2048);
+        world.check(IntegratorKind::Bdpt, ShadowRays::PerPair, 2048);
+        world.check(IntegratorKind::Bdpt, ShadowRays::RayRoulette(0.1), 2048);
     }
 
     #[test]

@@ -6,7 +6,7 @@ use super::{Context, Document, Layout, SceneSettings, Summary, Survey, VertexErr
 use crate::error::ErrorKind;
 use crate::source::Fault;
 use bidir::light::Light;
-use bidir::medium::{MediumId, MediumSides};
+use bidir::medium::MediumSides;
 use bidir::scene::{Emission, MaterialId, ObjectId, Scene, SceneBuilder, SceneError};
 use bidir::shape::Shape;
 use bidir::texture::FloatTexture;
@@ -248,8 +248,7 @@ impl<P: Clone> Assembly<P> {
                 context.warn(place.clone(), message);
             }
         }
-        let is_swallowed =
-            |light: &Light| light.is_infinite() && scene.around() != MediumId::VACUUM;
+        let is_swallowed = |light: &Light| light.is_infinite() && !scene.is_open();
         for (place, lights) in &self.lamps {
             if lights.clone().any(|light| is_swallowed(scene.light(light))) {
                 context.warn(place.clone(), UNREACHABLE);

@@ -98,7 +98,7 @@ fn rgb(parameter: &Parameter, purpose: Purpose) -> Result<Rgb, Fault> {
 
 /// Converts a colour from another space to linear Rec. 709. A white reflectance is 1 in all spaces; white
 /// light is the white of the space.
-fn to_rec709(space: ColorSpace, color: Rgb, purpose: Purpose) -> Rgb {
+pub(super) fn to_rec709(space: ColorSpace, color: Rgb, purpose: Purpose) -> Rgb {
     let rec709 = Primaries::rec709();
     let from = match space {
         ColorSpace::Srgb => return color,

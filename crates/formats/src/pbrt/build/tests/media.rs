@@ -16,7 +16,7 @@ fn extinction(parameters: &str) -> [f32; 3] {
     let [medium] = scene.media() else {
         panic!("{} media", scene.media().len())
     };
-    let lanes = medium.extinction(scene.color(), &Wavelengths::default());
+    let lanes = medium.extinction(Vec3::ZERO, scene.color(), &Wavelengths::default());
     [lanes[0], lanes[1], lanes[2]]
 }
 
@@ -53,7 +53,7 @@ fn coefficients_follow_the_unit_of_a_small_scene() {
                 Shape \"sphere\" \"float radius\" 1e-6";
     let scene = load_text(text, &STRICT).scene;
     let unit = scene.space().unit as f32;
-    let found = scene.media()[0].extinction(scene.color(), &Wavelengths::default())[0];
+    let found = scene.media()[0].extinction(Vec3::ZERO, scene.color(), &Wavelengths::default())[0];
     assert!(
         (found / (2e6 * unit) - 1.0).abs() < 1e-5,
         "{found}, unit {unit}"
@@ -136,9 +136,9 @@ fn media_that_make_no_sense_are_refused() {
 #[test]
 fn media_of_other_kinds_are_named() {
     check_world(
-        "MakeNamedMedium \"smoke\" \"string type\" \"cloud\" MediumInterface \"smoke\" \"\" \
+        "MakeNamedMedium \"smoke\" \"string type\" \"nanovdb\" MediumInterface \"smoke\" \"\" \
          Shape \"sphere\"",
-        "s.pbrt:2:39: the medium type `cloud` is not supported; \
+        "s.pbrt:2:39: the medium type `nanovdb` is not supported; \
          with --lenient, vacuum is used instead",
     );
     check_world(
@@ -150,5 +150,109 @@ fn media_of_other_kinds_are_named() {
         &format!("{FOG} \"string preset\" \"Coke\" MediumInterface \"fog\" \"\" Shape \"sphere\""),
         "s.pbrt:2:67: the preset `Coke` is not supported; \
          with --lenient, the medium's own coefficients are used instead",
+    );
+}
+
+/// The lanes of σ_t at points of the only medium of a scene, which a sphere encloses.
+fn extinctions<const N: usize>(medium: &str, points: [[f32; 3]; N]) -> [[f32; 3]; N] {
+    let text = format!(
+        "{medium} MediumInterface \"smoke\" \"\" Material \"interface\" \
+         Shape \"sphere\" \"float radius\" 9"
+    );
+    let scene = world(&text);
+    let [medium] = scene.media() else {
+        panic!("{} media", scene.media().len())
+    };
+    points.map(|point| {
+        let point = Vec3::from_array(point);
+        let lanes = medium.extinction(point, scene.color(), &Wavelengths::default());
+        [lanes[0], lanes[1], lanes[2]].map(|lane| (lane * 1e4).round() / 1e4)
+    })
+}
+
+fn smoke(kind: &str, parameters: &str) -> String {
+    format!("MakeNamedMedium \"smoke\" \"string type\" \"{kind}\" {parameters} ")
+}
+
+#[test]
+fn grids_of_densities_are_read_x_first() {
+    let parameters = "\"integer nx\" 2 \"integer ny\" 1 \"integer nz\" 3 \"point3 p1\" [4 2 6] \
+         \"float density\" [1 2  3 4  5 6] \"rgb sigma_a\" [1 0 0] \"rgb sigma_s\" [1 1 0]";
+    let placed = format!("Translate 1 0 0 {}", smoke("uniformgrid", parameters));
+    let centres = [[2.0, 1.0, 1.0], [4.0, 1.0, 1.0], [2.0, 1.0, 5.0]];
+    let found = extinctions(&placed, centres);
+    assert_eq!(found, [[2.0, 1.0, 0.0], [4.0, 2.0, 0.0], [10.0, 5.0, 0.0]]);
+    let between = extinctions(&placed, [[3.0, 1.0, 1.0], [1.1, 0.1, 0.1]]);
+    assert_eq!(between, [[3.0, 1.5, 0.0], [2.0, 1.0, 0.0]]);
+}
+
+#[test]
+fn grids_of_colours_have_coefficients_of_their_own() {
+    let both = "\"integer nx\" 2 \"rgb sigma_a\" [1 2 3 4 5 6] \"rgb sigma_s\" [1 1 1 2 2 2]";
+    let points = [[0.25, 0.5, 0.5], [0.75, 0.5, 0.5]];
+    let found = extinctions(&smoke("rgbgrid", both), points);
+    assert_eq!(found, [[2.0, 3.0, 4.0], [6.0, 7.0, 8.0]]);
+    let one = "\"rgb sigma_s\" [0 1 2] \"float scale\" 2";
+    let found = extinctions(&smoke("rgbgrid", one), [[0.5; 3]]);
+    assert_eq!(found, [[2.0, 4.0, 6.0]]);
+}
+
+#[test]
+fn clouds_are_denser_the_lower() {
+    let cloud = smoke("cloud", "\"float density\" 3");
+    let layer = |y: f32| {
+        let at = |i: usize| [i % 8, i / 8].map(|n| (n as f32 + 0.5) / 8.0);
+        std::array::from_fn::<_, 64, _>(|i| [at(i)[0], y, at(i)[1]])
+    };
+    let mean = |y: f32| {
+        let found = extinctions(&cloud, layer(y));
+        found.iter().map(|[r, ..]| r).sum::<f32>() / 64.0
+    };
+    let [low, middle, high] = [0.01, 0.6, 0.98].map(mean);
+    assert!(
+        low > 1.8 && low > middle && middle > high + 0.1,
+        "{low} {middle} {high}"
+    );
+}
+
+#[test]
+fn grids_that_make_no_sense_are_refused() {
+    let check = |kind: &str, parameters: &str, message: &str| {
+        let text = smoke(kind, parameters);
+        check_world(&text, message);
+    };
+    check(
+        "uniformgrid",
+        "\"float density\" [1 2 3] \"integer nx\" 2",
+        "s.pbrt:2:69: `density` has 3 values, but must have 2 · 1 · 1",
+    );
+    check(
+        "uniformgrid",
+        "",
+        "s.pbrt:2:39: the medium has no `density`",
+    );
+    check(
+        "uniformgrid",
+        "\"float density\" [-1]",
+        "s.pbrt:2:69: `density` has the value -1, but must have none below 0",
+    );
+    check(
+        "rgbgrid",
+        "",
+        "s.pbrt:2:39: the medium has neither `sigma_a` nor `sigma_s`",
+    );
+    check(
+        "cloud",
+        "\"point3 p0\" [0 1 0]",
+        "s.pbrt:2:39: the box of the medium is empty: `p0` must be below `p1` in every coordinate",
+    );
+    let hot = smoke(
+        "uniformgrid",
+        "\"float density\" 1 \"float temperature\" 1000",
+    );
+    check_world(
+        &format!("{hot} MediumInterface \"smoke\" \"\" Shape \"sphere\""),
+        "s.pbrt:2:71: the parameter `float temperature` is not supported; \
+         with --lenient, the medium does not glow",
     );
 }

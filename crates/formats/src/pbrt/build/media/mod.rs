@@ -1,5 +1,8 @@
 //! Participating media, and which of them are on the sides of shapes.
 
+mod cloud;
+mod grid;
+
 use super::color::{self, Purpose};
 use super::context::Context;
 use super::reader::Reader;
@@ -7,7 +10,7 @@ use crate::pbrt::lexer::shorten;
 use crate::pbrt::parameters::ParameterType;
 use crate::pbrt::scene::{MediumDescription, MediumInterface, MediumReference};
 use crate::source::Fault;
-use bidir::medium::{HenyeyGreenstein, Medium, MediumId, MediumSides};
+use bidir::medium::{Coefficients, HenyeyGreenstein, Medium, MediumId, MediumSides};
 use bidir::scene::SceneBuilder;
 use bidir::spectrum::Rgb;
 use std::collections::BTreeMap;
@@ -72,39 +75,63 @@ impl Media {
 
 /// Reads a medium. None: its kind is not supported.
 fn read(context: &mut Context<'_>, medium: &MediumDescription) -> Result<Option<Medium>, Fault> {
-    let unit = context.layout.space.unit as f32;
     let mut reader = Reader::new(context, &medium.entity);
-    let span = reader.span();
-    if medium.entity.kind != "homogeneous" {
-        let what = format!("the medium type `{}`", medium.entity.kind);
-        (reader.context).unsupported(span, &what, "vacuum is used instead")?;
-        return Ok(None);
-    }
-    let medium = homogeneous(&mut reader, unit)?;
+    let built = match medium.entity.kind.as_str() {
+        "homogeneous" => homogeneous(&mut reader)?,
+        "uniformgrid" => grid::uniform(&mut reader, &medium.transforms)?,
+        "rgbgrid" => grid::rgb(&mut reader, &medium.transforms)?,
+        "cloud" => cloud::read(&mut reader, &medium.transforms)?,
+        kind => {
+            let what = format!("the medium type `{}`", shorten(kind));
+            let span = reader.span();
+            (reader.context).unsupported(span, &what, "vacuum is used instead")?;
+            return Ok(None);
+        }
+    };
     reader.finish()?;
-    Ok(Some(medium))
+    Ok(Some(built))
 }
 
-/// A medium in a space of which `unit` is the unit of length.
-fn homogeneous(reader: &mut Reader<'_, '_>, unit: f32) -> Result<Medium, Fault> {
-    let [absorption, scattering] = coefficients(reader)?;
-    let scale = reader.float_within("scale", 1.0, [0.0, f32::MAX])?;
+fn homogeneous(reader: &mut Reader<'_, '_>) -> Result<Medium, Fault> {
+    let given = coefficients(reader)?;
+    let scale = scale(reader)?;
+    let coefficients = scaled(reader, given, scale)?;
+    refuse_emission(reader, "Le")?;
+    Ok(Medium::homogeneous(coefficients, phase(reader)?))
+}
+
+/// The factor of all coefficients.
+fn scale(reader: &mut Reader<'_, '_>) -> Result<f32, Fault> {
+    reader.float_within("scale", 1.0, [0.0, f32::MAX])
+}
+
+fn phase(reader: &mut Reader<'_, '_>) -> Result<HenyeyGreenstein, Fault> {
     let g = reader.float_within("g", 0.0, [-1.0, 1.0])?;
-    refuse_emission(reader)?;
-    let fault = |message: &str| Fault::scene(reader.span(), message);
-    let phase = HenyeyGreenstein::new(g)
-        .ok_or_else(|| fault("the medium scatters in one direction alone: g is 1 or -1"))?;
-    let scaled = [absorption, scattering].map(|sigma| sigma.map(|lane| lane * scale * unit));
-    Medium::homogeneous(scaled[0], scaled[1], phase)
-        .ok_or_else(|| fault("the coefficients of the medium are too large"))
+    HenyeyGreenstein::new(g).ok_or_else(|| {
+        let message = "the medium scatters in one direction alone: g is 1 or -1";
+        Fault::scene(reader.span(), message)
+    })
+}
+
+/// σ_a and σ_s times a factor, per unit of length of the scene that is built.
+fn scaled(reader: &Reader<'_, '_>, given: [Rgb; 2], scale: f32) -> Result<Coefficients, Fault> {
+    let scale = scale * reader.context.layout.space.unit as f32;
+    let [absorption, scattering] = given.map(|sigma| sigma.map(|channel| channel * scale));
+    let message = "the coefficients of the medium are too large";
+    Coefficients::new(absorption, scattering).ok_or_else(|| Fault::scene(reader.span(), message))
+}
+
+/// σ_a and σ_s as they are given. Unit: 1 / the scene's unit of length.
+fn own_coefficients(reader: &mut Reader<'_, '_>) -> Result<[Option<Rgb>; 2], Fault> {
+    Ok([
+        color::read(reader, "sigma_a", Purpose::Unbounded)?,
+        color::read(reader, "sigma_s", Purpose::Unbounded)?,
+    ])
 }
 
 /// σ_a and σ_s: those of the preset, if there is one. Unit: 1 / the scene's unit of length.
 fn coefficients(reader: &mut Reader<'_, '_>) -> Result<[Rgb; 2], Fault> {
-    let given = [
-        color::read(reader, "sigma_a", Purpose::Unbounded)?,
-        color::read(reader, "sigma_s", Purpose::Unbounded)?,
-    ];
+    let given = own_coefficients(reader)?;
     if let Some((name, span)) = reader.string("preset")? {
         let known = PRESETS.iter().find(|(known, ..)| *known == name);
         if let Some(&(_, scattering, absorption)) = known {
@@ -118,8 +145,8 @@ fn coefficients(reader: &mut Reader<'_, '_>) -> Result<[Rgb; 2], Fault> {
 }
 
 /// Refuses a medium that glows.
-fn refuse_emission(reader: &mut Reader<'_, '_>) -> Result<(), Fault> {
-    let emission = color::read(reader, "Le", Purpose::Unbounded)?;
+fn refuse_emission(reader: &mut Reader<'_, '_>, name: &'static str) -> Result<(), Fault> {
+    let emission = color::read(reader, name, Purpose::Unbounded)?;
     reader.ignore(ParameterType::Float, "Lescale");
     if emission.is_some_and(|emission| emission.iter().any(|&lane| lane > 0.0)) {
         let span = reader.span();

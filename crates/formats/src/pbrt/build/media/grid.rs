@@ -1,0 +1,148 @@
+//! Media of which a file has the numbers, cell by cell.
+
+use super::super::color::to_rec709;
+use super::super::reader::Reader;
+use super::{color, own_coefficients, phase, scale, scaled};
+use crate::pbrt::parameters::{Parameter, ParameterType, Values};
+use crate::pbrt::transform::Transforms;
+use crate::source::Fault;
+use bidir::math::Affine3A;
+use bidir::medium::{Grid, Medium};
+use color::Purpose;
+use glam::{DAffine3, Vec3};
+
+/// Reads a medium with a density for each cell.
+pub(super) fn uniform(
+    reader: &mut Reader<'_, '_>,
+    transforms: &Transforms,
+) -> Result<Medium, Fault> {
+    let place = place(reader, transforms)?;
+    let size = size(reader)?;
+    let given = own_coefficients(reader)?.map(|given| given.unwrap_or([1.0; 3]));
+    let scale = scale(reader)?;
+    let coefficients = scaled(reader, given, scale)?;
+    super::refuse_emission(reader, "Le")?;
+    for name in ["temperatureoffset", "temperaturecutoff", "temperaturescale"] {
+        reader.ignore(ParameterType::Float, name);
+    }
+    let cold = "the medium does not glow";
+    reader.unsupported(ParameterType::Float, "temperature", cold)?;
+    let phase = phase(reader)?;
+    let Some(density) = reader.find(ParameterType::Float, "density") else {
+        return Err(Fault::scene(reader.span(), "the medium has no `density`"));
+    };
+    let values = numbers(density, size, 1)?;
+    let values = values.iter().map(|&value| [value]).collect();
+    let grid = build(density, size, values, place)?;
+    Ok(Medium::of_density(coefficients, grid, phase))
+}
+
+/// Reads a medium with coefficients for each cell.
+pub(super) fn rgb(reader: &mut Reader<'_, '_>, transforms: &Transforms) -> Result<Medium, Fault> {
+    let place = place(reader, transforms)?;
+    let size = size(reader)?;
+    let scale = scale(reader)? * reader.context.layout.space.unit as f32;
+    let glow = "the medium does not glow";
+    reader.unsupported(ParameterType::Rgb, "Le", glow)?;
+    reader.ignore(ParameterType::Float, "Lescale");
+    let phase = phase(reader)?;
+    let [absorption, scattering] =
+        ["sigma_a", "sigma_s"].map(|name| reader.find(ParameterType::Rgb, name));
+    let Some(any) = absorption.or(scattering) else {
+        let message = "the medium has neither `sigma_a` nor `sigma_s`";
+        return Err(Fault::scene(reader.span(), message));
+    };
+    let read = |parameter: Option<&Parameter>| {
+        let count = size.iter().product();
+        // Coefficients that the file does not have are 1.
+        let Some(parameter) = parameter else {
+            return Ok(vec![[scale; 3]; count]);
+        };
+        let values = numbers(parameter, size, 3)?;
+        let colors = values.as_chunks::<3>().0.iter();
+        let convert = |&rgb| to_rec709(parameter.color_space, rgb, Purpose::Unbounded);
+        Ok(colors
+            .map(|rgb| convert(rgb).map(|channel| channel.max(0.0) * scale))
+            .collect::<Vec<_>>())
+    };
+    let [absorption, scattering] = [read(absorption)?, read(scattering)?];
+    let sum = |(a, s): (&[f32; 3], &[f32; 3])| std::array::from_fn(|i| a[i] + s[i]);
+    let extinction = absorption.iter().zip(&scattering).map(sum).collect();
+    let extinction = build(any, size, extinction, place)?;
+    let scattering = build(any, size, scattering, place)?;
+    Medium::chromatic(extinction, scattering, phase)
+        .ok_or_else(|| Fault::scene(any.value_span, "the coefficients are too large"))
+}
+
+/// Reads the corners of the box, and places the unit cube there.
+pub(super) fn place(
+    reader: &mut Reader<'_, '_>,
+    transforms: &Transforms,
+) -> Result<Affine3A, Fault> {
+    if transforms.is_animated() {
+        let (span, what) = (reader.span(), "a medium that moves");
+        let substitute = "it stays where it is at the start";
+        reader.context.unsupported(span, what, substitute)?;
+    }
+    let [low, high] = [
+        reader.point3("p0", [0.0; 3])?,
+        reader.point3("p1", [1.0; 3])?,
+    ]
+    .map(|corner| Vec3::from_array(corner).as_dvec3());
+    if !low.cmplt(high).all() {
+        let message = "the box of the medium is empty: `p0` must be below `p1` in every coordinate";
+        return Err(Fault::scene(reader.span(), message));
+    }
+    let cube = DAffine3::from_translation(low) * DAffine3::from_scale(high - low);
+    let placed = reader.context.place(transforms) * cube;
+    Ok(Affine3A {
+        matrix3: placed.matrix3.as_mat3().into(),
+        translation: placed.translation.as_vec3a(),
+    })
+}
+
+/// Reads the numbers of cells along each axis.
+fn size(reader: &mut Reader<'_, '_>) -> Result<[usize; 3], Fault> {
+    let mut count = |name| Ok(reader.integer(name, 1, 1)? as usize);
+    Ok([count("nx")?, count("ny")?, count("nz")?])
+}
+
+/// The values of a parameter that has so many channels for each cell.
+fn numbers(parameter: &Parameter, size: [usize; 3], channels: usize) -> Result<&[f32], Fault> {
+    let expected = size.iter().try_fold(channels, |n, &k| n.checked_mul(k));
+    let fault = |message: String| Fault::scene(parameter.value_span, message);
+    let Values::Floats(values) = &parameter.values else {
+        return Ok(&[]);
+    };
+    if expected != Some(values.len()) {
+        let [nx, ny, nz] = size;
+        return Err(fault(format!(
+            "`{}` has {} values, but must have {nx} · {ny} · {nz}",
+            parameter.name,
+            values.len() / channels
+        )));
+    }
+    if let Some(wrong) = values
+        .iter()
+        .find(|value| !(0.0..=f32::MAX).contains(*value))
+    {
+        return Err(fault(format!(
+            "`{}` has the value {wrong}, but must have none below 0",
+            parameter.name
+        )));
+    }
+    Ok(values)
+}
+
+/// The grid of a parameter.
+fn build<const N: usize>(
+    parameter: &Parameter,
+    size: [usize; 3],
+    values: Vec<[f32; N]>,
+    place: Affine3A,
+) -> Result<Grid<N>, Fault> {
+    Grid::new(size, values, place).ok_or_else(|| {
+        let message = "the medium has coefficients that are too large, or a box without a volume";
+        Fault::scene(parameter.value_span, message)
+    })
+}
