@@ -30,8 +30,8 @@ MEDIA = [
     (
         "distances by one lane alone",
         PASSAGE,
-        "let lane = self.color.pick_lane(u_lane);",
-        "let lane = self.color.pick_lane(u_lane * 0.0);",
+        "lane: self.color.pick_lane(u_lane),",
+        "lane: self.color.pick_lane(u_lane * 0.0),",
         FURNACE,
     ),
     (
@@ -54,5 +54,33 @@ MEDIA = [
         "(-wo.dot(wi)).clamp(-1.0, 1.0)",
         "wo.dot(wi).clamp(-1.0, 1.0)",
         unit("medium::phase::"),
+    ),
+    (
+        "grids integrated by one point",
+        "crates/bidir/src/medium/grid.rs",
+        "const REACH: f32 = 0.288_675_13;",
+        "const REACH: f32 = 0.0;",
+        unit("medium::tests::"),
+    ),
+    (
+        "a walk through a grid stops in the middle of a cell",
+        "crates/bidir/src/medium/flight.rs",
+        "    for _ in 0..STEPS {",
+        "    for _ in 0..STEPS * 0 {",
+        unit("medium::tests::"),
+    ),
+    (
+        "blocks that are not constant passed in one step",
+        "crates/bidir/src/medium/grid.rs",
+        "block.is_constant || detail == Detail::Means",
+        "block.is_constant || detail != Detail::Means",
+        unit("medium::tests::"),
+    ),
+    (
+        "the density of a vertex in smoke is that of its medium",
+        "crates/bidir/src/medium/mod.rs",
+        "coefficients.scaled(density)",
+        "coefficients.scaled(density.max(1.0))",
+        media("smoke_that_absorbs_nothing"),
     ),
 ]

@@ -24,6 +24,11 @@ impl HenyeyGreenstein {
         })
     }
 
+    /// g.
+    pub const fn mean_cosine(self) -> f32 {
+        self.g
+    }
+
     /// p of light that arrives from `wo` and leaves to `wi`, or the other way round; both unit, away from the vertex.
     /// It is the density of [`sample`](Self::sample) too.
     #[inline(never)] // Out of line, so that code for surfaces stays small.

@@ -9,6 +9,7 @@ mod case;
 mod matrix;
 mod places;
 mod plans;
+mod subsurface;
 
 #[path = "../../../bidir/tests/common/statistics/mod.rs"]
 mod statistics;

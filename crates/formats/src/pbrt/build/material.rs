@@ -4,6 +4,7 @@
 
 use super::color::Purpose;
 use super::context::Context;
+use super::media;
 use super::reader::Reader;
 use super::spectral;
 use super::texture::Textures;
@@ -16,6 +17,7 @@ use bidir::material::{
     Bitangent, CLEAR, CoatSettings, CoatedConductorMaterial, CoatedDiffuseMaterial, ConductorIndex,
     Material, Mixture, NormalMap, Relief, Roughness, RoughnessMapping,
 };
+use bidir::medium::Medium;
 use bidir::scene::RenderSpace;
 use bidir::texture::{ColorTexture, FloatTexture, Scale};
 use std::collections::BTreeMap;
@@ -28,6 +30,8 @@ pub(super) struct Materials<'a> {
     named: BTreeMap<&'a str, usize>,
     /// The materials in construction, the innermost last, to find cycles of mixtures.
     open: Vec<usize>,
+    /// The media within surfaces, by number of the material.
+    contents: BTreeMap<usize, Medium>,
 }
 
 impl<'a> Materials<'a> {
@@ -39,7 +43,13 @@ impl<'a> Materials<'a> {
                 .collect(),
             described,
             open: Vec::new(),
+            contents: BTreeMap::new(),
         }
+    }
+
+    /// The medium within the surfaces of material number `index`, which was built.
+    pub(super) fn take_content(&mut self, index: usize) -> Option<Medium> {
+        self.contents.remove(&index)
     }
 
     /// Builds material number `index`; one without an entity is the default material.
@@ -66,10 +76,15 @@ impl<'a> Materials<'a> {
             "conductor" => parameters.conductor()?,
             "dielectric" => parameters.dielectric()?,
             "thindielectric" => Material::ThinDielectric {
-                eta: spectral::read_eta(&mut parameters.reader, "eta")?,
+                eta: spectral::read_eta(&mut parameters.reader, "eta", GLASS)?,
             },
             "coateddiffuse" => parameters.coated_diffuse()?,
             "coatedconductor" => parameters.coated_conductor()?,
+            "subsurface" => {
+                let (material, content) = parameters.subsurface()?;
+                self.contents.insert(index, content);
+                material
+            }
             "mix" => {
                 let material = self.mix(&mut parameters, index)?;
                 parameters.reader.finish()?;
@@ -133,6 +148,11 @@ impl<'a> Materials<'a> {
             return Err(Fault::scene(span, message));
         }
         let part = self.build(from.reader.context, from.textures, index)?;
+        if self.take_content(index).is_some() {
+            let what = "a mixture with a material `subsurface`";
+            let substitute = "its part is clear glass";
+            from.reader.context.unsupported(span, what, substitute)?;
+        }
         part.ok_or_else(|| {
             let message = format!("the material `{}` is not a surface", shorten(name));
             Fault::scene(span, message).with_hint("a mixture needs two surfaces")
@@ -159,6 +179,11 @@ fn in_space(height: FloatTexture, space: &RenderSpace) -> FloatTexture {
         factor: FloatTexture::Constant((1.0 / space.unit) as f32),
     }))
 }
+
+/// The index of refraction where the file has none.
+const GLASS: f32 = 1.5;
+/// The same of a surface with a medium within.
+const WATER: f32 = 1.33;
 
 /// The names of a roughness: in both directions, along u, along v.
 const SURFACE: [&str; 3] = ["roughness", "uroughness", "vroughness"];
@@ -276,9 +301,17 @@ impl Parameters<'_, '_, '_> {
 
     fn dielectric(&mut self) -> Result<Material, Fault> {
         Ok(Material::Dielectric {
-            eta: spectral::read_eta(&mut self.reader, "eta")?,
+            eta: spectral::read_eta(&mut self.reader, "eta", GLASS)?,
             roughness: self.roughness(&SURFACE)?,
         })
+    }
+
+    /// Reads a surface and the medium within it.
+    fn subsurface(&mut self) -> Result<(Material, Medium), Fault> {
+        let eta = spectral::read_eta(&mut self.reader, "eta", WATER)?;
+        let roughness = self.roughness(&SURFACE)?;
+        let content = media::subsurface::read(&mut self.reader, eta)?;
+        Ok((Material::Dielectric { eta, roughness }, content))
     }
 
     fn coated_diffuse(&mut self) -> Result<Material, Fault> {
@@ -308,7 +341,7 @@ impl Parameters<'_, '_, '_> {
         self.reader.ignore(ParameterType::Integer, "maxdepth");
         self.reader.ignore(ParameterType::Integer, "nsamples");
         Ok(CoatSettings {
-            eta: spectral::read_eta(&mut self.reader, eta)?,
+            eta: spectral::read_eta(&mut self.reader, eta, GLASS)?,
             roughness: self.roughness(roughness)?,
             thickness,
             albedo: albedo.unwrap_or(CLEAR),
@@ -337,14 +370,6 @@ impl Parameters<'_, '_, '_> {
         let span = self.reader.span();
         let what = format!("the material `{kind}`");
         let context = &mut *self.reader.context;
-        if kind == "subsurface" {
-            context.unsupported(
-                span,
-                &what,
-                "`diffuse` with its reflectance is used instead",
-            )?;
-            return self.diffuse();
-        }
         context.unsupported(
             span,
             &what,

@@ -32,6 +32,7 @@ use crate::error::Result;
 use crate::files::Files;
 use crate::import::{self, Gathered, LoadOptions, Loaded, SharedObject, Size, Skin, Survey};
 use crate::source::{Fault, Span};
+use bidir::medium::MediumId;
 use bidir::scene::{Emission, MaterialId};
 use bidir::shape::Shape;
 use context::Context;
@@ -70,6 +71,8 @@ struct Builder<'a> {
     media: Media,
     /// By index; None where there is no surface.
     materials: Vec<Option<MaterialId>>,
+    /// The media within their surfaces.
+    contents: Vec<Option<MediumId>>,
     /// The emission of the last shape.
     last_emission: Option<(Arc<Entity>, Arc<AreaEmission>)>,
 }
@@ -98,6 +101,7 @@ impl<'a> Builder<'a> {
             textures: Textures::new(description),
             media: Media::default(),
             materials: Vec::new(),
+            contents: Vec::new(),
             last_emission: None,
         };
         builder.add_camera_medium(context, lens.eye)?;
@@ -140,6 +144,11 @@ impl<'a> Builder<'a> {
             self.assembly.summary.materials += usize::from(built.is_some());
             let id = built.map(|material| self.assembly.builder.material(material));
             self.materials.push(id);
+            let content = materials
+                .take_content(index)
+                .filter(|_| used.contains(&index));
+            let content = content.map(|medium| self.assembly.builder.medium(medium));
+            self.contents.push(content);
         }
         Ok(())
     }
@@ -157,7 +166,10 @@ impl<'a> Builder<'a> {
             return Ok(());
         };
         let builder = &mut self.assembly.builder;
-        let media = self.media.sides(context, builder, &shape.medium)?;
+        let mut media = self.media.sides(context, builder, &shape.medium)?;
+        if let Some(content) = self.contents.get(shape.material).copied().flatten() {
+            media.inside = content;
+        }
         let material = self.materials.get(shape.material).copied().flatten();
         if material.is_none() && !media.is_boundary() {
             return Ok(());

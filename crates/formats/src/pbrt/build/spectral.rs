@@ -112,12 +112,16 @@ pub(super) fn copper() -> (Rgb, Rgb) {
 
 /// Reads the index of refraction `name` of a dielectric: a number, or the value of a spectrum at the d
 /// line.
-pub(super) fn read_eta(reader: &mut Reader<'_, '_>, name: &'static str) -> Result<f32, Fault> {
+pub(super) fn read_eta(
+    reader: &mut Reader<'_, '_>,
+    name: &'static str,
+    default: f32,
+) -> Result<f32, Fault> {
     if let Some(eta) = reader.optional_float(name)? {
         return positive(reader, name, eta);
     }
     let Some((spectrum, parameter)) = read(reader, name)? else {
-        return Ok(1.5);
+        return Ok(default);
     };
     let eta = spectrum.at(D_LINE) as f32;
     let message =

@@ -2,6 +2,8 @@
 
 mod cloud;
 mod grid;
+mod layer;
+pub(super) mod subsurface;
 
 use super::color::{self, Purpose};
 use super::context::Context;
@@ -132,16 +134,25 @@ fn own_coefficients(reader: &mut Reader<'_, '_>) -> Result<[Option<Rgb>; 2], Fau
 /// σ_a and σ_s: those of the preset, if there is one. Unit: 1 / the scene's unit of length.
 fn coefficients(reader: &mut Reader<'_, '_>) -> Result<[Rgb; 2], Fault> {
     let given = own_coefficients(reader)?;
-    if let Some((name, span)) = reader.string("preset")? {
-        let known = PRESETS.iter().find(|(known, ..)| *known == name);
-        if let Some(&(_, scattering, absorption)) = known {
-            return Ok([absorption, scattering]);
-        }
-        let what = format!("the preset `{}`", shorten(name));
-        let substitute = "the medium's own coefficients are used instead";
-        reader.context.unsupported(span, &what, substitute)?;
+    if let Some(known) = preset(reader, "preset")? {
+        return Ok(known);
     }
     Ok(given.map(|given| given.unwrap_or([1.0; 3])))
+}
+
+/// σ_a and σ_s of the substance that a parameter names. None: the file names none.
+fn preset(reader: &mut Reader<'_, '_>, parameter: &'static str) -> Result<Option<[Rgb; 2]>, Fault> {
+    let Some((name, span)) = reader.string(parameter)? else {
+        return Ok(None);
+    };
+    let known = PRESETS.iter().find(|(known, ..)| *known == name);
+    if let Some(&(_, scattering, absorption)) = known {
+        return Ok(Some([absorption, scattering]));
+    }
+    let what = format!("the {parameter} `{}`", shorten(name));
+    let substitute = "the medium's own coefficients are used instead";
+    reader.context.unsupported(span, &what, substitute)?;
+    Ok(None)
 }
 
 /// Refuses a medium that glows.

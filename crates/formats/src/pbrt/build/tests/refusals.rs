@@ -102,9 +102,9 @@ fn wrong_worlds_are_errors() {
 #[test]
 fn unsupported_features_are_refused_by_name() {
     check_world(
-        "Material \"subsurface\" Shape \"sphere\"",
-        "s.pbrt:2:10: the material `subsurface` is not supported; \
-         with --lenient, `diffuse` with its reflectance is used instead",
+        "Material \"hair\" Shape \"sphere\"",
+        "s.pbrt:2:10: the material `hair` is not supported; \
+         with --lenient, `diffuse` with reflectance 0.5 is used instead",
     );
     check_world(
         "Texture \"t\" \"float\" \"ptex\"\n\
@@ -127,7 +127,7 @@ fn unsupported_features_are_refused_by_name() {
 #[test]
 fn with_leniency_unsupported_features_are_replaced_and_counted() {
     let loaded = load_text(
-        "Integrator \"sppm\" WorldBegin\nMaterial \"subsurface\" \"rgb reflectance\" [1 0 0]\n\
+        "Integrator \"sppm\" WorldBegin\nMaterial \"hair\"\n\
          Shape \"sphere\" Shape \"curve\" Shape \"curve\"\nMaterial \"interface\" Shape \"sphere\"",
         &LENIENT,
     );
@@ -136,8 +136,8 @@ fn with_leniency_unsupported_features_are_replaced_and_counted() {
         loaded.warnings,
         [
             "s.pbrt:1:12: the integrator `sppm` is not supported: `bdpt` is used instead",
-            "s.pbrt:2:10: the material `subsurface` is not supported: `diffuse` with its \
-             reflectance is used instead",
+            "s.pbrt:2:10: the material `hair` is not supported: `diffuse` with reflectance 0.5 \
+             is used instead",
             "s.pbrt:3:22: the shape `curve` is not supported: it is left out (2 times)",
         ]
     );

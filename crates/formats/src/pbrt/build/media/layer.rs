@@ -1,0 +1,170 @@
+//! The albedo with which a deep layer of an isotropic medium under a smooth surface reflects a given part of diffuse
+//! light.
+//!
+//! Within, radiance at the cosine μ comes back from below as
+//!
+//! I_up(μ) = α/2 H(μ) ∫ H(ν) ν / (μ + ν) I_down(ν) dν, 1 / H(μ) = √(1 - α) + α/2 ∫ ν H(ν) / (μ + ν) dν
+//!
+//! \[Chandrasekhar60, §37\], and the surface sends some of it down again: I_down = e + F I_up, where e is the light that
+//! enters. Integrals are sums over the points of Gauss on both sides of the critical angle.
+
+use bidir::bsdf::fresnel::dielectric;
+
+/// Points and weights of Gauss in `[-1, 1]`, those above 0 \[Press07, §4.6\].
+const GAUSS: [[f64; 2]; 4] = [
+    [0.183_434_642_495_649_8, 0.362_683_783_378_362],
+    [0.525_532_409_916_329, 0.313_706_645_877_887_3],
+    [0.796_666_477_413_626_7, 0.222_381_034_453_374_5],
+    [0.960_289_856_497_536_3, 0.101_228_536_290_376_3],
+];
+/// Steps of every iteration: fewer than a thousandth of the light is left after them.
+const STEPS: usize = 64;
+
+/// A direction within the layer.
+#[derive(Clone, Copy, Debug)]
+struct Point {
+    /// μ.
+    cos: f64,
+    /// dμ.
+    weight: f64,
+    /// F.
+    reflectance: f64,
+}
+
+/// A layer under a surface.
+#[derive(Debug)]
+pub(super) struct Layer {
+    points: Vec<Point>,
+    /// The radiance in each direction within that diffuse light of radiance 1 outside makes.
+    entering: Vec<f64>,
+}
+
+impl Layer {
+    /// A layer under a surface of this relative index of refraction.
+    pub(super) fn new(eta: f32) -> Self {
+        let square = f64::from(eta) * f64::from(eta);
+        let critical = (1.0 - 1.0 / square).max(0.0).sqrt();
+        let points: Vec<Point> = [[0.0, critical], [critical, 1.0]]
+            .iter()
+            .flat_map(|&range| nodes(range))
+            .map(|[cos, weight]| Point {
+                cos,
+                weight,
+                reflectance: f64::from(dielectric(-cos as f32, eta)),
+            })
+            .collect();
+        let entering = points.iter().map(|at| square * (1.0 - at.reflectance));
+        let entering = entering.collect();
+        Self { points, entering }
+    }
+
+    /// The albedo with which the layer returns `part` of the diffuse light that enters.
+    pub(super) fn albedo(&self, part: f64) -> f64 {
+        let [mut low, mut high] = [0.0, 1.0];
+        for _ in 0..24 {
+            let middle = 0.5 * (low + high);
+            // Of 1 - α, because reflectance rises steeply where α is almost 1.
+            if self.reflectance(1.0 - middle * middle) > part {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        1.0 - low * low
+    }
+
+    /// The part of the diffuse light that enters and that a layer of this albedo returns.
+    fn reflectance(&self, albedo: f64) -> f64 {
+        let h = self.chandrasekhar(albedo);
+        let mut up = vec![0.0; self.points.len()];
+        for _ in 0..STEPS {
+            let back = self
+                .points
+                .iter()
+                .zip(&up)
+                .map(|(at, up)| at.reflectance * up);
+            let down: Vec<f64> = back.zip(&self.entering).map(|(back, e)| back + e).collect();
+            let from_below = |at: &Point, h_at: f64| {
+                let terms = self.points.iter().zip(&h).zip(&down);
+                let sum: f64 = terms
+                    .map(|((to, h), down)| to.weight * h * to.cos / (at.cos + to.cos) * down)
+                    .sum();
+                0.5 * albedo * h_at * sum
+            };
+            up = self
+                .points
+                .iter()
+                .zip(&h)
+                .map(|(at, &h)| from_below(at, h))
+                .collect();
+        }
+        let leaves = |at: &Point| at.weight * at.cos * (1.0 - at.reflectance);
+        let flux = |radiance: &[f64], part: &dyn Fn(&Point) -> f64| -> f64 {
+            self.points
+                .iter()
+                .zip(radiance)
+                .map(|(at, i)| part(at) * i)
+                .sum()
+        };
+        flux(&up, &leaves) / flux(&self.entering, &|at| at.weight * at.cos)
+    }
+
+    /// H of every point.
+    fn chandrasekhar(&self, albedo: f64) -> Vec<f64> {
+        let mut h = vec![1.0; self.points.len()];
+        for _ in 0..STEPS {
+            let inverse = |at: &Point| {
+                let terms = self.points.iter().zip(&h);
+                let sum: f64 = terms
+                    .map(|(to, h)| to.weight * to.cos * h / (at.cos + to.cos))
+                    .sum();
+                (1.0 - albedo).sqrt() + 0.5 * albedo * sum
+            };
+            // Half a step, as whole ones overshoot.
+            let next = self.points.iter().zip(&h);
+            h = next.map(|(at, h)| 0.5 * (h + 1.0 / inverse(at))).collect();
+        }
+        h
+    }
+}
+
+/// The points of Gauss in a range, and their weights.
+fn nodes([from, to]: [f64; 2]) -> impl Iterator<Item = [f64; 2]> {
+    let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
+    let signed = GAUSS.into_iter().flat_map(|[x, w]| [[-x, w], [x, w]]);
+    let placed = signed.map(move |[x, w]| [middle + half * x, half * w]);
+    placed.filter(|[_, weight]| *weight > 0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_layer_without_a_surface_has_the_albedo_of_the_closed_form() {
+        let layer = Layer::new(1.0);
+        // 1 - 2 √(1 - α) ∫ H μ dμ with 400 points.
+        let closed = [
+            (0.3, 0.07445),
+            (0.5, 0.14654),
+            (0.8, 0.34187),
+            (0.95, 0.59667),
+            (0.99, 0.79456),
+        ];
+        for (albedo, expected) in closed {
+            let found = layer.reflectance(albedo);
+            assert!((found / expected - 1.0).abs() < 1e-3, "{albedo}: {found}");
+        }
+    }
+
+    #[test]
+    fn albedos_give_the_part_asked_for() {
+        for eta in [1.0, 1.33, 2.0] {
+            let layer = Layer::new(eta);
+            for part in [0.01, 0.2, 0.5, 0.8, 0.95] {
+                let found = layer.reflectance(layer.albedo(part));
+                assert!((found - part).abs() < 1e-4, "{eta}, {part}: {found}");
+            }
+        }
+    }
+}
