@@ -61,6 +61,8 @@ pub(crate) const DEEPEST_BLOCK: usize = 1 << 16;
 pub(crate) const MOST_DEFAULTS: usize = 64;
 /// Number of values of these parameters.
 pub(crate) const MOST_DEFAULT_VALUES: usize = 4096;
+/// Maximum number of clouds, each of which is made of millions of cells.
+pub(crate) const MOST_CLOUDS: usize = 32;
 /// Number of different warnings, as each one searches the list.
 pub(crate) const MOST_WARNINGS: usize = 200;
 /// The warning that stands for all further ones.
@@ -159,6 +161,7 @@ mod tests {
             ("image file", gib(LARGEST_IMAGE)),
             ("file of glTF", gib(LARGEST_GLTF)),
             ("spectrum file", format!("{} MiB", LARGEST_SPECTRUM >> 20)),
+            ("clouds of noise", MOST_CLOUDS.to_string()),
             (
                 "distinct warnings",
                 format!("{MOST_WARNINGS}, then one for all others"),

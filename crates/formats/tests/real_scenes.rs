@@ -98,7 +98,7 @@ mod long_statistics {
     #[test]
     #[ignore = "long statistics: .ci/run statistics"]
     fn veach_bidir() {
-        check("pbrt-v4/veach-bidir/veach-bidir.pbrt", 512, 8);
+        check("pbrt-v4/veach-bidir/veach-bidir.pbrt", 1024, 24);
     }
 
     #[test]

@@ -17,7 +17,7 @@ const BLOCK: usize = 8;
 
 /// Numbers of `N` channels at the centres of equal cells of a box: linear between them, constant from the outermost
 /// centres to the faces, and zero outside.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Grid<const N: usize> {
     size: [usize; 3],
     /// The centre of the first cell is at 1 along each axis, and cells have the side 1.
@@ -30,7 +30,7 @@ pub struct Grid<const N: usize> {
 }
 
 /// Some cells of a grid.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 struct Block<const N: usize> {
     mean: [f32; N],
     is_constant: bool,
@@ -90,18 +90,27 @@ impl<const N: usize> Grid<N> {
         Some(grid)
     }
 
-    /// The box of its box in the world.
+    /// The bounds of the box in the world.
     pub fn bounds(&self) -> Aabb {
         self.bounds
     }
 
-    /// True where the other grid has the same box and cells, and nowhere greater numbers.
-    pub(super) fn bounds_each(&self, other: &Self) -> bool {
+    /// The largest number.
+    pub(super) fn most(&self) -> f32 {
+        self.values
+            .as_flattened()
+            .iter()
+            .copied()
+            .fold(0.0, f32::max)
+    }
+
+    /// True where the other grid has the same box and cells, and nowhere smaller numbers.
+    pub(super) fn is_nowhere_above(&self, other: &Self) -> bool {
         let ours = self.values.as_flattened();
         let theirs = other.values.as_flattened();
         self.size == other.size
             && self.lattice_from_world == other.lattice_from_world
-            && ours.iter().zip(theirs).all(|(our, their)| their <= our)
+            && ours.iter().zip(theirs).all(|(our, their)| our <= their)
     }
 
     /// The values at a point of the box; outside, those of the nearest face.

@@ -88,7 +88,7 @@ impl MediumSides {
 }
 
 /// A medium of a scene.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Medium {
     field: Field,
     phase: HenyeyGreenstein,
@@ -104,7 +104,7 @@ pub struct Coefficients {
 }
 
 /// The coefficients everywhere.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 enum Field {
     Homogeneous(Coefficients),
     /// Coefficients times a density, in a box.
@@ -140,31 +140,43 @@ impl Coefficients {
     }
 }
 
+/// The largest channel.
+fn largest(rgb: Rgb) -> f32 {
+    rgb.into_iter().fold(0.0, f32::max)
+}
+
 impl Medium {
+    /// The largest σ_t of a grid, so that products with lengths stay finite.
+    pub const DENSEST: f32 = 1e12;
+
     /// A medium that is the same everywhere.
     pub const fn homogeneous(coefficients: Coefficients, phase: HenyeyGreenstein) -> Self {
         let field = Field::Homogeneous(coefficients);
         Self { field, phase }
     }
 
-    /// A medium with the coefficients times the density of a grid, and outside of its box nothing.
-    pub const fn of_density(
+    /// A medium with the coefficients times the density of a grid, and outside of its box nothing. None: σ_t is above
+    /// [`DENSEST`](Self::DENSEST) somewhere.
+    pub fn of_density(
         coefficients: Coefficients,
         density: Grid<1>,
         phase: HenyeyGreenstein,
-    ) -> Self {
+    ) -> Option<Self> {
+        let most = density.most() * largest(coefficients.extinction);
         let field = Field::Density(coefficients, density);
-        Self { field, phase }
+        (most <= Self::DENSEST).then_some(Self { field, phase })
     }
 
     /// A medium with the coefficients of two grids, 1/m, and outside of their box nothing. None: the grids have not
-    /// the same box and size, or scatter more than they take.
+    /// the same box and size, σ_s is above σ_t somewhere, or that above [`DENSEST`](Self::DENSEST).
     pub fn chromatic(
         extinction: Grid<3>,
         scattering: Grid<3>,
         phase: HenyeyGreenstein,
     ) -> Option<Self> {
-        extinction.bounds_each(&scattering).then_some(Self {
+        let is_valid =
+            scattering.is_nowhere_above(&extinction) && extinction.most() <= Self::DENSEST;
+        is_valid.then_some(Self {
             field: Field::Chromatic {
                 extinction,
                 scattering,

@@ -47,7 +47,7 @@ fn grid() -> Grid<1> {
 fn medium() -> Medium {
     let coefficients = Coefficients::new([0.5, 0.25, 1.0], [0.5, 0.25, 1.0]);
     let phase = HenyeyGreenstein::new(0.0).expect("a mean cosine");
-    Medium::of_density(coefficients.expect("coefficients"), grid(), phase)
+    Medium::of_density(coefficients.expect("coefficients"), grid(), phase).expect("thin smoke")
 }
 
 fn lanes(rgb: Rgb) -> Spectrum {
@@ -142,7 +142,7 @@ fn one_cell_is_as_many_equal_cells() {
     let unit = Coefficients::new([1.0; 3], [0.0; 3]).expect("coefficients");
     let depths = [1, 5, 32].map(|n| {
         let grid = Grid::new([n; 3], vec![[1.5]; n * n * n], place()).expect("a grid");
-        let medium = Medium::of_density(unit, grid, phase);
+        let medium = Medium::of_density(unit, grid, phase).expect("thin smoke");
         medium.depth(&stretch(&ray, [0.0, 10.0]), Detail::Full, lanes)[0]
     });
     assert!(depths[0] > 0.5);

@@ -174,11 +174,16 @@ impl SceneBuilder {
         self.shapes.push(shape);
     }
 
-    /// Adds a medium. It is where the [sides](Self::sides) of shapes say, or [around a point](Self::medium_at).
+    /// Adds a medium; equal ones are one. It is where the [sides](Self::sides) of shapes say, or [around a point](Self::medium_at).
     pub fn medium(&mut self, medium: Medium) -> MediumId {
-        self.media.push(medium);
-        // Too many are found when the scene is built.
-        MediumId::new(self.media.len() - 1).unwrap_or_default()
+        let known = self.media.iter().position(|known| *known == medium);
+        let index = known.unwrap_or_else(|| {
+            // Too many are found when the scene is built.
+            self.media.truncate(MediumId::MOST);
+            self.media.push(medium);
+            self.media.len() - 1
+        });
+        MediumId::new(index).unwrap_or_default()
     }
 
     /// Puts `medium` at a point, that of a camera: a ray that leaves it comes, across all boundaries, to the medium that

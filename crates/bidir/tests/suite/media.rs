@@ -36,7 +36,7 @@ fn coefficients(absorption: Rgb, scattering: Rgb) -> Coefficients {
 /// A medium of a density in a box.
 fn smoke(coefficients: Coefficients, grid: Grid<1>, g: f32) -> Medium {
     let phase = HenyeyGreenstein::new(g).expect("a mean cosine");
-    Medium::of_density(coefficients, grid, phase)
+    Medium::of_density(coefficients, grid, phase).expect("thin smoke")
 }
 
 /// A grid of `n`³ cells between two corners, with a density that is a function of the numbers of a cell.

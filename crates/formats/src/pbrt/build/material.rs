@@ -4,7 +4,7 @@
 
 use super::color::Purpose;
 use super::context::Context;
-use super::media;
+use super::media::{self, Recipe};
 use super::reader::Reader;
 use super::spectral;
 use super::texture::Textures;
@@ -17,7 +17,6 @@ use bidir::material::{
     Bitangent, CLEAR, CoatSettings, CoatedConductorMaterial, CoatedDiffuseMaterial, ConductorIndex,
     Material, Mixture, NormalMap, Relief, Roughness, RoughnessMapping,
 };
-use bidir::medium::Medium;
 use bidir::scene::RenderSpace;
 use bidir::texture::{ColorTexture, FloatTexture, Scale};
 use std::collections::BTreeMap;
@@ -31,7 +30,7 @@ pub(super) struct Materials<'a> {
     /// The materials in construction, the innermost last, to find cycles of mixtures.
     open: Vec<usize>,
     /// The media within surfaces, by number of the material.
-    contents: BTreeMap<usize, Medium>,
+    contents: BTreeMap<usize, Recipe>,
 }
 
 impl<'a> Materials<'a> {
@@ -48,7 +47,7 @@ impl<'a> Materials<'a> {
     }
 
     /// The medium within the surfaces of material number `index`, which was built.
-    pub(super) fn take_content(&mut self, index: usize) -> Option<Medium> {
+    pub(super) fn take_content(&mut self, index: usize) -> Option<Recipe> {
         self.contents.remove(&index)
     }
 
@@ -307,7 +306,7 @@ impl Parameters<'_, '_, '_> {
     }
 
     /// Reads a surface and the medium within it.
-    fn subsurface(&mut self) -> Result<(Material, Medium), Fault> {
+    fn subsurface(&mut self) -> Result<(Material, Recipe), Fault> {
         let eta = spectral::read_eta(&mut self.reader, "eta", WATER)?;
         let roughness = self.roughness(&SURFACE)?;
         let content = media::subsurface::read(&mut self.reader, eta)?;

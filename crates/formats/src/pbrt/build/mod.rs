@@ -147,8 +147,8 @@ impl<'a> Builder<'a> {
             let content = materials
                 .take_content(index)
                 .filter(|_| used.contains(&index));
-            let content = content.map(|medium| self.assembly.builder.medium(medium));
-            self.contents.push(content);
+            let content = content.map(|recipe| Ok(self.assembly.builder.medium(recipe()?)));
+            self.contents.push(content.transpose()?);
         }
         Ok(())
     }

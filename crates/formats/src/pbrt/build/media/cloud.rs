@@ -1,34 +1,40 @@
 //! Clouds of noise.
 
 use super::super::reader::Reader;
-use super::{own_coefficients, phase, scaled};
+use super::{Recipe, own_coefficients, phase, scaled};
 use crate::pbrt::transform::Transforms;
 use crate::source::Fault;
-use bidir::math::Vec3;
+use bidir::math::{Affine3A, Vec3};
 use bidir::medium::{Grid, Medium};
 use bidir::texture::fractal_noise;
 use rayon::prelude::*;
 
-/// The cells along the longest side: two for a period of the finest octave of a cloud in the unit cube.
-const CELLS: f32 = 160.0;
+/// The cells along the longest side: almost two for a period of the finest octave of a cloud in the unit cube.
+const CELLS: f64 = 128.0;
 
-/// The shape of a cloud.
+/// A cloud that was read.
 struct Cloud {
+    low: Vec3,
+    high: Vec3,
     density: f32,
     wispiness: f32,
     frequency: f32,
 }
 
 /// Reads a cloud: noise in a box, thinner the higher.
-pub(super) fn read(reader: &mut Reader<'_, '_>, transforms: &Transforms) -> Result<Medium, Fault> {
+pub(super) fn read(reader: &mut Reader<'_, '_>, transforms: &Transforms) -> Result<Recipe, Fault> {
+    /// Beyond, a cloud is noise from cell to cell.
+    const MOST: f32 = 1e4;
     let place = super::grid::place(reader, transforms)?;
     let [low, high] = [
         reader.point3("p0", [0.0; 3])?,
         reader.point3("p1", [1.0; 3])?,
     ]
     .map(Vec3::from_array);
-    let mut number = |name, default| reader.float_within(name, default, [0.0, f32::MAX]);
+    let mut number = |name, default| reader.float_within(name, default, [0.0, MOST]);
     let cloud = Cloud {
+        low,
+        high,
         density: number("density", 1.0)?,
         wispiness: number("wispiness", 1.0)?,
         frequency: number("frequency", 5.0)?,
@@ -36,23 +42,35 @@ pub(super) fn read(reader: &mut Reader<'_, '_>, transforms: &Transforms) -> Resu
     let given = own_coefficients(reader)?.map(|given| given.unwrap_or([1.0; 3]));
     let coefficients = scaled(reader, given, 1.0)?;
     let phase = phase(reader)?;
-    let cell = (high - low).max_element() / CELLS;
-    let size = ((high - low) / cell).to_array();
-    let size = size.map(|count| (count.round() as usize).max(1));
-    let step = (high - low) / Vec3::from_array(size.map(|count| count as f32));
-    let [nx, ny, nz] = size;
-    let at = |i: usize| {
-        let cell = [i % nx, i / nx % ny, i / (nx * ny)];
-        low + step * (Vec3::from_array(cell.map(|n| n as f32)) + 0.5)
-    };
-    let cells = (0..nx * ny * nz).into_par_iter();
-    let values = cells.map(|i| [cloud.density_at(at(i))]).collect();
-    let grid = Grid::new(size, values, place)
-        .ok_or_else(|| Fault::scene(reader.span(), "the box of the cloud has no volume"))?;
-    Ok(Medium::of_density(coefficients, grid, phase))
+    let span = reader.span();
+    Ok(Box::new(move || {
+        let grid = cloud.grid(place);
+        let medium = grid.and_then(|grid| Medium::of_density(coefficients, grid, phase));
+        let message = "the box of the cloud has no volume, or its coefficients are too large";
+        medium.ok_or_else(|| Fault::scene(span, message))
+    }))
 }
 
 impl Cloud {
+    /// The densities of all cells. None: the box has no volume.
+    fn grid(&self, place: Affine3A) -> Option<Grid<1>> {
+        let extent = self.high.as_dvec3() - self.low.as_dvec3();
+        let parts = extent / extent.max_element() * CELLS;
+        let size = parts
+            .to_array()
+            .map(|count| (count.round() as usize).max(1));
+        let [nx, ny, nz] = size;
+        let at = |i: usize| {
+            let cell = [i % nx, i / nx % ny, i / (nx * ny)];
+            let part = |axis: usize| (cell[axis] as f32 + 0.5) / size[axis] as f32;
+            let part = Vec3::from_array(std::array::from_fn(part));
+            self.low + (self.high - self.low) * part
+        };
+        let cells = (0..nx * ny * nz).into_par_iter();
+        let values = cells.map(|i| [self.density_at(at(i))]).collect();
+        Grid::new(size, values, place)
+    }
+
     /// The density at a point, in `[0, 1]` \[PBRT4, §11.4.5\]. Noise disturbs the place at which noise is asked for,
     /// by wisps.
     fn density_at(&self, p: Vec3) -> f32 {

@@ -2,6 +2,7 @@
 
 use super::super::color::to_rec709;
 use super::super::reader::Reader;
+use super::super::shape::check_point;
 use super::{color, own_coefficients, phase, scale, scaled};
 use crate::pbrt::parameters::{Parameter, ParameterType, Values};
 use crate::pbrt::transform::Transforms;
@@ -9,7 +10,7 @@ use crate::source::Fault;
 use bidir::math::Affine3A;
 use bidir::medium::{Grid, Medium};
 use color::Purpose;
-use glam::{DAffine3, Vec3};
+use glam::{DAffine3, DVec3, Vec3};
 
 /// Reads a medium with a density for each cell.
 pub(super) fn uniform(
@@ -21,7 +22,7 @@ pub(super) fn uniform(
     let given = own_coefficients(reader)?.map(|given| given.unwrap_or([1.0; 3]));
     let scale = scale(reader)?;
     let coefficients = scaled(reader, given, scale)?;
-    super::refuse_emission(reader, "Le")?;
+    super::refuse_emission(reader)?;
     for name in ["temperatureoffset", "temperaturecutoff", "temperaturescale"] {
         reader.ignore(ParameterType::Float, name);
     }
@@ -34,7 +35,7 @@ pub(super) fn uniform(
     let values = numbers(density, size, 1)?;
     let values = values.iter().map(|&value| [value]).collect();
     let grid = build(density, size, values, place)?;
-    Ok(Medium::of_density(coefficients, grid, phase))
+    Medium::of_density(coefficients, grid, phase).ok_or_else(|| too_dense(density))
 }
 
 /// Reads a medium with coefficients for each cell.
@@ -52,8 +53,8 @@ pub(super) fn rgb(reader: &mut Reader<'_, '_>, transforms: &Transforms) -> Resul
         let message = "the medium has neither `sigma_a` nor `sigma_s`";
         return Err(Fault::scene(reader.span(), message));
     };
+    let count = numbers(any, size, 3)?.len() / 3;
     let read = |parameter: Option<&Parameter>| {
-        let count = size.iter().product();
         // Coefficients that the file does not have are 1.
         let Some(parameter) = parameter else {
             return Ok(vec![[scale; 3]; count]);
@@ -70,8 +71,7 @@ pub(super) fn rgb(reader: &mut Reader<'_, '_>, transforms: &Transforms) -> Resul
     let extinction = absorption.iter().zip(&scattering).map(sum).collect();
     let extinction = build(any, size, extinction, place)?;
     let scattering = build(any, size, scattering, place)?;
-    Medium::chromatic(extinction, scattering, phase)
-        .ok_or_else(|| Fault::scene(any.value_span, "the coefficients are too large"))
+    Medium::chromatic(extinction, scattering, phase).ok_or_else(|| too_dense(any))
 }
 
 /// Reads the corners of the box, and places the unit cube there.
@@ -95,6 +95,11 @@ pub(super) fn place(
     }
     let cube = DAffine3::from_translation(low) * DAffine3::from_scale(high - low);
     let placed = reader.context.place(transforms) * cube;
+    let corners =
+        (0..8).map(|i| DVec3::new(f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2)));
+    for corner in corners {
+        check_point(reader.span(), placed.transform_point3(corner))?;
+    }
     Ok(Affine3A {
         matrix3: placed.matrix3.as_mat3().into(),
         translation: placed.translation.as_vec3a(),
@@ -134,6 +139,11 @@ fn numbers(parameter: &Parameter, size: [usize; 3], channels: usize) -> Result<&
     Ok(values)
 }
 
+fn too_dense(parameter: &Parameter) -> Fault {
+    let message = "the coefficients of the medium are too large";
+    Fault::scene(parameter.value_span, message)
+}
+
 /// The grid of a parameter.
 fn build<const N: usize>(
     parameter: &Parameter,
@@ -142,7 +152,7 @@ fn build<const N: usize>(
     place: Affine3A,
 ) -> Result<Grid<N>, Fault> {
     Grid::new(size, values, place).ok_or_else(|| {
-        let message = "the medium has coefficients that are too large, or a box without a volume";
+        let message = "the box of the medium has no volume, or its coefficients are too large";
         Fault::scene(parameter.value_span, message)
     })
 }

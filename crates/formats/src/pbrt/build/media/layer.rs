@@ -17,8 +17,9 @@ const GAUSS: [[f64; 2]; 4] = [
     [0.796_666_477_413_626_7, 0.222_381_034_453_374_5],
     [0.960_289_856_497_536_3, 0.101_228_536_290_376_3],
 ];
-/// Steps of every iteration: fewer than a thousandth of the light is left after them.
-const STEPS: usize = 64;
+/// An iteration ends when nothing changes by more than this, or after so many steps.
+const CHANGE: f64 = 1e-7;
+const STEPS: usize = 4096;
 
 /// A direction within the layer.
 #[derive(Clone, Copy, Debug)]
@@ -58,8 +59,8 @@ impl Layer {
         Self { points, entering }
     }
 
-    /// The albedo with which the layer returns `part` of the diffuse light that enters.
-    pub(super) fn albedo(&self, part: f64) -> f64 {
+    /// 1 - α with which the layer returns `part` of the diffuse light that enters.
+    pub(super) fn absorption(&self, part: f64) -> f64 {
         let [mut low, mut high] = [0.0, 1.0];
         for _ in 0..24 {
             let middle = 0.5 * (low + high);
@@ -70,19 +71,15 @@ impl Layer {
                 high = middle;
             }
         }
-        1.0 - low * low
+        low * low
     }
 
     /// The part of the diffuse light that enters and that a layer of this albedo returns.
     fn reflectance(&self, albedo: f64) -> f64 {
         let h = self.chandrasekhar(albedo);
-        let mut up = vec![0.0; self.points.len()];
-        for _ in 0..STEPS {
-            let back = self
-                .points
-                .iter()
-                .zip(&up)
-                .map(|(at, up)| at.reflectance * up);
+        let up = converged(vec![0.0; self.points.len()], |up| {
+            let back = self.points.iter().zip(up);
+            let back = back.map(|(at, up)| at.reflectance * up);
             let down: Vec<f64> = back.zip(&self.entering).map(|(back, e)| back + e).collect();
             let from_below = |at: &Point, h_at: f64| {
                 let terms = self.points.iter().zip(&h).zip(&down);
@@ -91,13 +88,9 @@ impl Layer {
                     .sum();
                 0.5 * albedo * h_at * sum
             };
-            up = self
-                .points
-                .iter()
-                .zip(&h)
-                .map(|(at, &h)| from_below(at, h))
-                .collect();
-        }
+            let points = self.points.iter().zip(&h);
+            points.map(|(at, &h)| from_below(at, h)).collect()
+        });
         let leaves = |at: &Point| at.weight * at.cos * (1.0 - at.reflectance);
         let flux = |radiance: &[f64], part: &dyn Fn(&Point) -> f64| -> f64 {
             self.points
@@ -111,21 +104,33 @@ impl Layer {
 
     /// H of every point.
     fn chandrasekhar(&self, albedo: f64) -> Vec<f64> {
-        let mut h = vec![1.0; self.points.len()];
-        for _ in 0..STEPS {
+        converged(vec![1.0; self.points.len()], |h| {
             let inverse = |at: &Point| {
-                let terms = self.points.iter().zip(&h);
+                let terms = self.points.iter().zip(h);
                 let sum: f64 = terms
                     .map(|(to, h)| to.weight * to.cos * h / (at.cos + to.cos))
                     .sum();
                 (1.0 - albedo).sqrt() + 0.5 * albedo * sum
             };
             // Half a step, as whole ones overshoot.
-            let next = self.points.iter().zip(&h);
-            h = next.map(|(at, h)| 0.5 * (h + 1.0 / inverse(at))).collect();
-        }
-        h
+            let next = self.points.iter().zip(h);
+            next.map(|(at, h)| 0.5 * (h + 1.0 / inverse(at))).collect()
+        })
     }
+}
+
+/// Repeats a step until nothing changes.
+fn converged(mut values: Vec<f64>, step: impl Fn(&[f64]) -> Vec<f64>) -> Vec<f64> {
+    for _ in 0..STEPS {
+        let next = step(&values);
+        let changes = next.iter().zip(&values).map(|(new, old)| (new - old).abs());
+        let change = changes.fold(0.0, f64::max);
+        values = next;
+        if change < CHANGE {
+            break;
+        }
+    }
+    values
 }
 
 /// The points of Gauss in a range, and their weights.
@@ -159,10 +164,10 @@ mod tests {
 
     #[test]
     fn albedos_give_the_part_asked_for() {
-        for eta in [1.0, 1.33, 2.0] {
+        for eta in [1.0, 1.33, 2.0, 4.0] {
             let layer = Layer::new(eta);
             for part in [0.01, 0.2, 0.5, 0.8, 0.95] {
-                let found = layer.reflectance(layer.albedo(part));
+                let found = layer.reflectance(1.0 - layer.absorption(part));
                 assert!((found - part).abs() < 1e-4, "{eta}, {part}: {found}");
             }
         }

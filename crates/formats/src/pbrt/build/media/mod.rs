@@ -8,6 +8,8 @@ pub(super) mod subsurface;
 use super::color::{self, Purpose};
 use super::context::Context;
 use super::reader::Reader;
+use crate::error::ErrorKind;
+use crate::limits;
 use crate::pbrt::lexer::shorten;
 use crate::pbrt::parameters::ParameterType;
 use crate::pbrt::scene::{MediumDescription, MediumInterface, MediumReference};
@@ -22,7 +24,11 @@ use std::sync::Arc;
 #[derive(Default)]
 pub(super) struct Media {
     built: BTreeMap<Arc<str>, MediumId>,
+    clouds: usize,
 }
+
+/// Makes a medium that was read. Media that nothing lies in are never made.
+pub(super) type Recipe = Box<dyn FnOnce() -> Result<Medium, Fault>>;
 
 impl Media {
     /// The media on both sides of a shape.
@@ -58,8 +64,15 @@ impl Media {
             let names = media.iter().map(|medium| medium.name.as_str());
             return Err(Fault::scene(*span, message).with_nearest(name, names));
         };
-        let built = read(context, medium)?;
-        let built = built.map_or(MediumId::VACUUM, |medium| builder.medium(medium));
+        self.clouds += usize::from(medium.entity.kind == "cloud");
+        if self.clouds > limits::MOST_CLOUDS {
+            let message = format!("there are more than {} clouds", limits::MOST_CLOUDS);
+            return Err(Fault::new(ErrorKind::Limit, *span, message));
+        }
+        let built = match read(context, medium)? {
+            Some(recipe) => builder.medium(recipe()?),
+            None => MediumId::VACUUM,
+        };
         self.built.insert(Arc::clone(name), built);
         Ok(built)
     }
@@ -76,12 +89,12 @@ impl Media {
 }
 
 /// Reads a medium. None: its kind is not supported.
-fn read(context: &mut Context<'_>, medium: &MediumDescription) -> Result<Option<Medium>, Fault> {
+fn read(context: &mut Context<'_>, medium: &MediumDescription) -> Result<Option<Recipe>, Fault> {
     let mut reader = Reader::new(context, &medium.entity);
     let built = match medium.entity.kind.as_str() {
-        "homogeneous" => homogeneous(&mut reader)?,
-        "uniformgrid" => grid::uniform(&mut reader, &medium.transforms)?,
-        "rgbgrid" => grid::rgb(&mut reader, &medium.transforms)?,
+        "homogeneous" => ready(homogeneous(&mut reader)?),
+        "uniformgrid" => ready(grid::uniform(&mut reader, &medium.transforms)?),
+        "rgbgrid" => ready(grid::rgb(&mut reader, &medium.transforms)?),
         "cloud" => cloud::read(&mut reader, &medium.transforms)?,
         kind => {
             let what = format!("the medium type `{}`", shorten(kind));
@@ -94,11 +107,15 @@ fn read(context: &mut Context<'_>, medium: &MediumDescription) -> Result<Option<
     Ok(Some(built))
 }
 
+fn ready(medium: Medium) -> Recipe {
+    Box::new(|| Ok(medium))
+}
+
 fn homogeneous(reader: &mut Reader<'_, '_>) -> Result<Medium, Fault> {
     let given = coefficients(reader)?;
     let scale = scale(reader)?;
     let coefficients = scaled(reader, given, scale)?;
-    refuse_emission(reader, "Le")?;
+    refuse_emission(reader)?;
     Ok(Medium::homogeneous(coefficients, phase(reader)?))
 }
 
@@ -142,7 +159,8 @@ fn coefficients(reader: &mut Reader<'_, '_>) -> Result<[Rgb; 2], Fault> {
 
 /// σ_a and σ_s of the substance that a parameter names. None: the file names none.
 fn preset(reader: &mut Reader<'_, '_>, parameter: &'static str) -> Result<Option<[Rgb; 2]>, Fault> {
-    let Some((name, span)) = reader.string(parameter)? else {
+    let named = reader.string(parameter)?;
+    let Some((name, span)) = named.filter(|(name, _)| !name.is_empty()) else {
         return Ok(None);
     };
     let known = PRESETS.iter().find(|(known, ..)| *known == name);
@@ -150,14 +168,14 @@ fn preset(reader: &mut Reader<'_, '_>, parameter: &'static str) -> Result<Option
         return Ok(Some([absorption, scattering]));
     }
     let what = format!("the {parameter} `{}`", shorten(name));
-    let substitute = "the medium's own coefficients are used instead";
+    let substitute = "the other coefficients are used instead";
     reader.context.unsupported(span, &what, substitute)?;
     Ok(None)
 }
 
 /// Refuses a medium that glows.
-fn refuse_emission(reader: &mut Reader<'_, '_>, name: &'static str) -> Result<(), Fault> {
-    let emission = color::read(reader, name, Purpose::Unbounded)?;
+fn refuse_emission(reader: &mut Reader<'_, '_>) -> Result<(), Fault> {
+    let emission = color::read(reader, "Le", Purpose::Unbounded)?;
     reader.ignore(ParameterType::Float, "Lescale");
     if emission.is_some_and(|emission| emission.iter().any(|&lane| lane > 0.0)) {
         let span = reader.span();

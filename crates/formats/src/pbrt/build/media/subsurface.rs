@@ -5,9 +5,10 @@
 
 use super::super::reader::Reader;
 use super::layer::Layer;
-use super::{color, preset, scaled};
+use super::{Recipe, color, preset};
+use crate::pbrt::parameters::ParameterType;
 use crate::source::Fault;
-use bidir::medium::{HenyeyGreenstein, Medium};
+use bidir::medium::{Coefficients, HenyeyGreenstein, Medium};
 use bidir::spectrum::Rgb;
 use color::Purpose;
 
@@ -15,30 +16,62 @@ use color::Purpose;
 const ABSORPTION: Rgb = [0.0011, 0.0024, 0.014];
 const SCATTERING: Rgb = [2.55, 3.21, 3.77];
 
+/// The coefficients as a file gives them, per unit of length.
+#[derive(Clone, Copy)]
+enum Given {
+    /// σ_a and σ_s.
+    Coefficients([Rgb; 2]),
+    /// The part of diffuse light that comes back, and 1/σ_t.
+    Reflectance(Rgb, Rgb),
+}
+
 /// Reads the medium within a surface of this relative index of refraction.
-pub(in super::super) fn read(reader: &mut Reader<'_, '_>, eta: f32) -> Result<Medium, Fault> {
+pub(in super::super) fn read(reader: &mut Reader<'_, '_>, eta: f32) -> Result<Recipe, Fault> {
+    for name in ["sigma_a", "sigma_s", "reflectance", "mfp"] {
+        let constant = "its default is used instead";
+        reader.unsupported(ParameterType::Texture, name, constant)?;
+    }
     let scale = super::scale(reader)?;
-    let phase = super::phase(reader)?;
+    let mut phase = super::phase(reader)?;
     let name = preset(reader, "name")?;
     let mut read = |name| color::read(reader, name, Purpose::Unbounded);
     let [absorption, scattering, mean_free_path] =
         [read("sigma_a")?, read("sigma_s")?, read("mfp")?];
     let reflectance = color::read(reader, "reflectance", Purpose::Albedo)?;
-    let (given, phase) = match (name, absorption, scattering, reflectance) {
-        (Some(named), ..) => (named, HenyeyGreenstein::ISOTROPIC),
-        (None, Some(absorption), Some(scattering), _) => ([absorption, scattering], phase),
-        (None, None, None, Some(reflectance)) => {
-            let length = mean_free_path.unwrap_or([1.0; 3]);
-            (of_reflectance(reflectance, length, eta, phase), phase)
+    let given = match (name, absorption, scattering, reflectance) {
+        (Some(named), ..) => {
+            phase = HenyeyGreenstein::ISOTROPIC;
+            Given::Coefficients(named)
         }
-        (None, None, None, None) => ([ABSORPTION, SCATTERING], phase),
+        (None, Some(absorption), Some(scattering), None) => {
+            Given::Coefficients([absorption, scattering])
+        }
+        (None, None, None, Some(reflectance)) => {
+            Given::Reflectance(reflectance, mean_free_path.unwrap_or([1.0; 3]))
+        }
+        (None, None, None, None) => Given::Coefficients([ABSORPTION, SCATTERING]),
         _ => {
-            let message = "a subsurface material has `sigma_a` and `sigma_s`, or neither";
+            let message = "a subsurface material has `sigma_a` and `sigma_s`, or `reflectance`";
             return Err(Fault::scene(reader.span(), message));
         }
     };
-    let coefficients = scaled(reader, given, scale)?;
-    Ok(Medium::homogeneous(coefficients, phase))
+    // Paths are divided by what coefficients are multiplied with.
+    let (unit, span) = (reader.context.layout.space.unit as f32, reader.span());
+    let factor = match given {
+        Given::Coefficients(_) => unit * scale,
+        Given::Reflectance(..) => unit / scale,
+    };
+    Ok(Box::new(move || {
+        let sigmas = match given {
+            Given::Coefficients(sigmas) => sigmas,
+            Given::Reflectance(part, length) => of_reflectance(part, length, eta, phase),
+        };
+        let [absorption, scattering] = sigmas.map(|sigma| sigma.map(|channel| channel * factor));
+        let message = "the coefficients of the medium are too large";
+        let coefficients = Coefficients::new(absorption, scattering);
+        let coefficients = coefficients.ok_or_else(|| Fault::scene(span, message))?;
+        Ok(Medium::homogeneous(coefficients, phase))
+    }))
 }
 
 /// σ_a and σ_s with which a deep layer returns this part of the diffuse light that enters. Scattering that is not even
@@ -49,16 +82,15 @@ fn of_reflectance(
     eta: f32,
     phase: HenyeyGreenstein,
 ) -> [Rgb; 2] {
-    /// The shortest path, so that coefficients stay finite.
-    const SHORTEST: f32 = 1e-6;
-    let (layer, g) = (Layer::new(eta), phase.mean_cosine());
-    let albedos = reflectance.map(|part| {
-        let even = layer.albedo(f64::from(part)) as f32;
-        even / (1.0 - g + even * g)
+    let (layer, g) = (Layer::new(eta), f64::from(phase.mean_cosine()));
+    // 1 - α of even scattering, and of the phase function.
+    let absorbed = reflectance.map(|part| {
+        let even = layer.absorption(f64::from(part));
+        (1.0 - g) * even / (1.0 - g * even)
     });
-    let extinction = mean_free_path.map(|length| 1.0 / length.max(SHORTEST));
+    let times = |part: f64, length: f32| (part / f64::from(length)) as f32;
     [
-        std::array::from_fn(|i| extinction[i] * (1.0 - albedos[i])),
-        std::array::from_fn(|i| extinction[i] * albedos[i]),
+        std::array::from_fn(|i| times(absorbed[i], mean_free_path[i])),
+        std::array::from_fn(|i| times(1.0 - absorbed[i], mean_free_path[i])),
     ]
 }

@@ -149,7 +149,7 @@ fn media_of_other_kinds_are_named() {
     check_world(
         &format!("{FOG} \"string preset\" \"Coke\" MediumInterface \"fog\" \"\" Shape \"sphere\""),
         "s.pbrt:2:67: the preset `Coke` is not supported; \
-         with --lenient, the medium's own coefficients are used instead",
+         with --lenient, the other coefficients are used instead",
     );
 }
 
@@ -254,5 +254,78 @@ fn grids_that_make_no_sense_are_refused() {
         &format!("{hot} MediumInterface \"smoke\" \"\" Shape \"sphere\""),
         "s.pbrt:2:71: the parameter `float temperature` is not supported; \
          with --lenient, the medium does not glow",
+    );
+}
+
+/// σ_t within a ball of the material `subsurface`, in thousandths.
+fn subsurface(parameters: &str) -> [i32; 3] {
+    let text = format!("Material \"subsurface\" {parameters} Shape \"sphere\"");
+    let scene = world(&text);
+    let [medium] = scene.media() else {
+        panic!("{} media", scene.media().len())
+    };
+    assert_ne!(scene.medium_at(Vec3::ZERO), MediumId::VACUUM);
+    let lanes = medium.extinction(Vec3::ZERO, scene.color(), &Wavelengths::default());
+    [lanes[0], lanes[1], lanes[2]].map(|lane| (lane * 1e3).round() as i32)
+}
+
+#[test]
+fn subsurface_has_a_medium_within() {
+    assert_eq!(subsurface(""), [2551, 3212, 3784]);
+    let named = "\"string name\" \"Ketchup\" \"float scale\" 10";
+    assert_eq!(subsurface(named), [2410, 10400, 14800]);
+    let both = "\"rgb sigma_a\" [1 2 3] \"rgb sigma_s\" [1 1 1] \"float scale\" 2";
+    assert_eq!(subsurface(both), [4000, 6000, 8000]);
+    // Of paths, it is the length that is scaled.
+    let path = "\"rgb reflectance\" [.2 .5 .8] \"rgb mfp\" [.1 .2 .4] \"float scale\" .5";
+    assert_eq!(subsurface(path), [20000, 10000, 5000]);
+}
+
+#[test]
+fn shapes_of_equal_subsurface_share_a_medium() {
+    let ball = "Material \"subsurface\" \"rgb reflectance\" [.2 .5 .8] Shape \"sphere\" ";
+    let scene = world(&ball.repeat(300));
+    assert_eq!(scene.media().len(), 1);
+}
+
+#[test]
+fn subsurface_that_makes_no_sense_is_refused() {
+    check_world(
+        "Material \"subsurface\" \"rgb sigma_a\" [1 1 1] Shape \"sphere\"",
+        "s.pbrt:2:10: a subsurface material has `sigma_a` and `sigma_s`, or `reflectance`",
+    );
+    check_world(
+        "Material \"subsurface\" \"rgb reflectance\" [.5 .5 .5] \"rgb mfp\" [0 1 1] Shape \"sphere\"",
+        "s.pbrt:2:10: the coefficients of the medium are too large",
+    );
+    check_world(
+        "Texture \"skin\" \"spectrum\" \"constant\"\n\
+         Material \"subsurface\" \"texture reflectance\" \"skin\" Shape \"sphere\"",
+        "s.pbrt:3:23: the parameter `texture reflectance` is not supported; \
+         with --lenient, its default is used instead",
+    );
+}
+
+#[test]
+fn grids_too_large_or_too_small_to_compute_with_are_refused() {
+    let lies = "MediumInterface \"smoke\" \"\" Shape \"sphere\"";
+    let check = |kind: &str, parameters: &str, message: &str| {
+        check_world(&format!("{}{lies}", smoke(kind, parameters)), message);
+    };
+    let most = "\"integer nx\" 2147483647 \"integer ny\" 2147483647 \"integer nz\" 2147483647";
+    check(
+        "rgbgrid",
+        &format!("\"rgb sigma_s\" [1 1 1] {most}"),
+        "s.pbrt:2:63: `sigma_s` has 1 values, but must have 2147483647 · 2147483647 · 2147483647",
+    );
+    check(
+        "cloud",
+        "\"point3 p1\" [1e-44 1e-44 1e-44]",
+        "s.pbrt:2:39: the box of the cloud has no volume, or its coefficients are too large",
+    );
+    check(
+        "uniformgrid",
+        "\"float density\" 1e30 \"rgb sigma_s\" [1e10 0 0]",
+        "s.pbrt:2:69: the coefficients of the medium are too large",
     );
 }
