@@ -77,10 +77,10 @@ MEDIA = [
         unit("medium::tests::"),
     ),
     (
-        "the density of a vertex in smoke is that of its medium",
+        "a walk collides in thin smoke as often as in thicker smoke",
         "crates/bidir/src/medium/mod.rs",
-        "coefficients.scaled(density)",
-        "coefficients.scaled(density.max(1.0))",
+        "color.unbounded(self.at(point).extinction, wavelengths)",
+        "color.unbounded(self.at(point).extinction.map(|c| c.max(0.4)), wavelengths)",
         media("smoke_that_absorbs_nothing"),
     ),
 ]

@@ -81,7 +81,7 @@ fn depth_of(extinction: Spectrum, length: f32) -> Spectrum {
     if length.is_infinite() {
         return Spectrum::splat(f32::INFINITY);
     }
-    // So that it is no negative zero, and no product with an infinite number.
+    // A clear lane keeps depth 0 over any length, and never becomes -0.
     extinction.map(|sigma| if sigma > 0.0 { sigma * length } else { 0.0 })
 }
 

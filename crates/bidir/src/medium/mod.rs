@@ -117,7 +117,7 @@ enum Field {
 }
 
 impl Coefficients {
-    /// Those of absorption and of scattering. None: one of them is negative, or their sum is not finite.
+    /// σ_a + σ_s and σ_s. None: a coefficient is negative, or the sum is not finite.
     pub fn new(absorption: Rgb, scattering: Rgb) -> Option<Self> {
         let valid = 0.0..=f32::MAX;
         let mut pairs = absorption.iter().zip(&scattering);
@@ -130,7 +130,7 @@ impl Coefficients {
         })
     }
 
-    /// Those of a medium of this density.
+    /// Both coefficients times a density.
     fn scaled(self, density: f32) -> Self {
         let scale = |rgb: Rgb| rgb.map(|channel| channel * density);
         Self {

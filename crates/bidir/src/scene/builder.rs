@@ -174,7 +174,8 @@ impl SceneBuilder {
         self.shapes.push(shape);
     }
 
-    /// Adds a medium; equal ones are one. It is where the [sides](Self::sides) of shapes say, or [around a point](Self::medium_at).
+    /// Adds a medium; equal media share a number. It is where the [sides](Self::sides) of shapes say, or
+    /// [around a point](Self::medium_at).
     pub fn medium(&mut self, medium: Medium) -> MediumId {
         let known = self.media.iter().position(|known| *known == medium);
         let index = known.unwrap_or_else(|| {

@@ -117,7 +117,7 @@ impl Passage {
 }
 
 impl Span {
-    /// As a stretch of a ray of which a unit is `unit` long.
+    /// The span as a part of `ray`, whose unit has the length `unit`.
     fn of(self, ray: &Ray, unit: f32) -> Stretch<'_> {
         let range = [self.begin, self.end];
         Stretch { ray, range, unit }

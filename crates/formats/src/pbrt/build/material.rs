@@ -181,7 +181,7 @@ fn in_space(height: FloatTexture, space: &RenderSpace) -> FloatTexture {
 
 /// The index of refraction where the file has none.
 const GLASS: f32 = 1.5;
-/// The same of a surface with a medium within.
+/// The index of refraction of `subsurface` where the file has none.
 const WATER: f32 = 1.33;
 
 /// The names of a roughness: in both directions, along u, along v.
