@@ -58,13 +58,19 @@ impl Medium {
         }
     }
 
-    /// The way through a stretch of a walk that drew a depth.
+    /// The way through a stretch of a walk that drew a depth. It ends within only where the medium scatters.
     pub(crate) fn fly(
         &self,
         stretch: &Stretch<'_>,
         drawn: Drawn,
         lanes: impl Fn(Rgb) -> Spectrum,
     ) -> Flight {
+        if !self.scatters {
+            return Flight {
+                depth: self.depth(stretch, Detail::Full, lanes),
+                reached: None,
+            };
+        }
         match &self.field {
             Field::Homogeneous(at) => fly_straight(lanes(at.extinction), stretch, drawn),
             Field::Density(at, grid) => {

@@ -92,6 +92,7 @@ impl MediumSides {
 pub struct Medium {
     field: Field,
     phase: HenyeyGreenstein,
+    scatters: bool,
 }
 
 /// The coefficients at a place. Unit: 1/m.
@@ -130,6 +131,12 @@ impl Coefficients {
         })
     }
 
+    /// True where σ_s is not 0.
+    const fn scatter(&self) -> bool {
+        let [r, g, b] = self.scattering;
+        r > 0.0 || g > 0.0 || b > 0.0
+    }
+
     /// Both coefficients times a density.
     fn scaled(self, density: f32) -> Self {
         let scale = |rgb: Rgb| rgb.map(|channel| channel * density);
@@ -151,8 +158,11 @@ impl Medium {
 
     /// A medium that is the same everywhere.
     pub const fn homogeneous(coefficients: Coefficients, phase: HenyeyGreenstein) -> Self {
-        let field = Field::Homogeneous(coefficients);
-        Self { field, phase }
+        Self {
+            field: Field::Homogeneous(coefficients),
+            phase,
+            scatters: coefficients.scatter(),
+        }
     }
 
     /// A medium with the coefficients times the density of a grid, and outside of its box nothing. None: σ_t is above
@@ -163,8 +173,11 @@ impl Medium {
         phase: HenyeyGreenstein,
     ) -> Option<Self> {
         let most = density.most() * largest(coefficients.extinction);
-        let field = Field::Density(coefficients, density);
-        (most <= Self::DENSEST).then_some(Self { field, phase })
+        (most <= Self::DENSEST).then_some(Self {
+            field: Field::Density(coefficients, density),
+            phase,
+            scatters: coefficients.scatter(),
+        })
     }
 
     /// A medium with the coefficients of two grids, 1/m, and outside of their box nothing. None: the grids have not
@@ -177,6 +190,7 @@ impl Medium {
         let is_valid =
             scattering.is_nowhere_above(&extinction) && extinction.most() <= Self::DENSEST;
         is_valid.then_some(Self {
+            scatters: scattering.most() > 0.0,
             field: Field::Chromatic {
                 extinction,
                 scattering,
@@ -192,6 +206,12 @@ impl Medium {
             Field::Density(_, grid) => Some(grid.bounds()),
             Field::Chromatic { extinction, .. } => Some(extinction.bounds()),
         }
+    }
+
+    /// True where light scatters. A medium that only absorbs stops no walk: its light is weighted by T.
+    #[inline]
+    pub const fn scatters(&self) -> bool {
+        self.scatters
     }
 
     /// The coefficients at a point, which lies in the medium.

@@ -13,7 +13,7 @@ use crate::locus::Locus;
 use crate::math::Vec3;
 use crate::medium::MediumSides;
 use crate::sampler::{Dimension, Purpose, SampleStream};
-use crate::scene::{Advance, Chances, Edge, Interaction, SurfaceHit};
+use crate::scene::{Advance, Chances, Edge, Interaction, SurfaceHit, Transmittance};
 use crate::spectrum::Spectrum;
 use crate::stats::Stats;
 
@@ -232,7 +232,12 @@ impl Walker<'_> {
 
     /// The escape of a walk from the place `from` past media of this T. None: nothing arrives.
     #[inline(never)]
-    fn escape(&self, from: &Locus, step: &Step, transmittance: Option<Spectrum>) -> Option<Escape> {
+    fn escape(
+        &self,
+        from: &Locus,
+        step: &Step,
+        transmittance: Option<Transmittance>,
+    ) -> Option<Escape> {
         let to = Locus::at_infinity(step.direction);
         let mut segment = Segment::along(from, &to, step.direction);
         let mut beta = step.beta;

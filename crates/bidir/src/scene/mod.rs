@@ -17,7 +17,7 @@ pub use builder::{
 };
 pub use coverage::Chances;
 pub use object::ObjectId;
-pub use passage::{Advance, Edge, Interaction};
+pub use passage::{Advance, Edge, Interaction, Transmittance};
 pub use space::RenderSpace;
 pub(crate) use visibility::ShadowRays;
 

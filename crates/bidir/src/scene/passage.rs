@@ -31,7 +31,23 @@ pub struct Advance {
     /// Its end.
     pub interaction: Interaction,
     /// T on the way there.
-    pub transmittance: Spectrum,
+    pub transmittance: Transmittance,
+}
+
+/// T = exp(-τ) of the media along a segment, or along a part of it.
+#[derive(Clone, Copy, Debug)]
+pub struct Transmittance {
+    /// Of all media.
+    pub all: Spectrum,
+    /// Of those that scatter, by which walks draw their distances.
+    pub drawn: Spectrum,
+}
+
+/// τ of the same.
+#[derive(Clone, Copy, Debug)]
+struct Depth {
+    all: Spectrum,
+    drawn: Spectrum,
 }
 
 /// The media between two ends of a segment, a and b.
@@ -39,7 +55,8 @@ pub struct Advance {
 pub struct Edge {
     /// The part of light that arrives, in `[0, 1]`: T, times the part of surfaces that is not there.
     pub transmittance: Spectrum,
-    /// The factor of media in the density of b drawn from a: mean(T) on a surface; mean(σ_t T) in a medium, 1/m.
+    /// The factor of media in the density of b drawn from a, with T of the media that scatter: mean(T) on a surface;
+    /// mean(σ_t T) in a medium, 1/m.
     pub to_b: f32,
     /// The same for a drawn from b.
     pub to_a: f32,
@@ -81,6 +98,53 @@ impl Edge {
         } else {
             Spectrum::ZERO
         }
+    }
+}
+
+impl Depth {
+    const ZERO: Self = Self {
+        all: Spectrum::ZERO,
+        drawn: Spectrum::ZERO,
+    };
+
+    /// That of a part in `medium`.
+    #[inline]
+    fn of(medium: &Medium, depth: Spectrum) -> Self {
+        let drawn = if medium.scatters() {
+            depth
+        } else {
+            Spectrum::ZERO
+        };
+        Self { all: depth, drawn }
+    }
+
+    /// That of both, one behind the other.
+    fn and(self, other: Self) -> Self {
+        Self {
+            all: self.all + other.all,
+            drawn: self.drawn + other.drawn,
+        }
+    }
+
+    /// The smaller of both, lane by lane.
+    fn min(self, other: Self) -> Self {
+        Self {
+            all: self.all.zip(other.all, f32::min),
+            drawn: self.drawn.zip(other.drawn, f32::min),
+        }
+    }
+
+    /// exp(-τ).
+    #[inline]
+    fn transmittance(self) -> Transmittance {
+        let arriving = |depth: Spectrum| depth.map(|depth| libm::expf(-depth));
+        let drawn = arriving(self.drawn);
+        let all = if self.all == self.drawn {
+            drawn
+        } else {
+            arriving(self.all)
+        };
+        Transmittance { all, drawn }
     }
 }
 
@@ -159,11 +223,11 @@ impl Scene {
         stretch: &Stretch<'_>,
         detail: Detail,
         wavelengths: &Wavelengths,
-    ) -> Spectrum {
+    ) -> Depth {
         let lanes = |rgb| self.color.unbounded(rgb, wavelengths);
         let medium = self.medium(medium);
-        medium.map_or(Spectrum::ZERO, |medium| {
-            medium.depth(stretch, detail, lanes)
+        medium.map_or(Depth::ZERO, |medium| {
+            Depth::of(medium, medium.depth(stretch, detail, lanes))
         })
     }
 
@@ -187,20 +251,22 @@ impl Scene {
             depth: -libm::log1pf(-u_depth),
         };
         let lanes = |rgb| self.color.unbounded(rgb, wavelengths);
-        let mut depth = Spectrum::ZERO;
+        let mut depth = Depth::ZERO;
         for span in passage.spans(end) {
             let Some(index) = span.medium.index() else {
                 continue;
             };
-            let flight = self.media[index].fly(&span.of(ray, 1.0), drawn, lanes);
-            depth += flight.depth;
+            let medium = &self.media[index];
+            let flight = medium.fly(&span.of(ray, 1.0), drawn, lanes);
+            let part = Depth::of(medium, flight.depth);
+            depth = depth.and(part);
             if let Some(t) = flight.reached {
                 return Advance {
                     interaction: self.collide(ray, t, index, wavelengths),
-                    transmittance: arriving(depth),
+                    transmittance: depth.transmittance(),
                 };
             }
-            drawn.depth -= flight.depth[drawn.lane];
+            drawn.depth -= part.drawn[drawn.lane];
         }
         let surface = |hit: Hit| {
             let (_, primitive) = self.resolve(&hit);
@@ -210,7 +276,7 @@ impl Scene {
         };
         Advance {
             interaction: hit.map_or(Interaction::Escape, surface),
-            transmittance: arriving(depth),
+            transmittance: depth.transmittance(),
         }
     }
 
@@ -239,8 +305,8 @@ impl Scene {
         let depths = passage
             .spans(ray.t_max)
             .map(|span| self.depth(span.medium, &span.of(&ray, unit), Detail::Full, wavelengths));
-        let transmittance = arriving(depths.fold(Spectrum::ZERO, |sum, depth| sum + depth));
-        let edge = self.edge_of(transmittance, [a, b], wavelengths);
+        let depth = depths.fold(Depth::ZERO, Depth::and);
+        let edge = self.edge_of(depth.transmittance(), [a, b], wavelengths);
         let arrives = edge.transmittance * visible;
         (!arrives.is_black()).then_some(Edge {
             transmittance: arrives,
@@ -270,34 +336,34 @@ impl Scene {
         let depth = if media[0] == media[1] {
             near
         } else {
-            near.zip(through(media[1]), f32::min)
+            near.min(through(media[1]))
         };
-        let transmittance = arriving(depth).map(|lane| lane.max(LEAST));
-        self.edge_of(transmittance, [a, b], wavelengths)
+        let Transmittance { all, drawn } = depth.transmittance();
+        let [all, drawn] = [all, drawn].map(|t| t.map(|lane| lane.max(LEAST)));
+        self.edge_of(Transmittance { all, drawn }, [a, b], wavelengths)
     }
 
-    /// The edge of which T is known.
+    /// The edge of which T is known. Where nothing arrives no walk goes.
     #[inline(never)]
     pub(crate) fn edge_of(
         &self,
-        transmittance: Spectrum,
+        Transmittance { all, drawn }: Transmittance,
         [a, b]: [&Locus; 2],
         wavelengths: &Wavelengths,
     ) -> Edge {
         let density = |end: &Locus| match end.kind {
+            _ if all.is_black() => 0.0,
             LocusKind::Medium => {
                 let medium = self.medium(end.media.outside);
                 let extinction = medium.map_or(Spectrum::ZERO, |medium| {
                     medium.extinction(end.point, self.color, wavelengths)
                 });
-                self.color.mean(extinction * transmittance)
+                self.color.mean(extinction * drawn)
             }
-            LocusKind::Surface | LocusKind::Space | LocusKind::Infinity => {
-                self.color.mean(transmittance)
-            }
+            LocusKind::Surface | LocusKind::Space | LocusKind::Infinity => self.color.mean(drawn),
         };
         Edge {
-            transmittance,
+            transmittance: all,
             to_b: density(b),
             to_a: density(a),
         }
@@ -370,9 +436,4 @@ fn by_most(answer: impl Fn(Vec3) -> MediumId) -> MediumId {
     ];
     let [a, b, c] = RAYS.map(answer);
     if a == c { a } else { b }
-}
-
-/// exp(-τ).
-fn arriving(depth: Spectrum) -> Spectrum {
-    depth.map(|depth| libm::expf(-depth))
 }

@@ -8,7 +8,7 @@ use super::mesh::UvMap;
 use super::place::{GltfFault, Place};
 use super::texture::{Textures, uv_map};
 use crate::import::Skin;
-use bidir::medium::MediumSides;
+use bidir::medium::{MediumId, MediumSides};
 use bidir::scene::{Emission, MaterialId, SceneBuilder};
 use bidir::texture::FloatTexture;
 use reader::Reader;
@@ -19,6 +19,7 @@ use std::collections::BTreeMap;
 pub(super) struct Built {
     pub(super) id: MaterialId,
     pub(super) emission: Option<Emission>,
+    media: MediumSides,
     /// The coverage of the surface. None: it is opaque.
     pub(super) coverage: Option<FloatTexture>,
     /// The map from texture coordinates to the parameters of meshes.
@@ -31,7 +32,7 @@ impl Built {
         Skin {
             material: Some(self.id),
             coverage: self.coverage.as_ref(),
-            media: MediumSides::VACUUM,
+            media: self.media,
         }
     }
 }
@@ -77,7 +78,12 @@ impl Materials {
             place,
         };
         let material = reader.material(color)?;
+        let inside = reader.inside()?;
         let built = Built {
+            media: MediumSides {
+                inside: inside.map_or(MediumId::VACUUM, |medium| builder.medium(medium)),
+                ..MediumSides::VACUUM
+            },
             id: builder.material(material),
             emission: reader.emission()?,
             coverage: reader.coverage(color[3])?,

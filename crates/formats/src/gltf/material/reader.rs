@@ -1,7 +1,7 @@
 //! Reads one material.
 
 use crate::gltf::document::Context;
-use crate::gltf::json::{Material as Described, TextureInfo};
+use crate::gltf::json::{Material as Described, TextureInfo, Volume};
 use crate::gltf::mesh::UvMap;
 use crate::gltf::place::{GltfFault, Place};
 use crate::gltf::texture::{Change, Lookup, Part, Textures};
@@ -14,6 +14,7 @@ use bidir::material::{
     ScaledFloat,
 };
 use bidir::math::{Vec2, sin_cos};
+use bidir::medium::{Coefficients, HenyeyGreenstein, Medium};
 use bidir::scene::Emission;
 use bidir::spectrum::Rgb;
 use bidir::texture::{ColorTexture, FloatTexture};
@@ -162,20 +163,50 @@ impl Reader<'_, '_> {
             let texture = diffuse.diffuse_transmission_color_texture.as_ref();
             material.diffuse_transmission_color = self.color(color, texture)?;
         }
-        if let Some(volume) = extensions
-            .volume
-            .as_ref()
-            .filter(|volume| volume.thickness_factor > 0.0)
-        {
+        if self.volume().is_some() {
             material.wall = Wall::Solid;
-            let color = volume.attenuation_color.unwrap_or([1.0; 3]);
-            let is_finite = volume.attenuation_distance.is_some_and(f32::is_finite);
-            if is_finite && color.iter().any(|&channel| channel < 1.0) {
-                let message = "absorption in volumes has no effect: the inside is clear";
-                self.context.warn(self.place.clone(), message);
-            }
         }
         Ok(())
+    }
+
+    /// The volume of a material that is no thin wall.
+    fn volume(&self) -> Option<&Volume> {
+        let volume = self.described.extensions.volume.as_ref();
+        volume.filter(|volume| volume.thickness_factor > 0.0)
+    }
+
+    /// Reads the medium inside: at `attenuationDistance`, `attenuationColor` is left of the light. None: the inside
+    /// is clear, or no light gets in.
+    pub(super) fn inside(&self) -> Result<Option<Medium>, GltfFault> {
+        let extensions = &self.described.extensions;
+        let clear = extensions.transmission.as_ref();
+        let diffuse = extensions.diffuse_transmission.as_ref();
+        let is_open = clear.is_some_and(|part| part.transmission_factor > 0.0)
+            || diffuse.is_some_and(|part| part.diffuse_transmission_factor > 0.0);
+        let Some(volume) = self.volume().filter(|_| is_open) else {
+            return Ok(None);
+        };
+        let place = self.place.key("extensions").key("KHR_materials_volume");
+        let color = volume.attenuation_color.unwrap_or([1.0; 3]);
+        if !color.iter().all(|channel| (0.0..=1.0).contains(channel)) {
+            let message = format!("the colour {color:?} is not within 0 and 1");
+            return Err(place.key("attenuationColor").scene(message));
+        }
+        let distance = volume.attenuation_distance.unwrap_or(f32::INFINITY);
+        let is_clear = distance == f32::INFINITY || color.iter().all(|&channel| channel >= 1.0);
+        if is_clear {
+            return Ok(None);
+        }
+        let unit = self.context.layout.space.unit as f32;
+        let absorption = color.map(|channel| absorption(channel, distance) * unit);
+        let coefficients = Coefficients::new(absorption, [0.0; 3]).ok_or_else(|| {
+            let message = format!("the distance {} is too small", number(distance));
+            place.key("attenuationDistance").scene(message)
+        })?;
+        Ok(Some(Medium::homogeneous(
+            coefficients,
+            HenyeyGreenstein::ISOTROPIC,
+        )))
     }
 
     /// Reads coat and sheen.
@@ -287,6 +318,11 @@ impl Reader<'_, '_> {
             Some(info) => self.channel(info, Part::Alpha, change).map(Some),
         }
     }
+}
+
+/// σ_a = -ln(part) / distance. Where nothing is to be left, it is the least number that is not 0.
+fn absorption(part: f32, distance: f32) -> f32 {
+    -libm::logf(part.max(f32::MIN_POSITIVE)) / distance
 }
 
 /// Returns true for an image of black texels.

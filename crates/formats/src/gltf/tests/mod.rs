@@ -4,6 +4,7 @@ mod geometry;
 mod look;
 mod outside;
 mod refusals;
+mod volume;
 
 use super::load;
 use crate::error::{Error, Result};

@@ -1,0 +1,127 @@
+//! Coloured glass: light that travels the attenuation distance in it keeps the attenuation colour.
+
+use super::*;
+use bidir::driver::{Resources, Session, Settings};
+use bidir::integrator::IntegratorKind;
+
+/// Glass that does not bend light, of half the attenuation distance, between a lamp and a small camera of parallel rays
+/// along -z.
+fn pane(volume: &Value) -> Draft {
+    let mut draft = Draft::empty();
+    let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
+    let at = |z: f32| corners.map(|[x, y]| [x, y, z]);
+    let positions: Vec<f32> = [at(0.0), at(0.5)].concat().concat();
+    draft.accessor(&floats(&positions), (F32, "VEC3", 8));
+    // Both faces across the camera's rays, seen from outside.
+    let faces = [0, 2, 1, 0, 3, 2, 4, 5, 6, 4, 6, 7];
+    draft.accessor(&shorts(&faces), (U16, "SCALAR", 12));
+    draft.accessor(&shorts(&faces[6..]), (U16, "SCALAR", 6));
+    draft.json["materials"] = json!([
+        { "extensions": {
+            "KHR_materials_ior": { "ior": 1 },
+            "KHR_materials_transmission": { "transmissionFactor": 1 },
+            "KHR_materials_volume": volume,
+        }, "pbrMetallicRoughness": { "roughnessFactor": 0, "metallicFactor": 0 } },
+        { "emissiveFactor": [1, 1, 1] },
+    ]);
+    let primitive = |indices: usize, material: usize| {
+        json!({ "primitives": [{
+            "attributes": { "POSITION": 0 }, "indices": indices, "material": material,
+        }] })
+    };
+    draft.json["meshes"] = json!([primitive(1, 0), primitive(2, 1)]);
+    draft.json["cameras"] = json!([{ "type": "orthographic",
+        "orthographic": { "xmag": 0.1, "ymag": 0.1, "znear": 0, "zfar": 10 } }]);
+    draft.json["nodes"] = json!([
+        { "mesh": 0 },
+        { "mesh": 1, "translation": [0, 0, -2] },
+        { "camera": 0, "translation": [0, 0, 3] },
+    ]);
+    draft.json["scenes"] = json!([{ "nodes": [0, 1, 2] }]);
+    draft
+}
+
+/// The light of the lamp that the camera gets.
+fn seen(draft: &Draft) -> [f32; 3] {
+    let options = LoadOptions {
+        resolution: Some([1, 1]),
+        ..LoadOptions::default()
+    };
+    let loaded = load_bytes("a.gltf", &draft.gltf(), &options).expect("it is valid");
+    let (settings, resources) = (Settings::new(IntegratorKind::Path), Resources::default());
+    let session = Session::new(&loaded.scene, &loaded.view, settings, &resources);
+    let mut session = session.expect("a small film");
+    session.step(&());
+    session.film().develop().pixels[0]
+}
+
+/// Green of half the distance.
+fn green() -> Value {
+    json!({ "thicknessFactor": 1, "attenuationDistance": 1, "attenuationColor": [0.04, 0.25, 1] })
+}
+
+#[track_caller]
+fn check(draft: &Draft, expected: [f32; 3]) {
+    let light = seen(draft);
+    for (found, expected) in light.into_iter().zip(expected) {
+        assert!((found - expected).abs() < 1e-3 * expected, "{light:?}");
+    }
+}
+
+#[test]
+fn half_the_distance_leaves_the_root_of_the_colour() {
+    let expected = [0.2, 0.5, 1.0];
+    check(&pane(&green()), expected);
+    let mut twice = pane(&green());
+    let nodes = twice.json["nodes"].as_array_mut().unwrap();
+    nodes.push(json!({ "mesh": 0, "translation": [5, 0, 0] }));
+    twice.json["scenes"][0]["nodes"] = json!([0, 1, 2, 3]);
+    check(&twice, expected);
+    // The distance is one of the world, whatever the size of the glass in its own coordinates.
+    let mut scaled = pane(&green());
+    scaled.json["nodes"][0]["scale"] = json!([1, 1, 2]);
+    check(&scaled, expected.map(|part| part * part));
+}
+
+#[test]
+fn volumes_are_clear_without_an_end_or_a_colour_and_thin_walls_have_none() {
+    for key in ["attenuationDistance", "attenuationColor", "thicknessFactor"] {
+        let mut volume = green();
+        volume.as_object_mut().unwrap().remove(key);
+        check(&pane(&volume), [1.0; 3]);
+    }
+}
+
+#[test]
+fn a_channel_of_nothing_is_dark() {
+    let mut volume = green();
+    volume["attenuationColor"] = json!([0, 0, 0.25]);
+    let [red, _, blue] = seen(&pane(&volume));
+    assert!(red < 1e-6 && (blue - 0.5).abs() < 1e-3, "{red} {blue}");
+}
+
+#[test]
+fn opaque_materials_have_no_inside() {
+    let mut draft = pane(&green());
+    draft.json["materials"][0]["extensions"]["KHR_materials_transmission"] = json!({});
+    assert!(!draft.load().expect("it is valid").scene.has_media());
+}
+
+#[test]
+fn impossible_volumes_are_refused() {
+    for (key, value, message) in [
+        (
+            "attenuationColor",
+            json!([1.5, 1, 0]),
+            "is not within 0 and 1",
+        ),
+        ("attenuationDistance", json!(0), "is too small"),
+        ("attenuationDistance", json!(-1), "is too small"),
+    ] {
+        let mut volume = green();
+        volume[key] = value;
+        let error = pane(&volume).error().to_string();
+        let place = format!("materials[0].extensions.KHR_materials_volume.{key}");
+        assert!(error.contains(&place) && error.contains(message), "{error}");
+    }
+}
