@@ -69,7 +69,7 @@ impl<'a> JoinedPath<'a> {
 
     /// Lets the segment between z and y pass media.
     #[inline]
-    pub(crate) fn pass(&mut self, edge: &Edge) {
+    pub fn pass(&mut self, edge: &Edge) {
         self.segment.pass(edge);
     }
 

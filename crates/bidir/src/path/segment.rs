@@ -49,7 +49,7 @@ impl Segment {
 
     /// Lets it pass media: densities of points have a factor more. T is no part of G.
     #[inline]
-    pub(crate) fn pass(&mut self, edge: &Edge) {
+    pub fn pass(&mut self, edge: &Edge) {
         self.to_b *= edge.to_b;
         self.to_a *= edge.to_a;
     }

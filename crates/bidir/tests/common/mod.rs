@@ -16,6 +16,7 @@ use bidir::material::{
     ScaledColor, ScaledFloat,
 };
 use bidir::math::{Affine3A, Vec2, Vec3};
+use bidir::medium::{Coefficients, HenyeyGreenstein, Medium, MediumSides};
 use bidir::path::PathSettings;
 use bidir::scene::{Emission, MaterialId, Scene, SceneBuilder, SceneError};
 use bidir::shape::{Mesh, Orientation, Shape, Sphere};
@@ -336,10 +337,33 @@ pub(crate) fn room(lens_radius: f32) -> Shot {
 /// The same with a film of `size` × `size` pixels.
 pub(crate) fn room_of(size: u32, lens_radius: f32) -> Shot {
     let mut builder = builder(size, lens_radius);
+    furnish(&mut builder);
+    builder.build().expect("the room is valid")
+}
+
+/// The same full of fog, with a bubble that only absorbs.
+pub(crate) fn foggy_room(lens_radius: f32) -> Shot {
+    let mut builder = builder(8, lens_radius);
+    furnish(&mut builder);
+    let medium = |absorption, scattering| {
+        let coefficients = Coefficients::new(absorption, scattering).expect("valid coefficients");
+        let phase = HenyeyGreenstein::new(0.4).expect("a mean cosine");
+        Medium::homogeneous(coefficients, phase)
+    };
+    let outside = builder.medium(medium([0.05, 0.1, 0.0], [0.1, 0.2, 0.4]));
+    let inside = builder.medium(medium([0.2, 0.5, 1.0], [0.0; 3]));
+    builder.medium_at(Vec3::new(0.0, 0.0, -1.8), outside);
+    let bubble = sphere(Vec3::new(0.2, 0.3, 0.3), 0.6);
+    builder.boundary(bubble, MediumSides { outside, inside });
+    builder.build().expect("the room is valid")
+}
+
+/// Walls, lights and the rest of [`room`].
+fn furnish(builder: &mut ShotBuilder) {
     let wall = builder.material(diffuse([0.7, 0.6, 0.5]));
     let rough_metal = builder.material(metal(0.4));
     let rough_glass = builder.material(glass(0.5));
-    add_walls(&mut builder, wall);
+    add_walls(builder, wall);
     let light = quad(Vec3::new(-0.7, 1.9, -0.5), Vec3::X * 1.4, Vec3::Z);
     builder.shape(Shape::Mesh(light), wall, emission([6.0, 5.0, 4.0]));
     builder.shape(
@@ -352,7 +376,6 @@ pub(crate) fn room_of(size: u32, lens_radius: f32) -> Shot {
     builder.shape(Shape::Mesh(panel), wall, None);
     builder.shape(sphere(Vec3::new(-0.8, -1.2, 0.2), 0.7), rough_metal, None);
     builder.shape(sphere(Vec3::new(0.6, -1.1, -0.2), 0.6), rough_glass, None);
-    builder.build().expect("the room is valid")
 }
 
 /// A closed room with many lamps: a mesh, a ball, and quadrilaterals of one and of two sides, on the

@@ -4,10 +4,11 @@ use super::Shot;
 use bidir::guide::{Cells, LightProposals, PairSums};
 use bidir::light::LightChoice;
 use bidir::path::{
-    Job, PathContext, PathSettings, Subpath, Subpaths, camera_subpath, light_subpath,
+    Job, PathContext, PathSettings, Subpath, Subpaths, Vertex, camera_subpath, light_subpath,
 };
 use bidir::sampler::{Dimension, Domain, Purpose, Sampler, SamplerKind};
-use bidir::spectrum::Wavelengths;
+use bidir::scene::Edge;
+use bidir::spectrum::{Spectrum, Wavelengths};
 use bidir::stats::Stats;
 
 /// How many pairs a scene gets.
@@ -26,6 +27,20 @@ fn walk(context: &PathContext<'_>, index: u64, [light, camera]: [&mut Subpaths; 
     light.clear();
     let stream = sampler.stream(Domain::Light, 0, index);
     light_subpath(context, &stream, light, &mut stats);
+}
+
+/// The media between two vertices. None: nothing arrives, as far as a scene with media says so; one without says
+/// nothing.
+pub(crate) fn edge(context: &PathContext<'_>, a: &Vertex, b: &Vertex) -> Option<Edge> {
+    let scene = context.job.scene;
+    if scene.has_media() {
+        return scene.edge(&a.locus, &b.locus, &context.wavelengths);
+    }
+    Some(Edge {
+        transmittance: Spectrum::splat(1.0),
+        to_b: 1.0,
+        to_a: 1.0,
+    })
 }
 
 /// Calls `f` with the context of a scene and a number of subpath pairs.

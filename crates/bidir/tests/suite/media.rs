@@ -1,5 +1,7 @@
 //! Participating media: images that are known, and estimators that agree.
 
+mod closed_forms;
+
 use crate::common::statistics::{Replicates, WHOLE, check_agree, replicates};
 use crate::common::{
     Shot, ShotBuilder, add_walls, builder, diffuse, emission, glass, narrow_camera, quad, settings,

@@ -6,7 +6,7 @@
 
 use crate::common;
 use crate::common::Shot;
-use crate::common::walks::{for_each_pair, for_some_pairs, some_light_start, some_proposals};
+use crate::common::walks::{edge, for_each_pair, for_some_pairs, some_light_start, some_proposals};
 use bidir::bsdf::TransportMode;
 use bidir::guide::Guide;
 use bidir::light::Part;
@@ -42,44 +42,42 @@ fn survival(context: &PathContext<'_>, index: usize, before: &Vertex) -> f32 {
 }
 
 /// Walks again over `points`, the first of which is an end with its own `pdf_fwd` and `beta`:
-/// everything that a walk stores is computed from scratch. Returns the subpath, and the density of
-/// each vertex with roulette.
+/// everything that a walk stores is computed from scratch. None: no walk goes there.
 fn rewalk(
     context: &PathContext<'_>,
     points: &[Vertex],
     mode: TransportMode,
-) -> (Vec<Vertex>, Vec<f64>) {
+) -> Option<Vec<Vertex>> {
     let mut walk: Vec<Vertex> = Vec::new();
-    let mut densities = Vec::new();
     for (i, point) in points.iter().enumerate() {
         let mut vertex = *point;
-        let mut density = f64::from(point.pdf_fwd);
         if i > 0 {
             let before = walk[i - 1];
-            let segment = before.segment_to(&vertex);
+            let mut segment = before.segment_to(&vertex);
+            let edge = edge(context, &before, &vertex)?;
+            segment.pass(&edge);
             vertex.wo = -segment.w;
             vertex.pdf_fwd = before.turn(before.wo, segment.w).pdf(context) * segment.to_b;
             vertex.to_previous = segment.to_a;
             let roulette = survival(context, i, &before);
-            density = f64::from(vertex.pdf_fwd * roulette);
             let scatter = before.turn(before.wo, -vertex.wo).scatter(context, mode);
             let step = segment.geometry_term / (vertex.pdf_fwd * roulette);
             // The first camera density counts samples per pixel, and so does importance.
-            vertex.beta = before.beta * scatter * step;
+            vertex.beta = before.beta * scatter * edge.transmittance * step;
             vertex.albedo_fwd = vertex.albedo(vertex.wo).max_lane();
         }
         walk.push(vertex);
-        densities.push(density);
     }
     for i in 0..walk.len().saturating_sub(1) {
         let (next, vertex) = (walk[i + 1], walk[i]);
         if let Some(after) = walk.get(i + 2).copied() {
-            let (wi, back) = (next.segment_to(&after).w, next.segment_to(&vertex));
+            let (wi, mut back) = (next.segment_to(&after).w, next.segment_to(&vertex));
+            back.pass(&edge(context, &next, &vertex)?);
             walk[i].pdf_rev = next.turn(wi, back.w).pdf(context) * back.to_b;
             walk[i + 1].albedo_rev = next.albedo(wi).max_lane();
         }
     }
-    (walk, densities)
+    Some(walk)
 }
 
 #[track_caller]
@@ -125,14 +123,22 @@ impl Comparisons {
 
 #[test]
 fn stored_quantities_are_those_of_a_walk_from_scratch() {
+    check_stored(&common::room(0.05));
+    check_stored(&common::foggy_room(0.05));
+}
+
+#[track_caller]
+fn check_stored(scene: &Shot) {
     let settings = settings(MisHeuristic::Balance, LightPointChoice::Fresh);
     let mut comparisons: [Comparisons; 5] = Default::default();
     let [pdf_fwd, pdf_rev, albedo_fwd, albedo_rev, beta] = &mut comparisons;
-    for_each_pair(&settings, &common::room(0.05), |context, light, camera| {
+    for_each_pair(&settings, scene, |context, light, camera| {
         let modes = [TransportMode::Importance, TransportMode::Radiance];
         for (subpath, mode) in [light, camera].into_iter().zip(modes) {
             let stored = subpath.vertices;
-            let (fresh, _) = rewalk(context, stored, mode);
+            let Some(fresh) = rewalk(context, stored, mode) else {
+                continue;
+            };
             for i in 1..stored.len() {
                 if is_fragile(&fresh[i - 1], &fresh[i]) {
                     continue;
@@ -211,34 +217,38 @@ fn next_event_density(context: &PathContext<'_>, path: &[Vertex]) -> f32 {
 }
 
 /// For every strategy that can make the path: its index, its weight, and f / (p n) with the
-/// density p as the product over the vertices.
-fn strategies(context: &PathContext<'_>, path: &[Vertex]) -> Vec<(usize, f32, Spectrum)> {
+/// density p as the product over the vertices. None: nothing arrives on one of its segments.
+fn strategies(context: &PathContext<'_>, path: &[Vertex]) -> Option<Vec<(usize, f32, Spectrum)>> {
     let n = path.len();
     let reversed: Vec<Vertex> = path.iter().rev().copied().collect();
     let mut densities = PathDensities::default();
     let mut result = Vec::new();
     for s in 0..n {
-        let (camera, _) = rewalk(context, &reversed[..n - s], TransportMode::Radiance);
+        let camera = rewalk(context, &reversed[..n - s], TransportMode::Radiance)?;
         if s == 0 {
             let mut x0 = path[0];
             x0.pdf_rev = camera[n - 1].pdf_fwd;
+            x0.to_previous = camera[n - 1].to_previous;
             let w = JoinedPath::hit(&x0, &camera[..n - 1]).weight(context, &mut densities);
             let turn = x0.turn(x0.wo, camera[n - 1].wo);
             let emitted = turn.scatter(context, TransportMode::Importance);
             result.push((s, w, camera[n - 1].beta * emitted));
             continue;
         }
-        let (mut light, _) = rewalk(context, &path[..s], TransportMode::Importance);
-        let w = JoinedPath::connection(&light, &camera).weight(context, &mut densities);
+        let mut light = rewalk(context, &path[..s], TransportMode::Importance)?;
+        let edge = edge(context, &path[s - 1], &path[s])?;
+        let mut joined = JoinedPath::connection(&light, &camera);
+        joined.pass(&edge);
+        let w = joined.weight(context, &mut densities);
         if s == 1 {
             let density = next_event_density(context, path);
             light[0].beta = Spectrum::splat(1.0 / density);
         }
         let count = count(context, s, path) as f32;
         let value = JoinedPath::connection(&light, &camera).contribution(context);
-        result.push((s, w, value / count));
+        result.push((s, w, value * edge.transmittance / count));
     }
-    result
+    Some(result)
 }
 
 /// n_s of these connections.
@@ -277,8 +287,7 @@ fn check_job(job: Job<'_>) {
                     continue;
                 }
                 let path = whole_path(context, light, camera);
-                check_path(context, &path, settings.mis);
-                paths += 1;
+                paths += usize::from(check_path(context, &path, settings.mis));
             }
         }
     });
@@ -286,15 +295,17 @@ fn check_job(job: Job<'_>) {
 }
 
 /// Weights sum to 1, f is the same whatever strategy makes the path, and under the balance
-/// heuristic w_s / (n_s p_s) is the same for all.
-fn check_path(context: &PathContext<'_>, path: &[Vertex], mis: MisHeuristic) {
-    let all = strategies(context, path);
+/// heuristic w_s / (n_s p_s) is the same for all. False: there is no such path.
+fn check_path(context: &PathContext<'_>, path: &[Vertex], mis: MisHeuristic) -> bool {
+    let Some(all) = strategies(context, path) else {
+        return false;
+    };
     let possible: Vec<_> = all
         .iter()
         .filter(|(_, _, value)| !value.is_black())
         .collect();
     if possible.is_empty() {
-        return;
+        return false;
     }
     let sum: f32 = possible.iter().map(|(_, w, _)| w).sum();
     assert!(
@@ -311,6 +322,7 @@ fn check_path(context: &PathContext<'_>, path: &[Vertex], mis: MisHeuristic) {
             }
         }
     }
+    true
 }
 
 #[test]
@@ -329,6 +341,14 @@ fn layered_and_mixed_surfaces_are_one_function_of_the_path() {
     let scene = common::gallery(0.1);
     check_paths(MisHeuristic::Balance, LightPointChoice::Fresh, &scene);
     check_paths(MisHeuristic::Power, LightPointChoice::Fresh, &scene);
+}
+
+/// The same in fog, and through a medium that only absorbs.
+#[test]
+fn paths_through_media_are_one_function_of_the_path() {
+    let scene = common::foggy_room(0.1);
+    check_paths(MisHeuristic::Balance, LightPointChoice::Fresh, &scene);
+    check_paths(MisHeuristic::Power, LightPointChoice::Shared, &scene);
 }
 
 /// The same where next-event estimation chooses among many lamps, and where it does so by power.

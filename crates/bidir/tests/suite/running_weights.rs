@@ -2,13 +2,12 @@
 //! make, and for every way to weigh them.
 
 use crate::common;
-use crate::common::walks::{for_some_pairs, some_light_start, some_proposals};
+use crate::common::walks::{edge, for_some_pairs, some_light_start, some_proposals};
 use crate::common::{Shot, ShotBuilder};
 use bidir::camera::{Camera, Orthographic, OrthographicSettings, Perspective, PerspectiveSettings};
 use bidir::guide::Guide;
 use bidir::light::{DistantLight, InfiniteLight, Light, PointLight};
 use bidir::math::{Affine3A, Vec2, Vec3};
-use bidir::medium::MediumId;
 use bidir::path::{
     Arrival, Job, JoinedPath, Junction, LightChoiceKind, LightPointChoice, MisHeuristic,
     PathContext, PathDensities, PathRoulette, PathSettings, PathSums, RunningSums, SampleCounts,
@@ -96,15 +95,22 @@ impl Comparison {
         light: &[Vertex],
         camera: &[Vertex],
     ) {
-        let path = JoinedPath::connection(light, camera);
-        if !path.contribution(context).is_black() {
+        let mut path = JoinedPath::connection(light, camera);
+        let edge = edge(context, &light[light.len() - 1], &camera[camera.len() - 1]);
+        if let Some(edge) = edge
+            && !path.contribution(context).is_black()
+        {
+            path.pass(&edge);
             self.compare(context, &path);
         }
     }
 
-    /// A connection of diffuse vertices against the general form.
+    /// A connection of diffuse vertices against the general form. Through media, all take that.
     #[track_caller]
     fn compare_diffuse(&mut self, context: &PathContext<'_>, light: &[Vertex], camera: &[Vertex]) {
+        if context.job.scene.has_media() {
+            return;
+        }
         let (s, t) = (light.len(), camera.len());
         let [of_light, of_camera] = &self.sums;
         let (Some(z), Some(y)) = (of_light.diffuse(s - 1), of_camera.diffuse(t - 1)) else {
@@ -155,7 +161,8 @@ impl Comparison {
             .view
             .camera()
             .sample_lens(|| Vec2::new(0.3, 0.8));
-        let lens = Vertex::camera(&lens, MediumId::VACUUM);
+        let medium = context.job.scene.medium_at(lens.locus.point);
+        let lens = Vertex::camera(&lens, medium);
         for s in 1..=light.len() {
             if !(light[s - 1].locus.is_infinite() && lens.locus.is_infinite()) {
                 self.compare_connection(context, &light[..s], std::slice::from_ref(&lens));
@@ -335,6 +342,7 @@ fn rooms_and_layers() {
     assert!(diffuse > 1000, "{diffuse} connections are diffuse");
     check(&common::gallery(0.1), 20);
     check(&common::lamp_room(0.1), 20);
+    check(&common::foggy_room(0.1), 20);
 }
 
 #[test]
