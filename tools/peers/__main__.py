@@ -3,8 +3,8 @@
     python3 tools/peers setup [--with-cycles]   installs the peers into an environment of their own
     python3 tools/peers bench                   error in equal CPU time, as tables in Markdown
     python3 tools/peers verify                  checks that all renderers converge to the same image
-    python3 tools/peers scenes                  writes both scenes, as PLY and pbrt-v4
-    python3 tools/peers reference               renders the references of both scenes anew
+    python3 tools/peers scenes                  writes the scenes, as PLY and pbrt-v4
+    python3 tools/peers reference               renders the references of the scenes anew
     python3 tools/peers check                   checks this tool; needs only bidir
 
 `bench` and `verify` install missing peers; a peer that cannot be installed is left out, with a message.
@@ -41,7 +41,7 @@ def arguments():
     add("--bidir", default=os.path.join(TARGET, "release", "bidir"), metavar="PROGRAM",
         help="the program that is measured [%(default)s]")
     add("--with-cycles", action="store_true", help="set up Cycles, too: 0.4 GB more")
-    add("--scenes", default="AB", choices=["A", "B", "AB"], help="[AB]")
+    add("--scenes", default=neutral.SCENES, help="[%(default)s]")
     add("--only", default="", metavar="TEXT", help="renderers whose names contain this")
     add("--ours", default=[], action="append", metavar="FLAGS",
         help="a row more: 'path --path-roulette albedo:5'")
@@ -49,7 +49,10 @@ def arguments():
     add("--seconds", type=float, metavar="CPU",
         help="CPU seconds of a render [bench 8, verify 8, reference 600]")
     add("--repetitions", type=int, help="renders of each [bench 3, verify 8]")
-    return parser.parse_args()
+    options = parser.parse_args()
+    if not set(options.scenes) <= set(neutral.SCENES):
+        parser.error("--scenes: %s are known" % neutral.SCENES)
+    return options
 
 
 def prepare(options):

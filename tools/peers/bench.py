@@ -22,6 +22,10 @@ class Bench(NamedTuple):
     scenes: str
     threads: int
 
+    def able(self, scene):
+        """Returns the renderers that can describe a scene."""
+        return [renderer for renderer in self.renderers if scene in renderer.scenes]
+
     def job(self, scene, seconds, seed, image):
         return Job(self.environment.path("scenes"), scene, seconds, self.threads, seed, image)
 
@@ -68,8 +72,9 @@ def measure(bench, seconds, repetitions):
     for repetition in range(repetitions):
         for scene in bench.scenes:
             reference = score.Reference.load(scene)
-            first = repetition * len(bench.renderers) // repetitions
-            for renderer in bench.renderers[first:] + bench.renderers[:first]:
+            able = bench.able(scene)
+            first = repetition * len(able) // repetitions
+            for renderer in able[first:] + able[:first]:
                 try:
                     record = _measure(bench, renderer, scene, seconds, repetition, reference)
                 except Failed as error:

@@ -1,4 +1,4 @@
-"""Checks this tool without any peer: writes both scenes, renders each, and measures the error."""
+"""Checks this tool without any peer: writes all scenes, renders each, and measures the error."""
 
 import os
 import sys
@@ -23,7 +23,7 @@ def check(program):
     good = True
     with tempfile.TemporaryDirectory() as folder:
         neutral.write(folder)
-        for scene in "AB":
+        for scene in neutral.SCENES:
             good &= _check(program, folder, scene)
     return 0 if good else 1
 

@@ -1,9 +1,11 @@
-"""Two neutral scenes: Cornell boxes that every renderer can describe exactly.
+"""Neutral scenes: Cornell boxes that renderers can describe exactly.
 
 A is lit by a lamp under the ceiling. B is lit by a lamp that faces up within an open cup, so that
-all but a patch of the ceiling is lit indirectly. Right-handed, y is up; the camera stands at +z and
-looks along -z. All surfaces are two-sided Lambertian quads; lamps shine from their front alone and
-reflect nothing. Standard library only: each renderer's script reads its scene from here.
+all but a patch of the ceiling is lit indirectly. C is A in fog, with the camera in it: connections
+cross no boundary, since even an empty cube of null surfaces makes images of Mitsuba 3.9.1 darker.
+Right-handed, y is up; the camera stands at +z and looks along -z. All surfaces are two-sided
+Lambertian quads; lamps shine from their front alone and reflect nothing. Standard library only: each
+renderer's script reads its scene from here.
 """
 
 import math
@@ -33,13 +35,31 @@ class Quad(NamedTuple):
     radiance: Optional[tuple] = None  # of the front; None: no lamp
 
 
+class Fog(NamedTuple):
+    """A medium that fills a cube around the origin."""
+
+    half: float        # of a side
+    absorption: tuple  # per unit of length
+    scattering: tuple
+    mean_cosine: float # of Henyey and Greenstein's phase function
+
+    def faces(self):
+        """Returns the boundary, seen from outside."""
+        side = (-self.half, self.half)
+        return box("fog", [side, side], side, BLACK, "tufblr")
+
+
+SCENES = "ABC"
+FOG = {"C": Fog(5.0, (0.01, 0.02, 0.03), (0.06, 0.1, 0.16), 0.5)}
+
+
 def quads(scene):
-    """All surfaces of scene "A" or "B"."""
+    """All surfaces of a scene."""
     block = [(-0.3, 0.3), (-0.3, 0.3)]
     shell = room()
     shell += box("tall", block, (-1.0, 0.2), WHITE, "tfblr", turn=18.0, at=(-0.35, -0.3))
     shell += box("short", block, (-1.0, -0.4), WHITE, "tfblr", turn=-17.0, at=(0.35, 0.35))
-    return shell + {"A": ceiling_lamp, "B": lamp_in_cup}[scene]()
+    return shell + {"A": ceiling_lamp, "B": lamp_in_cup, "C": ceiling_lamp}[scene]()
 
 
 def room():
@@ -75,7 +95,7 @@ def box(name, plan, heights, albedo, faces, turn=0.0, at=(0.0, 0.0)):
 
 
 def ceiling_lamp():
-    """Scene A: a square under the ceiling, facing down."""
+    """Scenes A and C: a square under the ceiling, facing down."""
     h, y = 0.25, 0.995
     return [Quad("lamp", [(-h, y, -h), (h, y, -h), (h, y, h), (-h, y, h)], BLACK, (17, 12, 4))]
 
@@ -105,6 +125,7 @@ def pbrt_text(scene):
     """The scene for renderers that read pbrt-v4, whose space is left-handed: the camera is
     mirrored, the world is not. It names no sampler: each renderer has its own default."""
     lines = [
+        *pbrt_fog(scene),
         "Scale -1 1 1",
         "LookAt %g %g %g  %g %g %g  %g %g %g" % (*EYE, *TARGET, *UP),
         'Camera "perspective" "float fov" %g' % FIELD_OF_VIEW,
@@ -120,17 +141,34 @@ def pbrt_text(scene):
                   '  Material "diffuse" "rgb reflectance" [%g %g %g]' % quad.albedo]
         if quad.radiance:
             lines.append('  AreaLightSource "diffuse" "rgb L" [%g %g %g]' % quad.radiance)
-        mesh = os.path.basename(os.path.dirname(mesh_path("", scene, quad)))
-        lines += ['  Shape "plymesh" "string filename" "%s/%s.ply"' % (mesh, quad.name),
-                  "AttributeEnd"]
+        lines += [pbrt_shape(scene, quad), "AttributeEnd"]
+    if scene in FOG:
+        lines += ["AttributeBegin", '  MediumInterface "fog" ""', '  Material "interface"',
+                  *(pbrt_shape(scene, face) for face in FOG[scene].faces()), "AttributeEnd"]
     return "\n".join(lines) + "\n"
 
 
+def pbrt_shape(scene, quad):
+    mesh = os.path.basename(os.path.dirname(mesh_path("", scene, quad)))
+    return '  Shape "plymesh" "string filename" "%s/%s.ply"' % (mesh, quad.name)
+
+
+def pbrt_fog(scene):
+    """The medium, with the camera in it."""
+    if scene not in FOG:
+        return []
+    fog = FOG[scene]
+    return ['MakeNamedMedium "fog" "string type" "homogeneous" "float g" %g' % fog.mean_cosine,
+            '  "rgb sigma_a" [%g %g %g]' % fog.absorption,
+            '  "rgb sigma_s" [%g %g %g]' % fog.scattering,
+            'MediumInterface "" "fog"']
+
+
 def write(folder):
-    """Writes both scenes into a folder: A.pbrt, B.pbrt and the meshes of each."""
-    for scene in "AB":
+    """Writes the scenes into a folder: A.pbrt and so on, and the meshes of each."""
+    for scene in SCENES:
         os.makedirs(os.path.join(folder, "meshes-" + scene), exist_ok=True)
-        for quad in quads(scene):
+        for quad in quads(scene) + (FOG[scene].faces() if scene in FOG else []):
             with open(mesh_path(folder, scene, quad), "w", encoding="ascii") as out:
                 out.write(ply_text(quad))
         with open(os.path.join(folder, scene + ".pbrt"), "w", encoding="ascii") as out:

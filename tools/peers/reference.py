@@ -1,4 +1,4 @@
-"""References of both scenes: the best mix of two bidir estimators that agree.
+"""References of the scenes: the best mix of two bidir estimators that agree.
 
 `bidir reference` renders each and tests that they do; `verify` tests that the peers agree, too.
 """
@@ -15,6 +15,7 @@ import verify
 ESTIMATORS = {
     "A": ("bdpt", "path --path-roulette albedo:5"),
     "B": ("bdpt", "light --path-roulette albedo:2"),
+    "C": ("bdpt", "path"),
 }
 
 

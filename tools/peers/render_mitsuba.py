@@ -26,14 +26,33 @@ def scene(job):
               "to_world": transform.look_at(neutral.EYE, neutral.TARGET, neutral.UP)}
     integrator = {"type": job["integrator"], "max_depth": neutral.MAX_DEPTH}
     shapes = {quad.name: shape(job, quad) for quad in neutral.quads(job["scene"])}
+    if job["scene"] in neutral.FOG:
+        # References are to what was loaded before.
+        shapes = {**fog(neutral.FOG[job["scene"]]), **shapes}
+        sensor["medium"] = FOG
     return mitsuba.load_dict(
-        {"type": "scene", "sensor": sensor, "integrator": integrator, **shapes})
+        {"type": "scene", **shapes, "sensor": sensor, "integrator": integrator})
+
+
+def rgb(value):
+    return {"type": "rgb", "value": [float(v) for v in value]}
+
+
+FOG = {"type": "ref", "id": "fog"}
+
+
+def fog(described):
+    """The medium, and its boundary."""
+    extinction = [a + s for a, s in zip(described.absorption, described.scattering)]
+    medium = {"type": "homogeneous", "sigma_t": rgb(extinction),
+              "albedo": rgb([s / t for s, t in zip(described.scattering, extinction)]),
+              "phase": {"type": "hg", "g": described.mean_cosine}}
+    cube = {"type": "cube", "to_world": mitsuba.ScalarTransform4f().scale(described.half),
+            "bsdf": {"type": "null"}, "interior": FOG}
+    return {"fog": medium, "fog-boundary": cube}
 
 
 def shape(job, quad):
-    def rgb(value):
-        return {"type": "rgb", "value": [float(v) for v in value]}
-
     path = neutral.mesh_path(job["scenes"], job["scene"], quad)
     matte = {"type": "diffuse", "reflectance": rgb(quad.albedo)}
     found = {"type": "ply", "filename": path, "face_normals": True,

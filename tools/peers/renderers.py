@@ -17,7 +17,7 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 
 class Job(NamedTuple):
     scenes: str      # the folder that `neutral.write` made
-    scene: str       # "A" or "B"
+    scene: str       # one of neutral.SCENES
     seconds: float   # CPU seconds, of all threads together
     threads: int
     seed: int
@@ -39,6 +39,7 @@ class Ours:
     """`bidir render` with some flags. The time is that of the whole process: loading, tracing, writing."""
 
     ours = True
+    scenes = neutral.SCENES
 
     def __init__(self, program, flags):
         self.name = "bidir " + flags
@@ -89,8 +90,9 @@ class Peer:
 
     ours = False
 
-    def __init__(self, name, package, environment, **settings):
+    def __init__(self, name, package, environment, scenes="AB", **settings):
         self.name = name
+        self.scenes = scenes
         self.package = package
         self.environment = environment
         self.settings = settings
@@ -121,8 +123,8 @@ class Peer:
 
 def all_renderers(program, environment, variants):
     """Returns bidir's integrators, first by default and then with other flags, and the peers."""
-    def mitsuba(name, variant, integrator):
-        return Peer(name, "mitsuba", environment, variant=variant, integrator=integrator)
+    def mitsuba(name, variant, integrator, scenes="AB"):
+        return Peer(name, "mitsuba", environment, scenes, variant=variant, integrator=integrator)
 
     def luxcore(name, engine):
         return Peer(name, "pyluxcore", environment, engine=engine)
@@ -133,6 +135,9 @@ def all_renderers(program, environment, variants):
         mitsuba("Mitsuba path, scalar", "scalar_rgb", "path"),
         mitsuba("Mitsuba ptracer, LLVM", "llvm_ad_rgb", "ptracer"),
         mitsuba("Mitsuba ptracer, scalar", "scalar_rgb", "ptracer"),
+        mitsuba("Mitsuba volpath, LLVM", "llvm_ad_rgb", "volpath", "C"),
+        mitsuba("Mitsuba volpath, scalar", "scalar_rgb", "volpath", "C"),
+        mitsuba("Mitsuba volpathmis, LLVM", "llvm_ad_rgb", "volpathmis", "C"),
         luxcore("LuxCore PATHCPU", "PATHCPU"),
         luxcore("LuxCore BIDIRCPU", "BIDIRCPU"),
         Peer("Cycles path", "bpy", environment),

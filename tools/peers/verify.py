@@ -23,7 +23,7 @@ def verify(bench, seconds, replicates):
     print("| scene | renderer | mean / reference | p of blocks | systematic part of its error | |")
     print("|---|---|---:|---:|---:|---|")
     for scene in bench.scenes:
-        for renderer in bench.renderers:
+        for renderer in bench.able(scene):
             try:
                 row, same = _verify(bench, scene, renderer, seconds, replicates)
             except Failed as error:

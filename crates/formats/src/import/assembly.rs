@@ -6,7 +6,8 @@ use super::{Context, Document, Layout, SceneSettings, Summary, Survey, VertexErr
 use crate::error::ErrorKind;
 use crate::source::Fault;
 use bidir::light::Light;
-use bidir::medium::MediumSides;
+use bidir::math::Vec3;
+use bidir::medium::{MediumId, MediumSides};
 use bidir::scene::{Emission, MaterialId, ObjectId, Scene, SceneBuilder, SceneError};
 use bidir::shape::Shape;
 use bidir::texture::FloatTexture;
@@ -16,6 +17,10 @@ use glam::{DAffine3, DVec3};
 /// The warning for lights at infinity beyond a medium.
 const UNREACHABLE: &str =
     "light from infinity does not arrive: the medium around the camera has no end";
+
+/// The warning for a camera in a medium that boundaries contradict.
+const ELSEWHERE: &str =
+    "the camera is in another medium than this: the shapes around it say so, and they count";
 
 /// A scene with the places `P` of its parts in the file.
 pub(crate) struct Assembly<P> {
@@ -34,6 +39,8 @@ pub(crate) struct Assembly<P> {
     /// By number.
     instances: Vec<P>,
     lamps: Vec<Placed<P>>,
+    /// The camera's point, and the medium that the file names for it.
+    pub(crate) camera: Option<(Vec3, MediumId, P)>,
 }
 
 /// The numbers of a shape that limits are for, summed over its copies.
@@ -107,6 +114,7 @@ impl<P: Clone> Assembly<P> {
             shapes: Vec::new(),
             instances: Vec::new(),
             lamps: Vec::new(),
+            camera: None,
         }
     }
 
@@ -247,6 +255,11 @@ impl<P: Clone> Assembly<P> {
             if let Some(message) = lamp::dark_warning(&scene, lights.clone()) {
                 context.warn(place.clone(), message);
             }
+        }
+        if let Some((eye, medium, place)) = &self.camera
+            && scene.medium_at(*eye) != *medium
+        {
+            context.warn(place.clone(), ELSEWHERE);
         }
         let is_swallowed = |light: &Light| light.is_infinite() && !scene.is_open();
         for (place, lights) in &self.lamps {

@@ -64,6 +64,10 @@ pub fn build(description: &SceneDescription, options: &LoadOptions) -> Result<Lo
     import::load(description, options, log, Builder::gather)
 }
 
+/// The warning for a medium within a surface that has one of its own.
+const REPLACED: &str =
+    "the medium within the shape has no effect: the material `subsurface` has one of its own";
+
 /// Puts the parts of a description into an assembly.
 struct Builder<'a> {
     assembly: Assembly,
@@ -120,11 +124,12 @@ impl<'a> Builder<'a> {
     /// Puts the medium of the camera where it is.
     fn add_camera_medium(&mut self, context: &mut Context<'_>, eye: DVec3) -> Result<(), Fault> {
         let camera = &context.document.camera;
-        let medium = camera.as_ref().and_then(|it| it.medium.outside.as_ref());
+        let named = camera.as_ref().and_then(|it| it.medium.outside.as_ref());
         let builder = &mut self.assembly.builder;
-        let medium = self.media.find(context, builder, medium)?;
+        let medium = self.media.find(context, builder, named)?;
         let eye = context.layout.render_from_world().transform_point3(eye);
         builder.medium_at(eye.as_vec3(), medium);
+        self.assembly.camera = named.map(|named| (eye.as_vec3(), medium, named.span));
         Ok(())
     }
 
@@ -168,6 +173,9 @@ impl<'a> Builder<'a> {
         let builder = &mut self.assembly.builder;
         let mut media = self.media.sides(context, builder, &shape.medium)?;
         if let Some(content) = self.contents.get(shape.material).copied().flatten() {
+            if let Some(replaced) = &shape.medium.inside {
+                context.warn(replaced.span, REPLACED);
+            }
             media.inside = content;
         }
         let material = self.materials.get(shape.material).copied().flatten();

@@ -117,6 +117,34 @@ fn glass_in_a_medium_without_end_does_not_end_it() {
     assert_eq!(scene.medium_at(Vec3::ZERO), scene.around());
 }
 
+/// The warnings of a camera in this medium, before a ball of fog around it.
+#[track_caller]
+fn check_camera_in(medium: &str, warning: Option<&str>) {
+    let text = format!(
+        "{FOG} MakeNamedMedium \"juice\" \"string type\" \"homogeneous\" \
+         MediumInterface \"\" \"{medium}\" Camera \"perspective\" WorldBegin \
+         MediumInterface \"fog\" \"\" Material \"interface\" Shape \"sphere\" \"float radius\" 3"
+    );
+    let warnings = load_text(&text, &STRICT).warnings;
+    let said = warnings
+        .iter()
+        .find(|text| text.contains("the camera is in"));
+    assert_eq!(said.map(String::as_str), warning, "{medium}");
+}
+
+#[test]
+fn shapes_around_the_camera_are_believed() {
+    check_camera_in("fog", None);
+    check_camera_in("", None);
+    check_camera_in(
+        "juice",
+        Some(
+            "s.pbrt:1:120: the camera is in another medium than this: the shapes around it say so, \
+             and they count",
+        ),
+    );
+}
+
 #[test]
 fn media_that_make_no_sense_are_refused() {
     check_world(
@@ -279,6 +307,17 @@ fn subsurface_has_a_medium_within() {
     // Of paths, it is the length that is scaled.
     let path = "\"rgb reflectance\" [.2 .5 .8] \"rgb mfp\" [.1 .2 .4] \"float scale\" .5";
     assert_eq!(subsurface(path), [20000, 10000, 5000]);
+}
+
+#[test]
+fn subsurface_replaces_a_medium_within_and_says_so() {
+    let text = format!(
+        "{FOG} WorldBegin MediumInterface \"fog\" \"\" Material \"subsurface\" Shape \"sphere\""
+    );
+    let loaded = load_text(&text, &STRICT);
+    let warning = "the medium within the shape has no effect";
+    let said = |text: &String| text.contains(warning);
+    assert!(loaded.warnings.iter().any(said), "{:?}", loaded.warnings);
 }
 
 #[test]
