@@ -122,7 +122,7 @@ fn glass_in_a_medium_without_end_does_not_end_it() {
 fn check_camera_in(medium: &str, warning: Option<&str>) {
     let text = format!(
         "{FOG} MakeNamedMedium \"juice\" \"string type\" \"homogeneous\" \
-         MediumInterface \"\" \"{medium}\" Camera \"perspective\" WorldBegin \
+         \"float g\" 0.5 MediumInterface \"\" \"{medium}\" Camera \"perspective\" WorldBegin \
          MediumInterface \"fog\" \"\" Material \"interface\" Shape \"sphere\" \"float radius\" 3"
     );
     let warnings = load_text(&text, &STRICT).warnings;
@@ -139,7 +139,7 @@ fn shapes_around_the_camera_are_believed() {
     check_camera_in(
         "juice",
         Some(
-            "s.pbrt:1:120: the camera is in another medium than this: the shapes around it say so, \
+            "s.pbrt:1:136: the camera is in another medium than this: the shapes around it say so, \
              and they count",
         ),
     );
