@@ -58,8 +58,8 @@ MEDIA = [
     (
         "the weight of a guess kept after the ray",
         "crates/bidir/src/integrator/stages/media.rs",
-        "            entry.contribution.term.weight = weights.weight(&context, &path, &sums);",
-        "            weights.weight(&context, &path, &sums);",
+        "        entry.contribution.term.weight = weights.weight(&context, &path, &sums);",
+        "        weights.weight(&context, &path, &sums);",
         media("nested_media"),
     ),
     (

@@ -58,8 +58,8 @@ impl DiffuseEnd {
     };
 
     /// `vertex` of a walk of `mode`, with the sums there, which hold for all of its connections. [None](Self::NONE)
-    /// where it is not diffuse, where nothing is scattered, where the scene has media, or where weights are not those
-    /// of the balance heuristic with one roulette for paths of any length.
+    /// where it is not diffuse, where nothing is scattered, where rays from it may go through media, or where weights are
+    /// not those of the balance heuristic with one roulette for paths of any length.
     pub(super) fn new(
         context: &PathContext<'_>,
         vertex: &Vertex,
@@ -69,7 +69,7 @@ impl DiffuseEnd {
         let settings = context.job.settings;
         let is_even = settings.roulette.density_start().unwrap_or(0) == 0;
         let is_balance = settings.mis == MisHeuristic::Balance;
-        let is_clear = !context.job.scene.has_media();
+        let is_clear = context.job.scene.is_clear_around(&vertex.locus);
         let [cos_s, cos_g] = [vertex.frame.z, vertex.locus.n_g].map(|n| n.dot(vertex.wo));
         match &vertex.scattering {
             Scattering::Surface(Bsdf::Diffuse(bsdf))

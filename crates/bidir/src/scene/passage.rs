@@ -137,6 +137,12 @@ impl Depth {
     /// exp(-τ).
     #[inline]
     fn transmittance(self) -> Transmittance {
+        if self.all.is_black() {
+            return Transmittance {
+                all: Spectrum::ONE,
+                drawn: Spectrum::ONE,
+            };
+        }
         let arriving = |depth: Spectrum| depth.map(|depth| libm::expf(-depth));
         let drawn = arriving(self.drawn);
         let all = if self.all == self.drawn {
@@ -210,6 +216,18 @@ impl Scene {
         id.index().map(|index| &self.media[index])
     }
 
+    /// True where no ray from a place goes through a medium before it meets a surface.
+    #[inline]
+    pub(crate) fn is_clear_around(&self, place: &Locus) -> bool {
+        !self.has_media() || self.is_opaque && place.media == MediumSides::VACUUM
+    }
+
+    /// True where it is known, before any ray is traced, that no medium lies between two ends that see each other.
+    #[inline]
+    pub(crate) fn is_clear(&self, a: &Locus, b: &Locus) -> bool {
+        self.is_clear_around(if a.is_infinite() { b } else { a })
+    }
+
     /// True where light from infinity arrives through the medium around everything.
     pub fn is_open(&self) -> bool {
         let around = self.medium(self.around);
@@ -245,19 +263,16 @@ impl Scene {
         let hit = self.closest(ray, chances, cross);
         let end = hit.map_or(f32::INFINITY, |hit| hit.t);
         let passage = Passage::new(medium, crossings.into_inner(), end);
-        let [u_lane, u_depth] = chances.flight();
-        let mut drawn = Drawn {
-            lane: self.color.pick_lane(u_lane),
-            depth: -libm::log1pf(-u_depth),
-        };
         let lanes = |rgb| self.color.unbounded(rgb, wavelengths);
+        let mut drawn = None;
         let mut depth = Depth::ZERO;
         for span in passage.spans(end) {
             let Some(index) = span.medium.index() else {
                 continue;
             };
+            let drawn = drawn.get_or_insert_with(|| self.draw(chances));
             let medium = &self.media[index];
-            let flight = medium.fly(&span.of(ray, 1.0), drawn, lanes);
+            let flight = medium.fly(&span.of(ray, 1.0), *drawn, lanes);
             let part = Depth::of(medium, flight.depth);
             depth = depth.and(part);
             if let Some(t) = flight.reached {
@@ -277,6 +292,15 @@ impl Scene {
         Advance {
             interaction: hit.map_or(Interaction::Escape, surface),
             transmittance: depth.transmittance(),
+        }
+    }
+
+    /// The depth where a walk scatters.
+    fn draw(&self, chances: Chances<'_>) -> Drawn {
+        let [u_lane, u_depth] = chances.flight();
+        Drawn {
+            lane: self.color.pick_lane(u_lane),
+            depth: -libm::log1pf(-u_depth),
         }
     }
 

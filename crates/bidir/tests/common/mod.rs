@@ -16,7 +16,7 @@ use bidir::material::{
     ScaledColor, ScaledFloat,
 };
 use bidir::math::{Affine3A, Vec2, Vec3};
-use bidir::medium::{Coefficients, HenyeyGreenstein, Medium, MediumSides};
+use bidir::medium::{Coefficients, HenyeyGreenstein, Medium, MediumId, MediumSides};
 use bidir::path::PathSettings;
 use bidir::scene::{Emission, MaterialId, Scene, SceneBuilder, SceneError};
 use bidir::shape::{Mesh, Orientation, Shape, Sphere};
@@ -345,11 +345,6 @@ pub(crate) fn room_of(size: u32, lens_radius: f32) -> Shot {
 pub(crate) fn foggy_room(lens_radius: f32) -> Shot {
     let mut builder = builder(8, lens_radius);
     furnish(&mut builder);
-    let medium = |absorption, scattering| {
-        let coefficients = Coefficients::new(absorption, scattering).expect("valid coefficients");
-        let phase = HenyeyGreenstein::new(0.4).expect("a mean cosine");
-        Medium::homogeneous(coefficients, phase)
-    };
     let outside = builder.medium(medium([0.05, 0.1, 0.0], [0.1, 0.2, 0.4]));
     let inside = builder.medium(medium([0.2, 0.5, 1.0], [0.0; 3]));
     builder.medium_at(Vec3::new(0.0, 0.0, -1.8), outside);
@@ -358,8 +353,25 @@ pub(crate) fn foggy_room(lens_radius: f32) -> Shot {
     builder.build().expect("the room is valid")
 }
 
-/// Walls, lights and the rest of [`room`].
-fn furnish(builder: &mut ShotBuilder) {
+/// The same with ink in the rough glass alone.
+pub(crate) fn room_with_ink(lens_radius: f32) -> Shot {
+    let mut builder = builder(8, lens_radius);
+    let glass = furnish(&mut builder);
+    let inside = builder.medium(medium([0.5, 0.2, 0.1], [0.4, 0.3, 0.0]));
+    let outside = MediumId::VACUUM;
+    builder.sides(glass, MediumSides { outside, inside });
+    builder.build().expect("the room is valid")
+}
+
+/// Fog or ink.
+fn medium(absorption: Rgb, scattering: Rgb) -> Medium {
+    let coefficients = Coefficients::new(absorption, scattering).expect("valid coefficients");
+    let phase = HenyeyGreenstein::new(0.4).expect("a mean cosine");
+    Medium::homogeneous(coefficients, phase)
+}
+
+/// Walls, lights and the rest of [`room`]. Returns the number of the ball of rough glass.
+fn furnish(builder: &mut ShotBuilder) -> usize {
     let wall = builder.material(diffuse([0.7, 0.6, 0.5]));
     let rough_metal = builder.material(metal(0.4));
     let rough_glass = builder.material(glass(0.5));
@@ -375,7 +387,7 @@ fn furnish(builder: &mut ShotBuilder) {
     let panel = tilt(panel, Vec3::new(0.5, 0.8, 0.0));
     builder.shape(Shape::Mesh(panel), wall, None);
     builder.shape(sphere(Vec3::new(-0.8, -1.2, 0.2), 0.7), rough_metal, None);
-    builder.shape(sphere(Vec3::new(0.6, -1.1, -0.2), 0.6), rough_glass, None);
+    builder.shape(sphere(Vec3::new(0.6, -1.1, -0.2), 0.6), rough_glass, None)
 }
 
 /// A closed room with many lamps: a mesh, a ball, and quadrilaterals of one and of two sides, on the

@@ -343,12 +343,13 @@ fn layered_and_mixed_surfaces_are_one_function_of_the_path() {
     check_paths(MisHeuristic::Power, LightPointChoice::Fresh, &scene);
 }
 
-/// The same in fog, and through a medium that only absorbs.
+/// The same in fog, through a medium that only absorbs, and in rough glass that is not empty.
 #[test]
 fn paths_through_media_are_one_function_of_the_path() {
-    let scene = common::foggy_room(0.1);
-    check_paths(MisHeuristic::Balance, LightPointChoice::Fresh, &scene);
-    check_paths(MisHeuristic::Power, LightPointChoice::Shared, &scene);
+    for scene in [common::foggy_room(0.1), common::room_with_ink(0.1)] {
+        check_paths(MisHeuristic::Balance, LightPointChoice::Fresh, &scene);
+        check_paths(MisHeuristic::Power, LightPointChoice::Shared, &scene);
+    }
 }
 
 /// The same where next-event estimation chooses among many lamps, and where it does so by power.

@@ -105,12 +105,9 @@ impl Comparison {
         }
     }
 
-    /// A connection of diffuse vertices against the general form. Through media, all take that.
+    /// A connection of diffuse vertices against the general form.
     #[track_caller]
     fn compare_diffuse(&mut self, context: &PathContext<'_>, light: &[Vertex], camera: &[Vertex]) {
-        if context.job.scene.has_media() {
-            return;
-        }
         let (s, t) = (light.len(), camera.len());
         let [of_light, of_camera] = &self.sums;
         let (Some(z), Some(y)) = (of_light.diffuse(s - 1), of_camera.diffuse(t - 1)) else {
@@ -342,7 +339,14 @@ fn rooms_and_layers() {
     assert!(diffuse > 1000, "{diffuse} connections are diffuse");
     check(&common::gallery(0.1), 20);
     check(&common::lamp_room(0.1), 20);
-    check(&common::foggy_room(0.1), 20);
+}
+
+#[test]
+fn media() {
+    let diffuse = check(&common::foggy_room(0.1), 20);
+    assert_eq!(diffuse, 0, "they know nothing of fog");
+    let diffuse = check(&common::room_with_ink(0.1), 20);
+    assert!(diffuse > 1000, "{diffuse} connections are diffuse");
 }
 
 #[test]

@@ -290,7 +290,7 @@ impl Connector<'_> {
         let (z, y) = (path.z(), path.y());
         let mut arrives = self.context.root_visibility(z, y);
         let scene = self.context.job.scene;
-        if scene.has_media() {
+        if !scene.is_clear(&z.locus, &y.locus) {
             let guess = scene.guessed_edge(&z.locus, &y.locus, &self.context.wavelengths);
             path.pass(&guess);
             arrives *= scene.color().mean(guess.transmittance);

@@ -10,9 +10,9 @@ use crate::path::{Job, JoinedPath, PathContext, PathSums};
 use crate::scene::Edge;
 use crate::stats::Stats;
 
-/// A shadow ray, traced if it may go through media.
+/// A shadow ray, traced where it may go through media.
 pub(in super::super) enum ShadowPassage {
-    /// Not traced: the scene has no media.
+    /// Not traced: no media are there.
     Clear,
     /// The media that it went through. None: something opaque is there.
     Traced(Option<Edge>),
@@ -26,12 +26,14 @@ impl ShadowPassage {
         ends: impl FnOnce() -> [Locus; 2],
     ) -> Self {
         let scene = context.job.scene;
-        if scene.has_media() {
-            let [a, b] = ends();
-            Self::Traced(scene.edge(&a, &b, &context.wavelengths))
-        } else {
-            Self::Clear
+        if !scene.has_media() {
+            return Self::Clear;
         }
+        let [a, b] = ends();
+        if scene.is_clear(&a, &b) {
+            return Self::Clear;
+        }
+        Self::Traced(scene.edge(&a, &b, &context.wavelengths))
     }
 
     /// The media, where there are any and something arrives.
@@ -67,7 +69,7 @@ impl ShadowPassage {
     }
 }
 
-/// Traces the shadow rays of the chosen candidates one by one, and weighs their terms again.
+/// Traces the shadow rays of the chosen candidates that may go through media, one by one, and weighs their terms again.
 pub(super) fn settle_chosen(job: &Job<'_>, batch: &mut Batch) {
     let Batch {
         samples,
@@ -85,6 +87,12 @@ pub(super) fn settle_chosen(job: &Job<'_>, batch: &mut Batch) {
     let first = entries.len() - chosen.len();
     for (entry, chosen) in entries[first..].iter_mut().zip(&*chosen) {
         let context = samples[entry.sample as usize].context(job);
+        let passage = match entry.shadow_ray() {
+            Some(ends) => ShadowPassage::between(&context, || *ends),
+            None => ShadowPassage::Clear,
+        };
+        passage.settle(entry, stats);
+        let Some(edge) = passage.edge() else { continue };
         let [z, y] = candidates[chosen.candidate as usize]
             .vertices
             .map(|i| i as usize);
@@ -95,16 +103,12 @@ pub(super) fn settle_chosen(job: &Job<'_>, batch: &mut Batch) {
             &camera.vertices()[y + 1 - t..=y],
         );
         let mut path = JoinedPath::connection(light, camera);
-        let passage = ShadowPassage::between(&context, || [path.z().locus, path.y().locus]);
         let sums = PathSums {
             light: light_sums.at(z),
             camera: camera_sums.at(y),
             next_event: None,
         };
-        if let Some(edge) = passage.edge() {
-            path.pass(edge);
-            entry.contribution.term.weight = weights.weight(&context, &path, &sums);
-        }
-        passage.settle(entry, stats);
+        path.pass(edge);
+        entry.contribution.term.weight = weights.weight(&context, &path, &sums);
     }
 }
