@@ -63,6 +63,20 @@ MEDIA = [
         media("nested_media"),
     ),
     (
+        "open boundaries between two places that are clear",
+        PASSAGE,
+        "self.is_opaque && place.media == MediumSides::VACUUM",
+        "place.media == MediumSides::VACUUM",
+        media("nested_media"),
+    ),
+    (
+        "a sky that smoke around the camera shuts out of light subpaths",
+        "crates/bidir/src/path/walk.rs",
+        "start.locus.is_infinite() && !scene.is_open()",
+        "start.locus.is_infinite() && scene.has_media()",
+        media("smoke_that_absorbs_nothing"),
+    ),
+    (
         "scattering that looks the other way",
         "crates/bidir/src/medium/phase.rs",
         "(-wo.dot(wi)).clamp(-1.0, 1.0)",

@@ -216,7 +216,7 @@ impl Vertex {
         Receiver { point, facing }
     }
 
-    /// True if all scattering is a Dirac distribution, or a medium only absorbs: nothing can connect here.
+    /// True if all scattering is a Dirac distribution, or there is none: nothing can connect here.
     /// [`went_by_delta`](Self::went_by_delta) is about the walk's own step.
     #[inline]
     pub fn is_delta(&self) -> bool {

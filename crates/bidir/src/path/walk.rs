@@ -11,7 +11,6 @@ use crate::camera::CameraRay;
 use crate::light::EmissionSample;
 use crate::locus::Locus;
 use crate::math::Vec3;
-use crate::medium::MediumSides;
 use crate::sampler::{Dimension, Purpose, SampleStream};
 use crate::scene::{Advance, Chances, Edge, Interaction, SurfaceHit, Transmittance};
 use crate::spectrum::Spectrum;
@@ -116,7 +115,7 @@ fn draw_emission(
     let emission = scene.lights()[light].sample_emission(&lights, u_position, u_direction)?;
     let from = &emission.from;
     let mut start = Vertex::on_light(context, light as u32, &from.at, prob * from.pdf);
-    if start.locus.is_infinite() && start.locus.media != MediumSides::VACUUM {
+    if start.locus.is_infinite() && !scene.is_open() {
         return None;
     }
     start.beta = Spectrum::splat(from.coverage / start.pdf_fwd);

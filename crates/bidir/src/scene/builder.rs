@@ -188,7 +188,8 @@ impl SceneBuilder {
     }
 
     /// Puts `medium` at a point, that of a camera: a ray that leaves it comes, across all boundaries, to the medium that
-    /// is around everything. Without this, that is the vacuum. Light from infinity gets through the vacuum alone.
+    /// is around everything. Without this, that is the vacuum. Light from infinity does not get through media without an
+    /// end.
     pub fn medium_at(&mut self, point: Vec3, medium: MediumId) -> &mut Self {
         self.around = Some((point, medium));
         self

@@ -53,20 +53,15 @@ impl<'a> Chances<'a> {
 }
 
 impl Scene {
-    /// α where a surface is hit: 1 where it is opaque, or where a texture is no number. Calls `cross` where it is but
-    /// a boundary of media.
+    /// α where a surface is hit: 1 where it is opaque, or where a texture is no number.
     #[inline]
-    fn coverage(&self, ray: &accel::Ray, hit: &Hit, cross: impl FnOnce(&Hit)) -> f32 {
+    fn coverage(&self, ray: &accel::Ray, hit: &Hit) -> f32 {
         let (_, primitive) = self.resolve(hit);
         let (number, index) = (primitive.shape as usize, primitive.index as usize);
         let texture = match self.surfaces[number].presence {
             Presence::Whole => return 1.0,
             Presence::Part(texture) => &self.coverages[texture as usize],
-            Presence::Boundary => {
-                cross(hit);
-                return 0.0;
-            }
-            Presence::Absent => return 0.0,
+            Presence::Boundary | Presence::Absent => return 0.0,
         };
         let (shape, uv) = (&self.shapes[number], Vec2::new(hit.u, hit.v));
         // Almost always the parameters are enough, and nothing else has to be known of the surface.
@@ -78,7 +73,7 @@ impl Scene {
         clamped_coverage(texture.eval(&at))
     }
 
-    /// The nearest surface that a ray of a walk does not pass. Calls `cross` for boundaries of media, those behind
+    /// The nearest surface that a ray of a walk does not pass. Calls `cross` for those that it passes, some behind
     /// that surface perhaps among them.
     #[inline]
     pub(super) fn closest(
@@ -90,32 +85,34 @@ impl Scene {
         if self.is_opaque {
             return self.bvh.closest(ray, accel::accept_all);
         }
-        self.bvh
-            .closest(ray, |hit| match self.coverage(ray, hit, &cross) {
-                alpha if alpha >= 1.0 => true,
-                alpha => alpha > 0.0 && chances.draw(hit) < alpha,
-            })
+        self.bvh.closest(ray, |hit| {
+            let alpha = self.coverage(ray, hit);
+            let stops = alpha >= 1.0 || alpha > 0.0 && chances.draw(hit) < alpha;
+            if !stops {
+                cross(hit);
+            }
+            stops
+        })
     }
 
-    /// Π (1 - α) over everything that a shadow ray meets. Calls `cross` for the boundaries of media, all of them
-    /// where anything arrives.
+    /// Π (1 - α) over everything that a shadow ray meets. Calls `cross` for surfaces that it passes, all of them where
+    /// anything arrives.
     #[inline]
     pub(super) fn visible_part(&self, ray: &accel::Ray, mut cross: impl FnMut(&Hit)) -> f32 {
         if self.is_opaque {
             return f32::from(!self.bvh.is_blocked(ray));
         }
         let mut factors = Factors::default();
-        let flow = self
-            .bvh
-            .each_hit(ray, |hit| match self.coverage(ray, hit, &mut cross) {
-                alpha if alpha >= 1.0 => ControlFlow::Break(()),
-                alpha => {
-                    if alpha > 0.0 {
-                        factors.push(1.0 - alpha);
-                    }
-                    ControlFlow::Continue(())
+        let flow = self.bvh.each_hit(ray, |hit| match self.coverage(ray, hit) {
+            alpha if alpha >= 1.0 => ControlFlow::Break(()),
+            alpha => {
+                cross(hit);
+                if alpha > 0.0 {
+                    factors.push(1.0 - alpha);
                 }
-            });
+                ControlFlow::Continue(())
+            }
+        });
         if flow.is_break() {
             0.0
         } else {

@@ -1,9 +1,9 @@
 //! Media along rays: the boundaries that a ray crosses, the light that is left, and the places where it scatters.
 //!
 //! A ray begins in the medium of its origin, and the last boundary that it crossed decides. Surfaces that are nothing
-//! but boundaries (`Presence::Boundary`) stop no ray.
+//! but boundaries (`Presence::Boundary`) stop no ray, and those with holes not every one.
 
-use super::{Chances, Scene, SurfaceHit};
+use super::{Chances, Presence, Scene, SurfaceHit};
 use crate::locus::{Locus, LocusKind};
 use crate::math::Vec3;
 use crate::medium::{Detail, Drawn, Medium, MediumId, MediumScattering, MediumSides, Stretch};
@@ -225,7 +225,8 @@ impl Scene {
     /// True where it is known, before any ray is traced, that no medium lies between two ends that see each other.
     #[inline]
     pub(crate) fn is_clear(&self, a: &Locus, b: &Locus) -> bool {
-        self.is_clear_around(if a.is_infinite() { b } else { a })
+        let (start, end) = if a.is_infinite() { (b, a) } else { (a, b) };
+        self.is_clear_around(start) && end.kind != LocusKind::Medium
     }
 
     /// True where light from infinity arrives through the medium around everything.
@@ -395,8 +396,7 @@ impl Scene {
 
     /// The boundary that a ray crosses at `hit`. None: the surface is none.
     fn crossing(&self, ray: &Ray, hit: &Hit) -> Option<Crossing> {
-        let (_, primitive) = self.resolve(hit);
-        let sides = self.surfaces[primitive.shape as usize].sides?;
+        let sides = self.parted(hit)?;
         let leaves = self.surface_at(ray, hit).n_g.dot(ray.direction) > 0.0;
         Some(Crossing {
             t: hit.t,
@@ -432,8 +432,16 @@ impl Scene {
     }
 
     fn crosses(&self, hit: &Hit) -> bool {
+        self.parted(hit).is_some()
+    }
+
+    /// The media that the surface at `hit` parts, wherever some of it is there. None: it parts none.
+    fn parted(&self, hit: &Hit) -> Option<MediumSides> {
         let (_, primitive) = self.resolve(hit);
-        self.surfaces[primitive.shape as usize].sides.is_some()
+        let surface = &self.surfaces[primitive.shape as usize];
+        surface
+            .sides
+            .filter(|_| surface.presence != Presence::Absent)
     }
 
     /// A point on shape number `shape`, one of the world, or near it where rays do not meet it.

@@ -103,13 +103,25 @@ fn nested_furnace() -> Shot {
 /// Puffs of smoke that absorb nothing, in a box without a boundary.
 fn furnace_with_smoke() -> Shot {
     let mut builder = furnace();
+    fill_with_smoke(&mut builder);
+    finish(builder)
+}
+
+/// The same under nothing but a sky.
+fn smoke_under_sky() -> Shot {
+    let mut builder = builder(8, 0.0);
+    builder.light(Light::Infinite(InfiniteLight::constant([1.0; 3])));
+    fill_with_smoke(&mut builder);
+    finish(builder)
+}
+
+fn fill_with_smoke(builder: &mut ShotBuilder) {
     let corners = [Vec3::splat(-1.0), Vec3::splat(1.0)];
     let density = grid(10, corners, puffs);
     fill(
-        &mut builder,
+        builder,
         smoke(coefficients([0.0; 3], [0.2, 0.4, 0.8]), density, 0.4),
     );
-    finish(builder)
 }
 
 #[track_caller]
@@ -141,6 +153,7 @@ fn nested_media_that_absorb_nothing_are_not_seen_in_a_furnace() {
 fn smoke_that_absorbs_nothing_is_not_seen_in_a_furnace() {
     for integrator in [IntegratorKind::Path, IntegratorKind::Bdpt] {
         check_furnace("smoke", &furnace_with_smoke(), integrator, 2048);
+        check_furnace("sky", &smoke_under_sky(), integrator, 2048);
     }
 }
 
@@ -277,6 +290,7 @@ mod statistics {
         }
         check_furnace("nested", &nested_furnace(), IntegratorKind::Bdpt, 2048);
         check_furnace("smoke", &furnace_with_smoke(), IntegratorKind::Lvc, 4096);
+        check_furnace("sky", &smoke_under_sky(), IntegratorKind::Lvc, 4096);
     }
 
     #[test]

@@ -12,8 +12,9 @@ use crate::import::{self, Gathered, Size, VertexError};
 use crate::limits;
 use bidir::light::Light;
 use bidir::math::Affine3A;
+use bidir::medium::MediumSides;
 use bidir::shape::{Mesh, Shape};
-use glam::DAffine3;
+use glam::{DAffine3, DVec3};
 use std::collections::BTreeMap;
 
 type Assembly = import::Assembly<Place>;
@@ -195,6 +196,7 @@ impl<'a> Builder<'a> {
             let material = self.materials.get(tools, user, surface.color)?;
             surfaces.push((surface, material, place));
         }
+        clear_open_volumes(context, &mut surfaces);
         Ok(surfaces)
     }
 
@@ -302,5 +304,27 @@ impl<'a> Builder<'a> {
             self.assembly.add_light(light, place);
         }
         Ok(())
+    }
+}
+
+/// Takes the media out of surfaces that enclose nothing, such as a single sheet: a ray would never leave them.
+fn clear_open_volumes(context: &mut Context<'_>, surfaces: &mut [(Surface, BuiltMaterial, Place)]) {
+    /// Of all area; that of seams by rounding is less.
+    const OPEN: f64 = 1e-3;
+    let volumes = || surfaces.iter().filter(|(_, it, _)| it.media.is_boundary());
+    let areas = volumes().flat_map(|(surface, ..)| surface.areas());
+    // By the divergence theorem, those of a closed surface add up to nothing.
+    let (sum, all) = areas.fold((DVec3::ZERO, 0.0), |(sum, all), area| {
+        (sum + area, all + area.length())
+    });
+    if sum.length() <= OPEN * all {
+        return;
+    }
+    for (_, material, place) in surfaces {
+        if material.media.is_boundary() {
+            let message = "the mesh encloses nothing: its volume does not absorb";
+            context.warn(place.clone(), message);
+            material.media = MediumSides::VACUUM;
+        }
     }
 }

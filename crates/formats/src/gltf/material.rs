@@ -19,7 +19,8 @@ use std::collections::BTreeMap;
 pub(super) struct Built {
     pub(super) id: MaterialId,
     pub(super) emission: Option<Emission>,
-    media: MediumSides,
+    /// The media on the sides of its surfaces.
+    pub(super) media: MediumSides,
     /// The coverage of the surface. None: it is opaque.
     pub(super) coverage: Option<FloatTexture>,
     /// The map from texture coordinates to the parameters of meshes.

@@ -20,7 +20,7 @@ const UNREACHABLE: &str =
 
 /// The warning for a camera in a medium that boundaries contradict.
 const ELSEWHERE: &str =
-    "the camera is in another medium than this: the shapes around it say so, and they count";
+    "the shapes around the camera put it in another medium: it is taken to be there";
 
 /// A scene with the places `P` of its parts in the file.
 pub(crate) struct Assembly<P> {

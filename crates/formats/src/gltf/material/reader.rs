@@ -193,12 +193,16 @@ impl Reader<'_, '_> {
             return Err(place.key("attenuationColor").scene(message));
         }
         let distance = volume.attenuation_distance.unwrap_or(f32::INFINITY);
+        if distance <= 0.0 {
+            let message = format!("the distance {} is not above 0", number(distance));
+            return Err(place.key("attenuationDistance").scene(message));
+        }
         let is_clear = distance == f32::INFINITY || color.iter().all(|&channel| channel >= 1.0);
         if is_clear {
             return Ok(None);
         }
-        let unit = self.context.layout.space.unit as f32;
-        let absorption = color.map(|channel| absorption(channel, distance) * unit);
+        let unit = self.context.layout.space.unit;
+        let absorption = color.map(|channel| (absorption(channel, distance) * unit) as f32);
         let coefficients = Coefficients::new(absorption, [0.0; 3]).ok_or_else(|| {
             let message = format!("the distance {} is too small", number(distance));
             place.key("attenuationDistance").scene(message)
@@ -320,9 +324,9 @@ impl Reader<'_, '_> {
     }
 }
 
-/// σ_a = -ln(part) / distance. Where nothing is to be left, it is the least number that is not 0.
-fn absorption(part: f32, distance: f32) -> f32 {
-    -libm::logf(part.max(f32::MIN_POSITIVE)) / distance
+/// σ_a = -ln(part) / distance. Where nothing is to be left, 10⁻³⁸ is.
+fn absorption(part: f32, distance: f32) -> f64 {
+    -libm::log(part.max(f32::MIN_POSITIVE).into()) / f64::from(distance)
 }
 
 /// Returns true for an image of black texels.

@@ -7,6 +7,11 @@ use bidir::integrator::IntegratorKind;
 /// Glass that does not bend light, of half the attenuation distance, between a lamp and a small camera of parallel rays
 /// along -z.
 fn pane(volume: &Value) -> Draft {
+    pane_of(1.0, volume)
+}
+
+/// The same with another index of refraction.
+fn pane_of(ior: f32, volume: &Value) -> Draft {
     let mut draft = Draft::empty();
     let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
     let at = |z: f32| corners.map(|[x, y]| [x, y, z]);
@@ -18,7 +23,7 @@ fn pane(volume: &Value) -> Draft {
     draft.accessor(&shorts(&faces[6..]), (U16, "SCALAR", 6));
     draft.json["materials"] = json!([
         { "extensions": {
-            "KHR_materials_ior": { "ior": 1 },
+            "KHR_materials_ior": { "ior": ior },
             "KHR_materials_transmission": { "transmissionFactor": 1 },
             "KHR_materials_volume": volume,
         }, "pbrMetallicRoughness": { "roughnessFactor": 0, "metallicFactor": 0 } },
@@ -43,15 +48,21 @@ fn pane(volume: &Value) -> Draft {
 
 /// The light of the lamp that the camera gets.
 fn seen(draft: &Draft) -> [f32; 3] {
+    seen_by(draft, IntegratorKind::Path, 1)
+}
+
+fn seen_by(draft: &Draft, integrator: IntegratorKind, passes: u32) -> [f32; 3] {
     let options = LoadOptions {
         resolution: Some([1, 1]),
         ..LoadOptions::default()
     };
     let loaded = load_bytes("a.gltf", &draft.gltf(), &options).expect("it is valid");
-    let (settings, resources) = (Settings::new(IntegratorKind::Path), Resources::default());
+    let (settings, resources) = (Settings::new(integrator), Resources::default());
     let session = Session::new(&loaded.scene, &loaded.view, settings, &resources);
     let mut session = session.expect("a small film");
-    session.step(&());
+    for _ in 0..passes {
+        session.step(&());
+    }
     session.film().develop().pixels[0]
 }
 
@@ -81,6 +92,47 @@ fn half_the_distance_leaves_the_root_of_the_colour() {
     let mut scaled = pane(&green());
     scaled.json["nodes"][0]["scale"] = json!([1, 1, 2]);
     check(&scaled, expected.map(|part| part * part));
+}
+
+/// R = 4 % on each face, and light that goes to and fro between them.
+#[test]
+fn refracting_glass_absorbs_what_gets_in() {
+    let expected = [0.2f32, 0.5, 1.0].map(|part| {
+        let inside = 0.04 * part;
+        0.96 * 0.96 * part / (1.0 - inside * inside)
+    });
+    for integrator in [IntegratorKind::Path, IntegratorKind::Bdpt] {
+        let light = seen_by(&pane_of(1.5, &green()), integrator, 1 << 14);
+        for (found, expected) in light.into_iter().zip(expected) {
+            assert!((found / expected - 1.0).abs() < 0.02, "{light:?}");
+        }
+    }
+}
+
+#[test]
+fn the_distance_follows_the_unit_of_a_huge_scene() {
+    const SCALE: f32 = 1e8;
+    let mut volume = green();
+    volume["attenuationDistance"] = json!(SCALE);
+    let mut draft = pane(&volume);
+    let nodes = draft.json["nodes"].as_array_mut().unwrap();
+    nodes.push(json!({ "scale": [SCALE, SCALE, SCALE], "children": [0, 1, 2] }));
+    draft.json["scenes"][0]["nodes"] = json!([3]);
+    check(&draft, [0.2, 0.5, 1.0]);
+}
+
+#[test]
+fn a_sheet_encloses_nothing() {
+    let mut draft = pane(&green());
+    // One face, in place of both.
+    draft.json["meshes"][0]["primitives"][0]["indices"] = json!(2);
+    check(&draft, [1.0; 3]);
+    let warnings = draft.load().expect("it is valid").warnings;
+    let expected = "the mesh encloses nothing: its volume does not absorb";
+    assert!(
+        warnings.iter().any(|it| it.contains(expected)),
+        "{warnings:?}"
+    );
 }
 
 #[test]
@@ -115,8 +167,9 @@ fn impossible_volumes_are_refused() {
             json!([1.5, 1, 0]),
             "is not within 0 and 1",
         ),
-        ("attenuationDistance", json!(0), "is too small"),
-        ("attenuationDistance", json!(-1), "is too small"),
+        ("attenuationDistance", json!(0), "is not above 0"),
+        ("attenuationDistance", json!(-1), "is not above 0"),
+        ("attenuationDistance", json!(1e-40), "is too small"),
     ] {
         let mut volume = green();
         volume[key] = value;

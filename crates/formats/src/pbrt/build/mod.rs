@@ -173,7 +173,9 @@ impl<'a> Builder<'a> {
         let builder = &mut self.assembly.builder;
         let mut media = self.media.sides(context, builder, &shape.medium)?;
         if let Some(content) = self.contents.get(shape.material).copied().flatten() {
-            if let Some(replaced) = &shape.medium.inside {
+            if let Some(replaced) = shape.medium.inside.as_ref()
+                && media.is_boundary()
+            {
                 context.warn(replaced.span, REPLACED);
             }
             media.inside = content;
