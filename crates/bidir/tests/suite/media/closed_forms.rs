@@ -245,13 +245,9 @@ mod statistics {
     fn connections_know_thick_matter_and_light_that_is_scattered_once() {
         check_thick(IntegratorKind::Bdpt, 4096);
         check_thick(IntegratorKind::Lvc, 4096);
-        let expected = seen_of_lamp();
-        for (kind, passes) in [
-            (IntegratorKind::Lvc, 8192),
-            (IntegratorKind::Light, 131_072),
-        ] {
-            check("once", &lamp_in_fog(), (kind, Some(1)), passes, expected);
-        }
+        // Light tracing has no finite variance here, as vertices come as near to the lens as they like.
+        let once = (IntegratorKind::Lvc, Some(1));
+        check("once", &lamp_in_fog(), once, 8192, seen_of_lamp());
     }
 
     #[test]
