@@ -254,7 +254,7 @@ mod statistics {
     #[ignore = "statistics: .ci/run statistics"]
     fn light_around_a_lamp_is_that_of_photons_alone() {
         const G: f32 = 0.3;
-        let fluence = fluence_by_photons(0.9, f64::from(G), 8_000_000);
+        let fluence = fluence_by_photons(0.9, f64::from(G), 24_000_000);
         let expected = [fluence / (4.0 * PI); 3];
         for kind in [IntegratorKind::Bdpt, IntegratorKind::Lvc] {
             check(
