@@ -77,6 +77,13 @@ MEDIA = [
         media("smoke_that_absorbs_nothing"),
     ),
     (
+        "holes that lead into no medium",
+        "crates/bidir/src/scene/coverage.rs",
+        "cross(hit);\n                if alpha > 0.0 {",
+        "if alpha <= 0.0 { cross(hit); }\n                if alpha > 0.0 {",
+        media("light_that_passes_a_hole"),
+    ),
+    (
         "scattering that looks the other way",
         "crates/bidir/src/medium/phase.rs",
         "(-wo.dot(wi)).clamp(-1.0, 1.0)",

@@ -1,7 +1,7 @@
 //! Media along rays: the boundaries that a ray crosses, the light that is left, and the places where it scatters.
 //!
 //! A ray begins in the medium of its origin, and the last boundary that it crossed decides. Surfaces that are nothing
-//! but boundaries (`Presence::Boundary`) stop no ray, and those with holes not every one.
+//! but boundaries (`Presence::Boundary`) stop no ray; surfaces with holes let some rays through.
 
 use super::{Chances, Presence, Scene, SurfaceHit};
 use crate::locus::{Locus, LocusKind};
@@ -37,9 +37,9 @@ pub struct Advance {
 /// T = exp(-τ) of the media along a segment, or along a part of it.
 #[derive(Clone, Copy, Debug)]
 pub struct Transmittance {
-    /// Of all media.
+    /// T of all media.
     pub all: Spectrum,
-    /// Of those that scatter, by which walks draw their distances.
+    /// T of the media that scatter. Walks draw their distances by it.
     pub drawn: Spectrum,
 }
 
@@ -368,7 +368,7 @@ impl Scene {
         self.edge_of(Transmittance { all, drawn }, [a, b], wavelengths)
     }
 
-    /// The edge of which T is known. Where nothing arrives no walk goes.
+    /// The edge of which T is known. Its densities are 0 where nothing arrives.
     #[inline(never)]
     pub(crate) fn edge_of(
         &self,

@@ -9,11 +9,13 @@ use crate::common::{
 };
 use bidir::integrator::IntegratorKind;
 use bidir::light::{InfiniteLight, Light, SpotLight};
+use bidir::locus::Locus;
 use bidir::math::{Affine3A, Vec3};
 use bidir::medium::{Coefficients, Grid, HenyeyGreenstein, Medium, MediumId, MediumSides};
 use bidir::select::ShadowRays;
 use bidir::shape::{Orientation, Shape, Sphere};
-use bidir::spectrum::Rgb;
+use bidir::spectrum::{Rgb, Wavelengths};
+use bidir::texture::FloatTexture;
 
 const ESTIMATORS: [IntegratorKind; 4] = [
     IntegratorKind::Path,
@@ -224,6 +226,28 @@ fn check_slab(integrator: IntegratorKind, passes: u64) {
 fn a_slab_lets_through_an_exponential_of_its_depth() {
     check_slab(IntegratorKind::Path, 4096);
     check_slab(IntegratorKind::Bdpt, 4096);
+}
+
+/// A front of which one half is there, and behind it one metre of a medium up to an open boundary.
+#[test]
+fn light_that_passes_a_hole_in_a_boundary_is_in_the_medium_behind_it() {
+    let mut builder = builder(8, 0.0);
+    let wall = builder.material(diffuse([0.5; 3]));
+    let inside = builder.medium(medium([1.0; 3], [0.0; 3], 0.0));
+    let outside = VACUUM;
+    let front = quad(Vec3::new(-5.0, -5.0, 0.0), Vec3::Y * 10.0, Vec3::X * 10.0);
+    let front = builder.shape(Shape::Mesh(front), wall, None);
+    builder.sides(front, MediumSides { outside, inside });
+    builder.coverage(front, FloatTexture::Constant(0.5));
+    let back = quad(Vec3::new(-5.0, -5.0, 1.0), Vec3::X * 10.0, Vec3::Y * 10.0);
+    builder.boundary(Shape::Mesh(back), MediumSides { outside, inside });
+    let scene = finish(builder).scene;
+    let [near, far] = [-1.0, 2.0].map(|z| Locus::in_space(Vec3::new(0.1, 0.2, z)));
+    for (a, b) in [(&near, &far), (&far, &near)] {
+        let edge = scene.edge(a, b, &Wavelengths::default());
+        let arrives = edge.expect("half of the light passes").transmittance[0];
+        assert!((arrives - 0.5 * libm::expf(-1.0)).abs() < 1e-4, "{arrives}");
+    }
 }
 
 /// A room with a lamp in the ceiling.

@@ -309,11 +309,11 @@ impl<'a> Builder<'a> {
 
 /// Takes the media out of surfaces that enclose nothing, such as a single sheet: a ray would never leave them.
 fn clear_open_volumes(context: &mut Context<'_>, surfaces: &mut [(Surface, BuiltMaterial, Place)]) {
-    /// Of all area; that of seams by rounding is less.
+    /// The least part of all area that an opening is taken for; rounding at seams leaves less.
     const OPEN: f64 = 1e-3;
     let volumes = || surfaces.iter().filter(|(_, it, _)| it.media.is_boundary());
     let areas = volumes().flat_map(|(surface, ..)| surface.areas());
-    // By the divergence theorem, those of a closed surface add up to nothing.
+    // By the divergence theorem, the areas of a closed surface add up to nothing.
     let (sum, all) = areas.fold((DVec3::ZERO, 0.0), |(sum, all), area| {
         (sum + area, all + area.length())
     });
