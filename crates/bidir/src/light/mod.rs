@@ -3,11 +3,11 @@
 //! A path starts at a [`LightPoint`]: a point on a light, or, for lights at infinity, a direction.
 //! Three densities describe how one is drawn, each in its own measure:
 //!
-//! | | finite light | light at infinity |
-//! |---|---|---|
-//! | `pdf_position` of the light point (a light subpath's x₀) | area, 1/m² | solid angle, 1/sr |
-//! | `pdf_direction` of leaving it (x₁) | solid angle, 1/sr | area of the disk that the rays cross, 1/m² |
-//! | `pdf_next_event` of the point drawn for a given receiver | area, 1/m² | solid angle, 1/sr |
+//! | | surface | medium | light at infinity |
+//! |---|---|---|---|
+//! | `pdf_position` of the light point (a light subpath's x₀) | area, 1/m² | volume, 1/m³ | solid angle, 1/sr |
+//! | `pdf_direction` of leaving it (x₁) | solid angle, 1/sr | solid angle, 1/sr | area of the disk that the rays cross, 1/m² |
+//! | `pdf_next_event` of the point drawn for a given receiver | area, 1/m² | volume, 1/m³ | solid angle, 1/sr |
 //!
 //! A Dirac endpoint (point, spot and distant lights) counts 1 for the density it lacks: it cancels,
 //! because no strategy can hit such a light by chance ([`Light::is_delta`]).
@@ -23,6 +23,7 @@ mod choice;
 mod infinite;
 mod point;
 mod tree;
+mod volume;
 
 #[cfg(test)]
 mod tests;
@@ -32,9 +33,11 @@ pub use choice::LightChoice;
 pub use infinite::{DistantLight, InfiniteLight, Radiance};
 pub use point::{PointLight, SpotLight};
 pub use tree::{ChosenEmitter, Facing, LightTree, Receiver};
+pub use volume::VolumeLight;
 
 use crate::locus::Locus;
 use crate::math::{Vec2, Vec3};
+use crate::medium::{Medium, MediumId};
 use crate::shape::{Shape, SurfacePoint};
 use crate::spectrum::Rgb;
 use tree::{Cone, EmitterBounds};
@@ -61,6 +64,14 @@ impl LightPoint {
     pub fn in_space(point: Vec3) -> Self {
         Self {
             locus: Locus::in_space(point),
+            primitive: 0,
+        }
+    }
+
+    /// A point where a medium glows.
+    pub fn in_medium(point: Vec3, medium: MediumId) -> Self {
+        Self {
+            locus: Locus::in_medium(point, medium),
             primitive: 0,
         }
     }
@@ -117,6 +128,8 @@ pub struct EmissionSample {
 pub struct LightContext<'a> {
     /// The shapes that area lights refer to.
     pub shapes: &'a [Shape],
+    /// The media that glow, and others.
+    pub media: &'a [Medium],
     /// Centre of a sphere around everything.
     pub centre: Vec3,
     /// Its radius.
@@ -145,6 +158,8 @@ pub enum Light {
     Distant(DistantLight),
     /// An environment around the scene.
     Infinite(InfiniteLight),
+    /// A medium that glows.
+    Volume(VolumeLight),
 }
 
 impl Light {
@@ -156,6 +171,7 @@ impl Light {
             Self::Spot(_) => "spot",
             Self::Distant(_) => "distant",
             Self::Infinite(_) => "infinite",
+            Self::Volume(_) => "volume",
         }
     }
 
@@ -166,7 +182,7 @@ impl Light {
         match self {
             Self::Point(_) | Self::Spot(_) | Self::Distant(_) => true,
             Self::Area(light) => light.is_hidden(),
-            Self::Infinite(_) => false,
+            Self::Infinite(_) | Self::Volume(_) => false,
         }
     }
 
@@ -184,11 +200,12 @@ impl Light {
             Self::Spot(light) => light.power(),
             Self::Distant(light) => light.power(context),
             Self::Infinite(light) => light.power(context),
+            Self::Volume(light) => light.power(),
         }
     }
 
     /// Radiance from `at` along the unit direction `w` away from the light; intensity for point
-    /// and spot lights, irradiance on a facing surface for a distant light.
+    /// and spot lights, irradiance on a facing surface for a distant light, σ_a L_e in a medium.
     #[inline]
     pub fn emitted(&self, context: &LightContext<'_>, at: &LightPoint, w: Vec3) -> Rgb {
         match self {
@@ -197,15 +214,17 @@ impl Light {
             Self::Spot(light) => light.intensity(w),
             Self::Distant(light) => light.irradiance,
             Self::Infinite(light) => light.radiance(at.locus.point),
+            Self::Volume(light) => light.emitted(context, at),
         }
     }
 
-    /// Draws a ray that leaves the light. None: the draw has no density.
+    /// Draws a ray that leaves the light; the number `u_depth` is asked for in media. None: the draw has no density.
     #[inline]
     pub fn sample_emission(
         &self,
         context: &LightContext<'_>,
         u_position: Vec2,
+        u_depth: impl FnOnce() -> f32,
         u_direction: Vec2,
     ) -> Option<EmissionSample> {
         match self {
@@ -214,6 +233,9 @@ impl Light {
             Self::Spot(light) => Some(light.sample_emission(u_direction)),
             Self::Distant(light) => Some(light.sample_emission(context, u_direction)),
             Self::Infinite(light) => light.sample_emission(context, u_position, u_direction),
+            Self::Volume(light) => {
+                light.sample_emission(context, u_position.extend(u_depth()), u_direction)
+            }
         }
     }
 
@@ -224,6 +246,7 @@ impl Light {
             Self::Area(light) => light.pdf_position(context, at),
             Self::Point(_) | Self::Spot(_) | Self::Distant(_) => 1.0,
             Self::Infinite(light) => light.pdf(at.locus.point),
+            Self::Volume(light) => light.pdf(at),
         }
     }
 
@@ -232,7 +255,7 @@ impl Light {
     pub fn pdf_direction(&self, context: &LightContext<'_>, at: &LightPoint, w: Vec3) -> f32 {
         match self {
             Self::Area(light) => light.pdf_direction(at, w),
-            Self::Point(_) => PointLight::PDF_DIRECTION,
+            Self::Point(_) | Self::Volume(_) => PointLight::PDF_DIRECTION,
             Self::Spot(light) => light.pdf_direction(w),
             Self::Distant(_) | Self::Infinite(_) => infinite::pdf_disk(context),
         }
@@ -242,7 +265,7 @@ impl Light {
     fn parts(&self, context: &LightContext<'_>) -> impl Iterator<Item = Part> {
         let primitives = match self {
             Self::Area(light) => light.divided_into(context),
-            Self::Point(_) | Self::Spot(_) | Self::Distant(_) | Self::Infinite(_) => None,
+            _ => None,
         };
         (0..primitives.unwrap_or(1)).map(move |i| match primitives {
             Some(_) => Part::Primitive(i),
@@ -265,10 +288,12 @@ impl Light {
             Self::Point(light) => Some(light.bounds()),
             Self::Spot(light) => Some(light.bounds()),
             Self::Distant(_) | Self::Infinite(_) => None,
+            Self::Volume(light) => Some(light.bounds()),
         }
     }
 
-    /// Draws a light point of `part` for a receiver at `reference`. None: the draw has no density.
+    /// Draws a light point of `part` for a receiver at `reference`; the number `u_depth` is asked for in media. None:
+    /// the draw has no density.
     #[inline(always)]
     pub fn sample_next_event(
         &self,
@@ -276,6 +301,7 @@ impl Light {
         part: Part,
         reference: Vec3,
         u: Vec2,
+        u_depth: impl FnOnce() -> f32,
     ) -> Option<LightSample> {
         match self {
             Self::Area(light) => light.sample_next_event(context, part, reference, u),
@@ -283,6 +309,7 @@ impl Light {
             Self::Spot(light) => Some(light.at()),
             Self::Distant(light) => Some(light.at()),
             Self::Infinite(light) => light.sample(u),
+            Self::Volume(light) => light.sample(u.extend(u_depth())),
         }
     }
 
@@ -299,6 +326,7 @@ impl Light {
             Self::Area(light) => light.pdf_next_event(context, part, reference, at),
             Self::Point(_) | Self::Spot(_) | Self::Distant(_) => 1.0,
             Self::Infinite(light) => light.pdf(at.locus.point),
+            Self::Volume(light) => light.pdf(at),
         }
     }
 }

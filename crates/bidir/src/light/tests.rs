@@ -8,20 +8,23 @@ mod tree;
 
 use super::{
     AreaLight, DistantLight, EmissionSides, InfiniteLight, Light, LightContext, PointLight,
-    SpotLight,
+    SpotLight, VolumeLight,
 };
 use crate::math::{Affine3A, Frame, Mat3, PI, Vec2, Vec3};
+use crate::medium::{Coefficients, Glow, Grid, HenyeyGreenstein, Medium, MediumId};
 use crate::sampler::{Dimension, Purpose, SampleStream};
 use crate::shape::{Cylinder, Disk, Mesh, Orientation, Shape, Sphere};
 use crate::spectrum::Rgb;
 use crate::texture::{Bilerp, ColorTexture, Image, Mapping};
+use accel::Aabb;
 use std::sync::Arc;
 
 const COLOR: Rgb = [1.0, 2.0, 0.5];
 
-/// Shapes that the area lights below refer to.
+/// Shapes and media that the lights below refer to.
 struct Surroundings {
     shapes: Vec<Shape>,
+    media: Vec<Medium>,
 }
 
 impl Surroundings {
@@ -42,12 +45,14 @@ impl Surroundings {
                     front,
                 )),
             ],
+            media: vec![fire(Glow::Even(COLOR)), gas()],
         }
     }
 
     fn context(&self) -> LightContext<'_> {
         LightContext {
             shapes: &self.shapes,
+            media: &self.media,
             centre: Vec3::new(0.5, -1.0, 2.0),
             radius: 4.0,
         }
@@ -67,6 +72,37 @@ fn kite() -> Mesh {
         triangles: vec![[0, 1, 2], [0, 0, 1], [0, 2, 3]],
         ..Mesh::default()
     }
+}
+
+/// The number of cells of a fire.
+const FIRE: [usize; 3] = [4, 3, 5];
+
+/// The place of the fires' box.
+fn fireplace() -> Affine3A {
+    Affine3A::from_mat3_translation(turn(), Vec3::new(-0.5, 0.2, 0.0))
+        * Affine3A::from_scale(Vec3::new(1.0, 2.0, 0.5))
+}
+
+/// A number for a cell of a fire.
+fn ember(i: usize) -> f32 {
+    (i * 7 % 5) as f32
+}
+
+/// Dense in places, and thin in others.
+fn fire(glow: Glow) -> Medium {
+    let density = (0..60).map(|i| [ember(i)]).collect();
+    let density = Grid::new(FIRE, density, fireplace()).unwrap();
+    let coefficients = Coefficients::new([0.5, 1.0, 2.0], [0.1; 3]).unwrap();
+    let phase = HenyeyGreenstein::new(0.0).unwrap();
+    let smoke = Medium::of_density(coefficients, density, phase).unwrap();
+    smoke.glowing(glow).unwrap()
+}
+
+/// The same light all over.
+fn gas() -> Medium {
+    let coefficients = Coefficients::new([0.1; 3], [0.0; 3]).unwrap();
+    let gas = Medium::homogeneous(coefficients, HenyeyGreenstein::new(0.0).unwrap());
+    gas.glowing(Glow::Even(COLOR)).unwrap()
 }
 
 /// A dark environment with a bright texel, some even ones and some black.
@@ -109,6 +145,12 @@ fn examples(surroundings: &Surroundings) -> Vec<(&'static str, Light)> {
     };
     let position = Vec3::new(0.3, -2.0, 1.0);
     let axis = Vec3::new(0.6, 0.0, -0.8);
+    let volume = |medium: &Medium| {
+        let index = surroundings.media.iter().position(|other| other == medium);
+        let id = MediumId::new(index.unwrap()).unwrap();
+        let bounds = Aabb::around(&[Vec3::NEG_ONE, Vec3::new(0.5, 1.0, 2.0)]);
+        Light::Volume(VolumeLight::new(id, medium, Some(bounds)))
+    };
     let spot = |angles| Light::Spot(SpotLight::new(position, axis, COLOR, angles));
     vec![
         ("mesh", area(0, EmissionSides::Front)),
@@ -142,10 +184,12 @@ fn examples(surroundings: &Surroundings) -> Vec<(&'static str, Light)> {
             Light::Infinite(InfiniteLight::constant(COLOR)),
         ),
         ("environment", Light::Infinite(environment())),
+        ("fire", volume(&surroundings.media[0])),
+        ("glowing gas", volume(&surroundings.media[1])),
     ]
 }
 
-const VARIANTS: usize = 5;
+const VARIANTS: usize = 6;
 
 /// A new variant does not compile before it has a number here.
 fn variant(light: &Light) -> usize {
@@ -155,6 +199,7 @@ fn variant(light: &Light) -> usize {
         Light::Spot(_) => 2,
         Light::Distant(_) => 3,
         Light::Infinite(_) => 4,
+        Light::Volume(_) => 5,
     }
 }
 
@@ -167,10 +212,15 @@ fn every_variant_has_an_example() {
     assert_eq!(seen, [true; VARIANTS]);
 }
 
-/// The numbers that one emission takes: for the position, and for the direction.
-fn numbers(sample: &SampleStream) -> (Vec2, Vec2) {
+/// The numbers that one emission takes: two and a third for the position, and two for the direction.
+fn numbers(sample: &SampleStream) -> (Vec2, f32, Vec2) {
     let get = |purpose| sample.get_2d(Dimension::at(0, purpose));
-    (get(Purpose::LightPosition), get(Purpose::LightDirection))
+    let u_depth = sample.get_1d(Dimension::at(0, Purpose::LightDepth));
+    (
+        get(Purpose::LightPosition),
+        u_depth,
+        get(Purpose::LightDirection),
+    )
 }
 
 /// A frame with narrow lights' axis as its pole.

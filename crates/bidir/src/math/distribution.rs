@@ -1,10 +1,10 @@
 //! Choices in proportion to weights: p_i = w_i / Σ w, by inversion of the sums.
 //!
-//! Densities are over the unit interval and the unit square; whoever stretches those to another
+//! Densities are over the unit interval, square and cube; whoever stretches those to another
 //! domain divides by its measure.
 
 use super::ONE_MINUS_EPSILON;
-use glam::Vec2;
+use glam::{Vec2, Vec3};
 
 /// A piecewise-constant distribution over `[0, 1)`: also the choice of one of `n` things.
 ///
@@ -142,6 +142,41 @@ impl Distribution2d {
     }
 }
 
+/// A piecewise-constant distribution over the unit cube: a slab, then a point of it.
+#[derive(Clone, Debug)]
+pub struct Distribution3d {
+    slabs: Distribution1d,
+    planes: Vec<Distribution2d>,
+}
+
+impl Distribution3d {
+    /// The distribution proportional to `weights`, x fastest, of so many cells along x and y.
+    pub fn new(weights: &[f32], [nx, ny]: [usize; 2]) -> Self {
+        let planes: Vec<_> = weights
+            .chunks_exact((nx * ny).max(1))
+            .map(|plane| Distribution2d::new(plane, nx))
+            .collect();
+        let slabs = Distribution1d::new(planes.iter().map(|plane| plane.rows.total() as f32));
+        Self { slabs, planes }
+    }
+
+    /// Draws a point of the unit cube and its density over the cube's volume.
+    #[inline]
+    pub fn sample(&self, u: Vec3) -> (Vec3, f32) {
+        let (z, pdf_z, slab) = self.slabs.sample_continuous(u.z);
+        let (p, pdf) = self.planes[slab].sample(u.truncate());
+        (p.extend(z), pdf * pdf_z)
+    }
+
+    /// The density of [`sample`](Self::sample) at `p`, over the cube's volume.
+    #[inline]
+    pub fn pdf(&self, p: Vec3) -> f32 {
+        let n = self.slabs.len();
+        let slab = ((p.z * n as f32) as usize).min(n - 1);
+        self.slabs.pdf(p.z) * self.planes[slab].pdf(p.truncate())
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -190,5 +225,25 @@ mod tests {
         assert!((pdf - 2.0).abs() < 1e-6 && (distribution.pdf(p) - pdf).abs() < 1e-6);
         assert!((distribution.pdf(Vec2::new(0.2, 0.2)) - 0.5).abs() < 1e-6);
         assert!((distribution.mean() - 2.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn densities_of_the_cube_are_those_of_its_cells() {
+        let weights = [1.0, 3.0, 0.0, 4.0, 0.0, 2.0, 0.0, 6.0];
+        let distribution = Distribution3d::new(&weights, [2, 2]);
+        let n = 16;
+        let mut found = [0; 8];
+        for i in 0..n * n * n {
+            let u = [i % n, i / n % n, i / (n * n)].map(|k| (k as f32 + 0.5) / n as f32);
+            let (p, pdf) = distribution.sample(Vec3::from_array(u));
+            let cell: usize = (0..3).map(|axis| usize::from(p[axis] >= 0.5) << axis).sum();
+            assert!((pdf - weights[cell] / 2.0).abs() < 1e-5, "{p}");
+            assert!((distribution.pdf(p) - pdf).abs() < 1e-6, "{p}");
+            found[cell] += 1;
+        }
+        assert_eq!(
+            found,
+            weights.map(|weight| weight as usize * n * n * n / 16)
+        );
     }
 }

@@ -58,14 +58,14 @@ impl Medium {
         }
     }
 
-    /// The way through a stretch of a walk that drew a depth. It ends within only where the medium scatters.
+    /// The way through a stretch of a walk that drew a depth. It ends within only a medium with vertices.
     pub(crate) fn fly(
         &self,
         stretch: &Stretch<'_>,
         drawn: Drawn,
         lanes: impl Fn(Rgb) -> Spectrum,
     ) -> Flight {
-        if !self.scatters {
+        if !self.stops_walks() {
             return Flight {
                 depth: self.depth(stretch, Detail::Full, lanes),
                 reached: None,

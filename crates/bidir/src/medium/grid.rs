@@ -70,16 +70,13 @@ impl<const N: usize> Grid<N> {
         if !fits || !values.as_flattened().iter().all(is_valid) {
             return None;
         }
-        let cells = Vec3::from_array(size.map(|n| n as f32));
-        let lattice_from_cube =
-            Affine3A::from_translation(Vec3::splat(0.5)) * Affine3A::from_scale(cells);
         let corner = |i: u32| Vec3::new((i & 1) as f32, (i >> 1 & 1) as f32, (i >> 2) as f32);
         let corners: Vec<Vec3> = (0..8)
             .map(|i| world_from_cube.transform_point3(corner(i)))
             .collect();
         let mut grid = Self {
             size,
-            lattice_from_world: lattice_from_cube * cube_from_world,
+            lattice_from_world: lattice_from_cube(size) * cube_from_world,
             bounds: Aabb::around(&corners),
             values,
             blocks: Vec::new(),
@@ -95,6 +92,44 @@ impl<const N: usize> Grid<N> {
         self.bounds
     }
 
+    /// The number of cells along each axis.
+    pub(super) fn size(&self) -> [usize; 3] {
+        self.size
+    }
+
+    /// The values at the centres of cells, x fastest.
+    pub(super) fn values(&self) -> &[[f32; N]] {
+        &self.values
+    }
+
+    /// The place of its box, as a unit cube, in the world.
+    pub(super) fn world_from_cube(&self) -> Affine3A {
+        self.lattice_from_world.inverse() * lattice_from_cube(self.size)
+    }
+
+    /// True where the other grid has the same box and cells.
+    pub(super) fn has_cells_of<const M: usize>(&self, other: &Grid<M>) -> bool {
+        self.size == other.size && self.lattice_from_world == other.lattice_from_world
+    }
+
+    /// The means over each cell of values that are given by the number of a cell, and linear between centres:
+    /// along an axis, (f(i - 1) + 6 f(i) + f(i + 1)) / 8.
+    pub(super) fn cell_means(&self, value: impl Fn(usize) -> f32) -> Vec<f32> {
+        let mut means: Vec<f32> = (0..self.values.len()).map(value).collect();
+        let mut stride = 1;
+        for count in self.size {
+            let before = means.clone();
+            for (i, mean) in means.iter_mut().enumerate() {
+                let along = i / stride % count;
+                let low = before[i - stride * usize::from(along > 0)];
+                let high = before[i + stride * usize::from(along + 1 < count)];
+                *mean = 0.125 * low + 0.75 * before[i] + 0.125 * high;
+            }
+            stride *= count;
+        }
+        means
+    }
+
     /// The largest number.
     pub(super) fn most(&self) -> f32 {
         self.values
@@ -108,9 +143,7 @@ impl<const N: usize> Grid<N> {
     pub(super) fn is_nowhere_above(&self, other: &Self) -> bool {
         let ours = self.values.as_flattened();
         let theirs = other.values.as_flattened();
-        self.size == other.size
-            && self.lattice_from_world == other.lattice_from_world
-            && ours.iter().zip(theirs).all(|(our, their)| our <= their)
+        self.has_cells_of(other) && ours.iter().zip(theirs).all(|(our, their)| our <= their)
     }
 
     /// The values at a point of the box; outside, those of the nearest face.
@@ -265,6 +298,12 @@ impl<const N: usize> Piece<N> {
         let [a, b] = [middle - reach, middle + reach].map(|t| self.at(t));
         std::array::from_fn(|channel| 0.5 * (a[channel] + b[channel]))
     }
+}
+
+/// The map from the box as a unit cube.
+fn lattice_from_cube(size: [usize; 3]) -> Affine3A {
+    let cells = Vec3::from_array(size.map(|n| n as f32));
+    Affine3A::from_translation(Vec3::splat(0.5)) * Affine3A::from_scale(cells)
 }
 
 /// The number of a cell, x fastest, in an array of so many.

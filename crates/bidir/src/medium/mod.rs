@@ -19,10 +19,13 @@
 
 mod cells;
 mod flight;
+mod glow;
 mod grid;
 mod phase;
 
 pub(crate) use flight::{Drawn, Stretch};
+pub use glow::Glow;
+pub(crate) use glow::GlowCells;
 pub(crate) use grid::Detail;
 pub use grid::Grid;
 pub use phase::HenyeyGreenstein;
@@ -94,6 +97,7 @@ pub struct Medium {
     field: Field,
     phase: HenyeyGreenstein,
     scatters: bool,
+    glow: Option<Glow>,
 }
 
 /// The coefficients at a place. Unit: 1/m.
@@ -138,6 +142,11 @@ impl Coefficients {
         r > 0.0 || g > 0.0 || b > 0.0
     }
 
+    /// σ_a.
+    fn absorption(&self) -> Rgb {
+        std::array::from_fn(|i| (self.extinction[i] - self.scattering[i]).max(0.0))
+    }
+
     /// Both coefficients times a density.
     fn scaled(self, density: f32) -> Self {
         let scale = |rgb: Rgb| rgb.map(|channel| channel * density);
@@ -163,6 +172,7 @@ impl Medium {
             field: Field::Homogeneous(coefficients),
             phase,
             scatters: coefficients.scatter(),
+            glow: None,
         }
     }
 
@@ -178,6 +188,7 @@ impl Medium {
             field: Field::Density(coefficients, density),
             phase,
             scatters: coefficients.scatter(),
+            glow: None,
         })
     }
 
@@ -197,6 +208,7 @@ impl Medium {
                 scattering,
             },
             phase,
+            glow: None,
         })
     }
 
@@ -209,10 +221,20 @@ impl Medium {
         }
     }
 
-    /// True where light scatters. A medium that only absorbs stops no walk: its light is weighted by T.
+    /// True where paths have vertices: where light scatters or begins. A medium that only absorbs stops no walk: its
+    /// light is weighted by T.
     #[inline]
-    pub const fn scatters(&self) -> bool {
-        self.scatters
+    pub const fn stops_walks(&self) -> bool {
+        self.scatters || self.glow.is_some()
+    }
+
+    /// The largest σ_t. Unit: 1/m.
+    fn most(&self) -> f32 {
+        match &self.field {
+            Field::Homogeneous(at) => largest(at.extinction),
+            Field::Density(at, grid) => grid.most() * largest(at.extinction),
+            Field::Chromatic { extinction, .. } => extinction.most(),
+        }
     }
 
     /// The coefficients at a point, which lies in the medium.

@@ -149,14 +149,15 @@ impl<'a> JoinedPath<'a> {
 /// A light point drawn for the vertex `x1` of a camera subpath: the light's index, and the point with
 /// its density e(x_0 | x_1), the light's probability included.
 ///
-/// The number `u_light` is asked for where there is a choice of lights. None: there is no light, the
-/// draw has no density, or nothing of the light is there.
+/// The number `u_light` is asked for where there is a choice of lights, `u_depth` in media that glow. None: there is no
+/// light, the draw has no density, or nothing of the light is there.
 #[inline]
 pub fn sample_next_event(
     context: &PathContext<'_>,
     x1: &Vertex,
     u_light: impl FnOnce() -> f32,
     u: Vec2,
+    u_depth: impl FnOnce() -> f32,
 ) -> Option<(u32, LightSample)> {
     let scene = context.job.scene;
     let ChosenEmitter { light, part, prob } = match context.job.settings.light_choice {
@@ -168,13 +169,14 @@ pub fn sample_next_event(
     };
     let lights = scene.light_context();
     let of_light = scene.light(light);
-    let mut sample = of_light.sample_next_event(&lights, part, x1.locus.point, u)?;
+    let mut sample = of_light.sample_next_event(&lights, part, x1.locus.point, u, u_depth)?;
     sample.pdf *= prob;
-    (sample.coverage > 0.0 && sample.pdf > 0.0).then_some((light, sample))
+    let is_there = sample.coverage > 0.0 && sample.pdf > 0.0 && scene.is_lit(of_light, &sample.at);
+    is_there.then_some((light, sample))
 }
 
 /// The density e(x_0 | x_1) with which [`sample_next_event`] draws the point `at` of light number
-/// `light` for `x1`, a vertex of any subpath. Measure: area, 1/m²; solid angle, 1/sr, for a light at infinity.
+/// `light` for `x1`, a vertex of any subpath. Measure: that of the point, as in the table of [`crate::light`].
 #[inline]
 pub fn next_event_pdf(context: &PathContext<'_>, x1: &Vertex, light: u32, at: &LightPoint) -> f32 {
     let scene = context.job.scene;

@@ -176,6 +176,7 @@ impl Vertex {
             wo,
             beta,
             albedo_fwd: scattering.albedo.max_lane(),
+            light: context.job.scene.glow(locus.media.outside),
             cell: context.job.guide.cell(locus.point, locus.n_g),
             ..Self::new(locus, Scattering::Medium(scattering))
         }

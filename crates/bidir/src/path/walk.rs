@@ -112,8 +112,13 @@ fn draw_emission(
     let u_position = stream.get_2d(at(Purpose::LightPosition));
     let u_direction = stream.get_2d(at(Purpose::LightDirection));
     let lights = scene.light_context();
-    let emission = scene.lights()[light].sample_emission(&lights, u_position, u_direction)?;
+    let of_light = &scene.lights()[light];
+    let u_depth = || stream.get_1d(at(Purpose::LightDepth));
+    let emission = of_light.sample_emission(&lights, u_position, u_depth, u_direction)?;
     let from = &emission.from;
+    if !scene.is_lit(of_light, &from.at) {
+        return None;
+    }
     let mut start = Vertex::on_light(context, light as u32, &from.at, prob * from.pdf);
     if start.locus.is_infinite() && !scene.is_open() {
         return None;

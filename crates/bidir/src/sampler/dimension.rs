@@ -42,6 +42,10 @@ pub enum Purpose {
     Pairs,
     /// The lane by which a walk draws the distance to the vertex, and the optical depth that it goes, in media.
     Flight,
+    /// The third coordinate of a light subpath's start, in a medium that glows.
+    LightDepth,
+    /// The same of the light point of next-event estimation.
+    NextEventDepth,
 }
 
 /// The address of a random number, or of a pair, within a sample.

@@ -61,6 +61,14 @@ pub fn kronecker_point(u: Vec2, k: u16) -> Vec2 {
     moved.min(Vec2::splat(ONE_MINUS_EPSILON))
 }
 
+/// Number `k` of the sequence u + k / φ modulo 1, φ² = φ + 1: a third coordinate of [`kronecker_point`]s.
+#[inline]
+pub fn kronecker_number(u: f32, k: u16) -> f32 {
+    const STEP: f64 = 0.618_033_988_749_894_8;
+    let moved = (f64::from(u) + f64::from(k) * STEP).fract() as f32;
+    moved.min(ONE_MINUS_EPSILON)
+}
+
 /// The source of all streams of a render.
 #[derive(Clone, Copy, Debug)]
 pub struct Sampler {

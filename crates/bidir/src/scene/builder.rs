@@ -3,8 +3,10 @@
 
 use super::check::check_shape;
 use super::object::{Geometry, ObjectId, Objects};
-use super::{Presence, RenderSpace, Scene, Surface};
-use crate::light::{AreaLight, EmissionSides, Light, LightChoice, LightContext, LightTree};
+use super::{Presence, RenderSpace, Scene, Surface, glow};
+use crate::light::{
+    AreaLight, EmissionSides, Light, LightChoice, LightContext, LightTree, VolumeLight,
+};
 use crate::material::Material;
 use crate::math::{DAffine3, Vec3};
 use crate::medium::{Medium, MediumId, MediumSides};
@@ -174,7 +176,7 @@ impl SceneBuilder {
         self.shapes.push(shape);
     }
 
-    /// Adds a medium; equal media share a number. It is where the [sides](Self::sides) of shapes say, or
+    /// Adds a medium, and a light if it glows; equal media share a number. It is where the [sides](Self::sides) of shapes say, or
     /// [around a point](Self::medium_at).
     pub fn medium(&mut self, medium: Medium) -> MediumId {
         let known = self.media.iter().position(|known| *known == medium);
@@ -184,7 +186,11 @@ impl SceneBuilder {
             self.media.push(medium);
             self.media.len() - 1
         });
-        MediumId::new(index).unwrap_or_default()
+        let id = MediumId::new(index).unwrap_or_default();
+        if known.is_none() && self.media[index].glows() {
+            self.light(Light::Volume(VolumeLight::of(id)));
+        }
+        id
     }
 
     /// Puts `medium` at a point, that of a camera: a ray that leaves it comes, across all boundaries, to the medium that
@@ -309,7 +315,7 @@ impl SceneBuilder {
     }
 
     /// Checks everything and builds the acceleration structure.
-    pub fn build(self) -> Result<Scene, SceneError> {
+    pub fn build(mut self) -> Result<Scene, SceneError> {
         if self.media.len() > MediumId::MOST {
             let count = self.media.len();
             return Err(SceneError::TooManyMedia { count });
@@ -320,9 +326,17 @@ impl SceneBuilder {
             primitives,
             instances,
         } = self.objects.build(&self.shapes, &self.surfaces, isa)?;
+        let surroundings = glow::Surroundings {
+            shapes: &self.shapes,
+            surfaces: &self.surfaces,
+            objects: &self.objects.shapes,
+            bounds: bvh.bounds(),
+        };
+        surroundings.place_glows(&mut self.lights, &self.media);
         let (centre, radius) = bounding_sphere(&bvh, &self.lights, &self.media);
         let context = LightContext {
             shapes: &self.shapes,
+            media: &self.media,
             centre,
             radius,
         };
@@ -335,6 +349,7 @@ impl SceneBuilder {
         let is_boundary = |surface: &Surface| surface.presence == Presence::Boundary;
         let mut scene = Scene {
             is_opaque: self.coverages.is_empty() && !self.surfaces.iter().any(is_boundary),
+            glows: glow::lights_of(&self.media, &self.lights),
             media: self.media,
             around: MediumId::VACUUM,
             light_media: Vec::new(),
@@ -380,6 +395,7 @@ fn media_of(scene: &Scene, light: &Light) -> MediumSides {
         Light::Point(light) => light.position,
         Light::Spot(light) => light.position,
         Light::Distant(_) | Light::Infinite(_) => return MediumSides::all(scene.around),
+        Light::Volume(light) => return MediumSides::all(light.medium()),
     };
     MediumSides::all(scene.medium_at(at))
 }
@@ -393,7 +409,7 @@ fn bounding_sphere(bvh: &accel::Bvh, lights: &[Light], media: &[Medium]) -> (Vec
         let position = match light {
             Light::Point(light) => light.position,
             Light::Spot(light) => light.position,
-            Light::Area(_) | Light::Distant(_) | Light::Infinite(_) => continue,
+            Light::Area(_) | Light::Distant(_) | Light::Infinite(_) | Light::Volume(_) => continue,
         };
         (min, max) = (min.min(position), max.max(position));
     }

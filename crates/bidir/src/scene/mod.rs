@@ -6,6 +6,7 @@
 mod builder;
 mod check;
 mod coverage;
+mod glow;
 mod object;
 mod passage;
 mod space;
@@ -110,6 +111,8 @@ pub struct Scene {
     around: MediumId,
     /// The media on the sides of each light.
     light_media: Vec<MediumSides>,
+    /// The light that each medium is, by index.
+    glows: Vec<Option<u32>>,
     materials: Vec<Material>,
     lights: Vec<Light>,
     light_choice: LightChoice,
@@ -184,6 +187,7 @@ impl Scene {
     pub fn light_context(&self) -> LightContext<'_> {
         LightContext {
             shapes: &self.shapes,
+            media: &self.media,
             centre: self.centre,
             radius: self.radius,
         }

@@ -39,7 +39,7 @@ pub struct Advance {
 pub struct Transmittance {
     /// T of all media.
     pub all: Spectrum,
-    /// T of the media that scatter. Walks draw their distances by it.
+    /// T of the media with vertices. Walks draw their distances by it.
     pub drawn: Spectrum,
 }
 
@@ -55,7 +55,7 @@ struct Depth {
 pub struct Edge {
     /// The part of light that arrives, in `[0, 1]`: T, times the part of surfaces that is not there.
     pub transmittance: Spectrum,
-    /// The factor of media in the density of b drawn from a, with T of the media that scatter: mean(T) on a surface;
+    /// The factor of media in the density of b drawn from a, with T of those that have vertices: mean(T) on a surface;
     /// mean(σ_t T) in a medium, 1/m.
     pub to_b: f32,
     /// The same for a drawn from b.
@@ -110,7 +110,7 @@ impl Depth {
     /// That of a part in `medium`.
     #[inline]
     fn of(medium: &Medium, depth: Spectrum) -> Self {
-        let drawn = if medium.scatters() {
+        let drawn = if medium.stops_walks() {
             depth
         } else {
             Spectrum::ZERO

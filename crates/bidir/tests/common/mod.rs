@@ -16,7 +16,7 @@ use bidir::material::{
     ScaledColor, ScaledFloat,
 };
 use bidir::math::{Affine3A, Vec2, Vec3};
-use bidir::medium::{Coefficients, HenyeyGreenstein, Medium, MediumId, MediumSides};
+use bidir::medium::{Coefficients, Glow, HenyeyGreenstein, Medium, MediumId, MediumSides};
 use bidir::path::PathSettings;
 use bidir::scene::{Emission, MaterialId, Scene, SceneBuilder, SceneError};
 use bidir::shape::{Mesh, Orientation, Shape, Sphere};
@@ -363,7 +363,19 @@ pub(crate) fn room_with_ink(lens_radius: f32) -> Shot {
     builder.build().expect("the room is valid")
 }
 
-/// Fog or ink.
+/// The same with a ball of burning gas beside the glass.
+pub(crate) fn room_with_fire(lens_radius: f32) -> Shot {
+    let mut builder = builder(8, lens_radius);
+    furnish(&mut builder);
+    let gas = medium([0.5, 0.2, 0.1], [0.4, 0.3, 0.1]).glowing(Glow::Even([6.0, 3.0, 1.0]));
+    let inside = builder.medium(gas.expect("light that can be computed with"));
+    let outside = MediumId::VACUUM;
+    let ball = sphere(Vec3::new(0.2, 0.3, 0.3), 0.6);
+    builder.boundary(ball, MediumSides { outside, inside });
+    builder.build().expect("the room is valid")
+}
+
+/// Fog, ink or gas.
 fn medium(absorption: Rgb, scattering: Rgb) -> Medium {
     let coefficients = Coefficients::new(absorption, scattering).expect("valid coefficients");
     let phase = HenyeyGreenstein::new(0.4).expect("a mean cosine");

@@ -1,6 +1,7 @@
 //! Participating media: images that are known, and estimators that agree.
 
 mod closed_forms;
+mod glow;
 
 use crate::common::statistics::{Replicates, WHOLE, check_agree, replicates};
 use crate::common::{

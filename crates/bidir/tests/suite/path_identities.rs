@@ -125,6 +125,7 @@ impl Comparisons {
 fn stored_quantities_are_those_of_a_walk_from_scratch() {
     check_stored(&common::room(0.05));
     check_stored(&common::foggy_room(0.05));
+    check_stored(&common::room_with_fire(0.05));
 }
 
 #[track_caller]
@@ -343,10 +344,14 @@ fn layered_and_mixed_surfaces_are_one_function_of_the_path() {
     check_paths(MisHeuristic::Power, LightPointChoice::Fresh, &scene);
 }
 
-/// The same in fog, through a medium that only absorbs, and in rough glass that is not empty.
+/// The same in fog, through a medium that only absorbs, in rough glass that is not empty, and from a fire.
 #[test]
 fn paths_through_media_are_one_function_of_the_path() {
-    for scene in [common::foggy_room(0.1), common::room_with_ink(0.1)] {
+    for scene in [
+        common::foggy_room(0.1),
+        common::room_with_ink(0.1),
+        common::room_with_fire(0.1),
+    ] {
         check_paths(MisHeuristic::Balance, LightPointChoice::Fresh, &scene);
         check_paths(MisHeuristic::Power, LightPointChoice::Shared, &scene);
     }

@@ -170,7 +170,7 @@ impl Comparison {
     fn compare_next_events(&mut self, context: &PathContext<'_>, camera: &[Vertex]) {
         for t in 2..=camera.len() {
             let (u_light, u) = (0.17 * t as f32 % 1.0, Vec2::new(0.4, 0.11 * t as f32 % 1.0));
-            let drawn = sample_next_event(context, &camera[t - 1], || u_light, u);
+            let drawn = sample_next_event(context, &camera[t - 1], || u_light, u, || u.x);
             let Some((light, drawn)) = drawn else {
                 continue;
             };
@@ -347,6 +347,7 @@ fn media() {
     assert_eq!(diffuse, 0, "they know nothing of fog");
     let diffuse = check(&common::room_with_ink(0.1), 20);
     assert!(diffuse > 1000, "{diffuse} connections are diffuse");
+    check(&common::room_with_fire(0.1), 20);
 }
 
 #[test]

@@ -4,7 +4,7 @@ use super::super::batch::NextEvent;
 use super::super::{Batch, CandidateCount, Sample};
 use crate::math::ONE_MINUS_EPSILON;
 use crate::path::{Job, LightPointChoice, PathContext, Vertex, sample_next_event};
-use crate::sampler::{Dimension, Purpose, kronecker_point};
+use crate::sampler::{Dimension, Purpose, kronecker_number, kronecker_point};
 use crate::spectrum::Spectrum;
 
 /// Draws light points for each camera vertex, one of each of as many parts of the lights, at points of a
@@ -57,7 +57,9 @@ fn light_point(
     let part = |u: f32| ((f32::from(k) + u) / f32::from(count)).min(ONE_MINUS_EPSILON);
     let u_light = || part(sample.camera.get_1d(at(Purpose::NextEventLight)));
     let u = sample.camera.get_2d(at(Purpose::NextEventPosition));
-    let (light, drawn) = sample_next_event(context, y, u_light, kronecker_point(u, k))?;
+    let u_depth = || kronecker_number(sample.camera.get_1d(at(Purpose::NextEventDepth)), k);
+    let point = kronecker_point(u, k);
+    let (light, drawn) = sample_next_event(context, y, u_light, point, u_depth)?;
     let mut x0 = Vertex::light(context, light, &drawn.at);
     x0.beta = Spectrum::splat(drawn.coverage / (drawn.pdf * f32::from(count)));
     Some((x0, drawn.pdf))

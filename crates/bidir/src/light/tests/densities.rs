@@ -1,6 +1,12 @@
-use super::{Surroundings, environment, examples, numbers, pole, receivers, turn};
-use crate::light::{EmissionSides, InfiniteLight, Light, LightContext, LightPoint, Part};
+use super::{
+    FIRE, Surroundings, ember, environment, examples, fire, fireplace, numbers, pole, receivers,
+    turn,
+};
+use crate::light::{
+    EmissionSides, InfiniteLight, Light, LightContext, LightPoint, Part, VolumeLight,
+};
 use crate::math::{Frame, PI, Vec2, Vec3, direction_to_square, sqr, square_to_direction, warp};
+use crate::medium::{self, Glow, MediumId};
 use crate::sampler::{Dimension, Purpose};
 use crate::shape::{Mesh, Shape};
 use crate::spectrum::luminance;
@@ -51,12 +57,18 @@ fn directions_follow_the_density() {
             rows: 40,
         };
         let draws = samples(name, N).map(|sample| {
-            let (u_position, u_direction) = numbers(&sample);
-            let drawn = light.sample_emission(&context, u_position, u_direction)?;
+            let (u_position, u_depth, u_direction) = numbers(&sample);
+            let drawn = light.sample_emission(&context, u_position, || u_depth, u_direction)?;
             Some(frame(&drawn.from.at).to_local(drawn.direction))
         });
         let at = light
-            .sample_next_event(&context, Part::Whole, receivers()[0], Vec2::splat(0.3))
+            .sample_next_event(
+                &context,
+                Part::Whole,
+                receivers()[0],
+                Vec2::splat(0.3),
+                || 0.3,
+            )
             .unwrap()
             .at;
         let pdf = |w| light.pdf_direction(&context, &at, frame(&at).to_world(w));
@@ -81,8 +93,8 @@ fn rays_from_infinity_cross_the_disk_by_the_density() {
         .filter(|(_, l)| l.is_infinite())
     {
         let draws = samples(name, N).map(|sample| {
-            let (u_position, u_direction) = numbers(&sample);
-            let drawn = light.sample_emission(&context, u_position, u_direction)?;
+            let (u_position, u_depth, u_direction) = numbers(&sample);
+            let drawn = light.sample_emission(&context, u_position, || u_depth, u_direction)?;
             let local = Frame::from_z(drawn.direction).to_local(drawn.origin - context.centre);
             Some(local.with_z(0.0))
         });
@@ -118,8 +130,8 @@ fn environments_are_drawn_by_the_density() {
     ];
     for (name, light) in lights.map(|(name, light)| (name, Light::Infinite(light))) {
         let rays = samples(name, N).map(|sample| {
-            let (u_position, u_direction) = numbers(&sample);
-            let drawn = light.sample_emission(&context, u_position, u_direction)?;
+            let (u_position, u_depth, u_direction) = numbers(&sample);
+            let drawn = light.sample_emission(&context, u_position, || u_depth, u_direction)?;
             Some(to_square(&drawn.from.at))
         });
         let pdf = |p| light.pdf_position(&context, &direction(p)) * 4.0 * PI;
@@ -128,7 +140,7 @@ fn environments_are_drawn_by_the_density() {
             let u = sample.get_2d(Dimension::at(0, Purpose::NextEventPosition));
             Some(to_square(
                 &light
-                    .sample_next_event(&context, Part::Whole, receivers()[0], u)?
+                    .sample_next_event(&context, Part::Whole, receivers()[0], u, || 0.3)?
                     .at,
             ))
         });
@@ -137,6 +149,43 @@ fn environments_are_drawn_by_the_density() {
         };
         battery.chi2(&format!("{name}, receivers"), &grid, pdf, points);
     }
+    battery.check();
+}
+
+/// Points of a fire lie in its cells, and in eighths of them, as their density says.
+#[test]
+fn points_of_a_fire_follow_the_density() {
+    let radiance = (0..60).map(|i| [ember(i / 2), 0.3 * ember(i), 0.0]);
+    let radiance = medium::Grid::new(FIRE, radiance.collect(), fireplace()).unwrap();
+    let fire = fire(Glow::Grid(radiance));
+    let light = VolumeLight::new(MediumId::default(), &fire, None);
+    let counts = FIRE.map(|n| 2 * n);
+    let count: usize = counts.iter().product();
+    let volume = fireplace().matrix3.determinant().abs() / count as f32;
+    let part = |i: usize| {
+        let at = [
+            i % counts[0],
+            i / counts[0] % counts[1],
+            i / (counts[0] * counts[1]),
+        ];
+        let at: [f32; 3] = std::array::from_fn(|k| (at[k] as f32 + 0.5) / counts[k] as f32);
+        fireplace().transform_point3(Vec3::from_array(at))
+    };
+    let in_fire = |point| LightPoint::in_medium(point, MediumId::default());
+    let probs = (0..count).map(|i| f64::from(light.pdf(&in_fire(part(i))) * volume));
+    let probs: Vec<f64> = probs.collect();
+    let mut found = vec![0; count];
+    let cube_from_world = fireplace().inverse();
+    for sample in samples("fire", N) {
+        let (u_position, u_depth, _) = numbers(&sample);
+        let drawn = light.sample(u_position.extend(u_depth)).unwrap();
+        let p = cube_from_world.transform_point3(drawn.at.locus.point);
+        let [x, y, z] =
+            std::array::from_fn(|k| ((p[k] * counts[k] as f32) as usize).min(counts[k] - 1));
+        found[(z * counts[1] + y) * counts[0] + x] += 1;
+    }
+    let mut battery = Battery::new("fire");
+    battery.counts("parts of cells", &found, &probs);
     battery.check();
 }
 
@@ -218,11 +267,11 @@ fn points_of_a_mesh_follow_the_density() {
     };
     let mut battery = Battery::new("points of a mesh");
     let rays = samples("mesh, rays", N).map(|sample| {
-        let (u_position, u_direction) = numbers(&sample);
+        let (u_position, u_depth, u_direction) = numbers(&sample);
         Some(on_square(
             mesh,
             &light
-                .sample_emission(&context, u_position, u_direction)?
+                .sample_emission(&context, u_position, || u_depth, u_direction)?
                 .from
                 .at,
         ))
@@ -235,7 +284,7 @@ fn points_of_a_mesh_follow_the_density() {
         Some(on_square(
             mesh,
             &light
-                .sample_next_event(&context, Part::Whole, receiver, u)?
+                .sample_next_event(&context, Part::Whole, receiver, u, || 0.3)?
                 .at,
         ))
     });

@@ -52,8 +52,10 @@ fn rays_have_the_densities_and_the_light_that_the_light_says() {
     for (name, light) in examples(&surroundings) {
         let mut count = 0;
         for sample in samples(name, 2000) {
-            let (u_position, u_direction) = numbers(&sample);
-            if let Some(drawn) = light.sample_emission(&context, u_position, u_direction) {
+            let (u_position, u_depth, u_direction) = numbers(&sample);
+            if let Some(drawn) =
+                light.sample_emission(&context, u_position, || u_depth, u_direction)
+            {
                 check_emission(&light, &context, &drawn, name);
                 count += 1;
             }
@@ -71,7 +73,7 @@ fn points_for_a_receiver_have_the_density_that_the_light_says() {
             let receiver = receivers()[i % 3];
             let u = sample.get_2d(Dimension::at(0, Purpose::NextEventPosition));
             let drawn = light
-                .sample_next_event(&context, Part::Whole, receiver, u)
+                .sample_next_event(&context, Part::Whole, receiver, u, || u.y)
                 .unwrap();
             assert!(drawn.pdf > 0.0 && drawn.pdf.is_finite(), "{name}");
             let pdf = light.pdf_next_event(&context, Part::Whole, receiver, &drawn.at);
@@ -90,9 +92,9 @@ fn rays_from_infinity_start_outside_the_scene() {
         .filter(|(_, l)| l.is_infinite())
     {
         for sample in samples(name, 1000) {
-            let (u_position, u_direction) = numbers(&sample);
+            let (u_position, u_depth, u_direction) = numbers(&sample);
             let drawn = light
-                .sample_emission(&context, u_position, u_direction)
+                .sample_emission(&context, u_position, || u_depth, u_direction)
                 .unwrap();
             assert!(
                 (drawn.direction + drawn.from.at.locus.point).length() < 1e-5,
@@ -118,7 +120,7 @@ fn sides_that_do_not_emit_are_dark() {
             continue;
         }
         let drawn = light
-            .sample_next_event(&context, Part::Whole, Vec3::ZERO, Vec2::splat(0.3))
+            .sample_next_event(&context, Part::Whole, Vec3::ZERO, Vec2::splat(0.3), || 0.3)
             .unwrap();
         let at = &drawn.at;
         let bright = |w: Vec3| light.emitted(&context, at, w)[1] > 0.0;

@@ -12,8 +12,8 @@ fn power_is_the_flux_of_the_rays() {
     let mut battery = Battery::new("light power");
     for (name, light) in examples(&surroundings) {
         let flux = samples(name, 1 << 20).map(|sample| {
-            let (u_position, u_direction) = numbers(&sample);
-            let drawn = light.sample_emission(&context, u_position, u_direction);
+            let (u_position, u_depth, u_direction) = numbers(&sample);
+            let drawn = light.sample_emission(&context, u_position, || u_depth, u_direction);
             drawn.map_or(0.0, |drawn| {
                 let emitted = f64::from(luminance(drawn.emitted_cos));
                 emitted / f64::from(drawn.pdf_direction * drawn.from.pdf)
@@ -62,6 +62,7 @@ fn lights_are_chosen_with_their_share_of_the_power() {
 fn nothing_is_chosen_among_no_lights() {
     let context = LightContext {
         shapes: &[],
+        media: &[],
         centre: crate::math::Vec3::ZERO,
         radius: 1.0,
     };

@@ -172,7 +172,8 @@ fn whatever_lights_a_receiver_can_be_drawn() {
             let ChosenEmitter { light, part, prob } = emitter;
             let light = &world.lights[light as usize];
             let shines = (3..20).any(|i| {
-                let Some(drawn) = light.sample_next_event(&context, part, point, get(i)) else {
+                let Some(drawn) = light.sample_next_event(&context, part, point, get(i), || 0.3)
+                else {
                     return false;
                 };
                 // A triangle without area is drawn by nobody else.
@@ -203,7 +204,7 @@ fn points_of_parts_have_the_density_that_is_found_again() {
             let drawn = tree.sample(|| receiver, || u).unwrap();
             let light = &world.lights[drawn.light as usize];
             let u = sample.get_2d(get(Purpose::NextEventPosition));
-            let point = light.sample_next_event(&context, drawn.part, receiver.point, u);
+            let point = light.sample_next_event(&context, drawn.part, receiver.point, u, || 0.3);
             let Some(point) = point else { continue };
             let found = tree.find(|| receiver, drawn.light, point.at.primitive);
             assert_eq!(found, drawn);

@@ -102,7 +102,7 @@ fn corners(scene: &Scene) -> Vec<Vec3> {
 fn emits_to_the_front(world_text: &str) -> bool {
     let scene = world(&format!("AreaLightSource \"diffuse\" {world_text}"));
     let (light, lights) = (&scene.lights()[0], scene.light_context());
-    let sample = light.sample_emission(&lights, Vec2::new(0.3, 0.4), Vec2::new(0.2, 0.1));
+    let sample = light.sample_emission(&lights, Vec2::new(0.3, 0.4), || 0.5, Vec2::new(0.2, 0.1));
     let sample = sample.expect("it emits");
     let at = sample.from.at;
     // The normal at a hit agrees with that of the sampled point.

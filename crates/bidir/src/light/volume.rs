@@ -1,0 +1,143 @@
+//! Media that glow: σ_a L_e (W/(m³ sr)) in all directions from each point; power 4π ∫ σ_a L_e dV.
+//!
+//! A point is drawn by cells of the medium's box, in proportion to the light of each (1/m³); a direction evenly,
+//! 1/(4π) (1/sr). A walk from the camera comes upon the light where it stops in the medium.
+
+use super::{
+    Cone, EmissionSample, EmitterBounds, LightContext, LightPoint, LightSample, PointLight,
+};
+use crate::math::{Affine3A, Distribution3d, ONE_MINUS_EPSILON, PI, Vec2, Vec3, warp};
+use crate::medium::{GlowCells, Medium, MediumId};
+use crate::spectrum::Rgb;
+use accel::Aabb;
+
+/// A medium that glows.
+#[derive(Clone, Debug)]
+pub struct VolumeLight {
+    medium: MediumId,
+    /// None: nothing but walks from the camera finds points of it.
+    cells: Option<Cells>,
+}
+
+/// The choice of a point.
+#[derive(Clone, Debug)]
+struct Cells {
+    world_from_cube: Affine3A,
+    cube_from_world: Affine3A,
+    points: Distribution3d,
+    /// Unit: 1/m³.
+    inverse_volume: f32,
+    bounds: Aabb,
+    /// ∫ σ_a L_e dV. Unit: W/sr, luminance.
+    intensity: f32,
+}
+
+impl VolumeLight {
+    /// The light of a medium of a scene that is not built yet.
+    pub(crate) fn of(medium: MediumId) -> Self {
+        Self {
+            medium,
+            cells: None,
+        }
+    }
+
+    /// The light of medium number `id`, which is within `bounds` if it has no box of its own.
+    pub(crate) fn new(id: MediumId, medium: &Medium, bounds: Option<Aabb>) -> Self {
+        let cells = medium.glow_cells(bounds);
+        Self {
+            medium: id,
+            cells: cells.and_then(|cells| Cells::new(&cells, medium.bounds().or(bounds)?)),
+        }
+    }
+
+    /// The medium.
+    pub fn medium(&self) -> MediumId {
+        self.medium
+    }
+
+    pub(super) fn power(&self) -> f32 {
+        4.0 * PI * self.cells.as_ref().map_or(0.0, |cells| cells.intensity)
+    }
+
+    pub(super) fn bounds(&self) -> EmitterBounds {
+        self.cells
+            .as_ref()
+            .map_or(EmitterBounds::NOTHING, |cells| EmitterBounds {
+                bounds: cells.bounds,
+                cone: Cone::EVERYWHERE,
+                intensity: cells.intensity,
+            })
+    }
+
+    #[inline]
+    pub(super) fn emitted(&self, context: &LightContext<'_>, at: &LightPoint) -> Rgb {
+        let medium = self.medium.index().map(|index| &context.media[index]);
+        medium.map_or([0.0; 3], |medium| medium.emission(at.locus.point))
+    }
+
+    /// Draws a point of the medium's box; what glows may end before.
+    #[inline]
+    pub(super) fn sample(&self, u: Vec3) -> Option<LightSample> {
+        let cells = self.cells.as_ref()?;
+        let (p, pdf) = cells.points.sample(u);
+        let point = cells.world_from_cube.transform_point3(p);
+        let at = LightPoint::in_medium(point, self.medium);
+        Some(LightSample::new(at, pdf * cells.inverse_volume))
+    }
+
+    /// The density of a point. Measure: volume, 1/m³.
+    #[inline]
+    pub(super) fn pdf(&self, at: &LightPoint) -> f32 {
+        self.cells
+            .as_ref()
+            .map_or(0.0, |cells| cells.pdf(at.locus.point))
+    }
+
+    #[inline]
+    pub(super) fn sample_emission(
+        &self,
+        context: &LightContext<'_>,
+        u_position: Vec3,
+        u_direction: Vec2,
+    ) -> Option<EmissionSample> {
+        let from = self.sample(u_position)?;
+        Some(EmissionSample {
+            from,
+            origin: from.at.locus.point,
+            direction: warp::uniform_sphere(u_direction),
+            pdf_direction: PointLight::PDF_DIRECTION,
+            emitted_cos: self.emitted(context, &from.at),
+        })
+    }
+}
+
+impl Cells {
+    /// None: nothing is within.
+    fn new(cells: &GlowCells, bounds: Aabb) -> Option<Self> {
+        let volume = cells.world_from_cube.matrix3.determinant().abs();
+        let sum: f64 = cells.emission.iter().copied().map(f64::from).sum();
+        let intensity = (sum / cells.emission.len() as f64) as f32 * volume;
+        let [nx, ny, _] = cells.size;
+        let fits = intensity > 0.0 && intensity < f32::INFINITY && (1.0 / volume).is_finite();
+        fits.then(|| Self {
+            world_from_cube: cells.world_from_cube,
+            cube_from_world: cells.world_from_cube.inverse(),
+            points: Distribution3d::new(&cells.emission, [nx, ny]),
+            inverse_volume: 1.0 / volume,
+            bounds,
+            intensity,
+        })
+    }
+
+    #[inline]
+    fn pdf(&self, point: Vec3) -> f32 {
+        /// Of the side of the box: points of its faces may lie beyond them, by rounding.
+        const ERROR: f32 = 1e-5;
+        let p = self.cube_from_world.transform_point3(point);
+        let within = p.clamp(Vec3::ZERO, Vec3::splat(ONE_MINUS_EPSILON));
+        if (p - within).abs().max_element() > ERROR {
+            return 0.0;
+        }
+        self.points.pdf(within) * self.inverse_volume
+    }
+}

@@ -1,0 +1,144 @@
+//! Media that glow: each unit of length adds σ_a L_e to the light along it \[Chandrasekhar60\].
+//!
+//! Within a thick medium in which L_e is even, radiance is L_e, as in a furnace.
+
+use super::{Coefficients, Field, Grid, Medium, largest};
+use crate::math::{Affine3A, Vec3};
+use crate::spectrum::{Rgb, luminance};
+use accel::Aabb;
+
+/// L_e of a medium: the radiance within, were it thick.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Glow {
+    /// The same everywhere.
+    Even(Rgb),
+    /// In the cells of the medium's own grid.
+    Grid(Grid<3>),
+}
+
+/// The light of the equal cells of a box.
+#[derive(Clone, Debug)]
+pub(crate) struct GlowCells {
+    pub(crate) world_from_cube: Affine3A,
+    pub(crate) size: [usize; 3],
+    /// The mean of σ_a L_e in each cell, about, x fastest; positive wherever some of the cell glows. Unit:
+    /// W/(m³ sr), luminance.
+    pub(crate) emission: Vec<f32>,
+}
+
+impl Glow {
+    fn most(&self) -> f32 {
+        match self {
+            Self::Even(radiance) => largest(*radiance),
+            Self::Grid(grid) => grid.most(),
+        }
+    }
+
+    #[inline]
+    fn at(&self, point: Vec3) -> Rgb {
+        match self {
+            Self::Even(radiance) => *radiance,
+            Self::Grid(grid) => grid.at(point),
+        }
+    }
+
+    /// The cells of a grid in which σ_a is given by the number of a cell.
+    fn cells<const N: usize>(
+        &self,
+        grid: &Grid<N>,
+        absorption: impl Fn(usize) -> Rgb,
+    ) -> GlowCells {
+        let radiance = |i: usize| match self {
+            Self::Even(radiance) => *radiance,
+            Self::Grid(grid) => grid.values()[i],
+        };
+        // A product of means is not the mean of the product, but it is positive wherever that is.
+        let products: [Vec<f32>; 3] = std::array::from_fn(|channel| {
+            let mut product = grid.cell_means(|i| absorption(i)[channel]);
+            let radiance = grid.cell_means(|i| radiance(i)[channel]);
+            for (a, b) in product.iter_mut().zip(radiance) {
+                *a *= b;
+            }
+            product
+        });
+        let emission = |i: usize| luminance(std::array::from_fn(|channel| products[channel][i]));
+        GlowCells {
+            world_from_cube: grid.world_from_cube(),
+            size: grid.size(),
+            emission: (0..products[0].len()).map(emission).collect(),
+        }
+    }
+}
+
+impl Medium {
+    /// The largest σ_t L_e, so that products with volumes stay finite.
+    pub const BRIGHTEST: f32 = 1e18;
+
+    /// The same medium, which glows as well. None: σ_t L_e may be above [`BRIGHTEST`](Self::BRIGHTEST), or the grid of
+    /// L_e has not the cells of the medium's.
+    pub fn glowing(self, glow: Glow) -> Option<Self> {
+        let most = glow.most();
+        let is_along = match (&glow, &self.field) {
+            (Glow::Even(_), _) => true,
+            (Glow::Grid(_), Field::Homogeneous(_)) => false,
+            (Glow::Grid(ours), Field::Density(_, theirs)) => ours.has_cells_of(theirs),
+            (Glow::Grid(ours), Field::Chromatic { extinction, .. }) => {
+                ours.has_cells_of(extinction)
+            }
+        };
+        // Not a number is no radiance either.
+        let is_valid = is_along && most * self.most() <= Self::BRIGHTEST;
+        is_valid.then_some(Self {
+            glow: (most > 0.0).then_some(glow),
+            ..self
+        })
+    }
+
+    /// True where light begins.
+    #[inline]
+    pub const fn glows(&self) -> bool {
+        self.glow.is_some()
+    }
+
+    /// σ_a L_e at a point, which lies in the medium. Unit: W/(m³ sr).
+    #[inline]
+    pub fn emission(&self, point: Vec3) -> Rgb {
+        let Some(glow) = &self.glow else {
+            return [0.0; 3];
+        };
+        let (absorption, radiance) = (self.at(point).absorption(), glow.at(point));
+        std::array::from_fn(|i| absorption[i] * radiance[i])
+    }
+
+    /// The cells that glow. A medium without an end is asked for between the corners of `bounds`. None: there is no
+    /// such box, or it is flat.
+    pub(crate) fn glow_cells(&self, bounds: Option<Aabb>) -> Option<GlowCells> {
+        let glow = self.glow.as_ref()?;
+        match &self.field {
+            Field::Homogeneous(_) => {
+                let bounds = bounds?;
+                let size = bounds.max - bounds.min;
+                size.cmpgt(Vec3::ZERO).all().then(|| GlowCells {
+                    world_from_cube: Affine3A::from_translation(bounds.min)
+                        * Affine3A::from_scale(size),
+                    size: [1; 3],
+                    emission: vec![luminance(self.emission(bounds.min))],
+                })
+            }
+            Field::Density(at, grid) => {
+                let density = |i: usize| grid.values()[i][0];
+                Some(glow.cells(grid, |i| at.scaled(density(i)).absorption()))
+            }
+            Field::Chromatic {
+                extinction,
+                scattering,
+            } => {
+                let at = |i: usize| Coefficients {
+                    extinction: extinction.values()[i],
+                    scattering: scattering.values()[i],
+                };
+                Some(glow.cells(extinction, |i| at(i).absorption()))
+            }
+        }
+    }
+}
