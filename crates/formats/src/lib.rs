@@ -9,6 +9,7 @@ mod files;
 mod foreign;
 mod import;
 mod limits;
+mod nanovdb;
 mod source;
 mod spectra;
 mod text;

@@ -46,6 +46,8 @@ pub(crate) const INSTANCES: Allowance = Allowance::new(1 << 18, 1);
 pub(crate) const COMPONENTS: Allowance = Allowance::new(1 << 26, 64);
 /// Number of values of an image: pixels times channels.
 pub(crate) const IMAGE: Allowance = Allowance::new(1 << 26, 128);
+/// Number of cells of a grid that a NanoVDB file spans, kept or not.
+pub(crate) const VOXELS: Allowance = Allowance::new(1 << 26, 16);
 /// Number of values of all images of a scene.
 pub(crate) const IMAGES: Allowance = Allowance::new(1 << 28, 128);
 
@@ -79,6 +81,8 @@ pub(crate) const MOST_TEXTURES: usize = 1024;
 pub(crate) const LARGEST_SIDE: u32 = 1 << 16;
 /// Unpacked size of a mesh file. Unit: bytes.
 pub(crate) const LARGEST_MESH: u64 = 1 << 34;
+/// Size of a NanoVDB file. Unit: bytes.
+pub(crate) const LARGEST_GRID: u64 = 1 << 33;
 /// Size of an image file. Unit: bytes.
 pub(crate) const LARGEST_IMAGE: u64 = 1 << 33;
 /// Number of values of an image of any size: 2 GiB.
@@ -116,6 +120,7 @@ mod tests {
             ("mesh instances of glTF", INSTANCES, "all but images"),
             ("components of glTF accessors", COMPONENTS, "all but images"),
             ("numbers of an image", IMAGE, "the file"),
+            ("cells of a NanoVDB grid", VOXELS, "the unpacked grid"),
             ("numbers of all images of a scene", IMAGES, "all files"),
         ];
         let row = |(item, allowance, of): (&str, Allowance, &str)| {

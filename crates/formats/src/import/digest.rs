@@ -31,6 +31,7 @@ pub(crate) enum Content {
     Mesh = 1,
     Image = 2,
     Spectrum = 3,
+    Grid = 4,
 }
 
 /// A digest in the making.

@@ -100,6 +100,18 @@ pub(crate) fn emission(spectrum: &Spectrum) -> Option<Rgb> {
     Some((clamped / luminance).as_vec3().into())
 }
 
+/// The luminance of a spectrum that is 1 everywhere: ∫ ȳ dλ, in nm.
+pub(crate) const LUMINANCE_OF_ONE: f32 = 106.856_895;
+
+/// Returns the light of Planck's law relative to its peak, which is not brought to luminance 1.
+pub(crate) fn black_body(kelvin: f64) -> Rgb {
+    let spectrum = Spectrum::blackbody(kelvin);
+    let steps = OBSERVED.steps.iter();
+    let luminance: f64 = steps.map(|(nm, bars, _)| bars.y * spectrum.at(*nm)).sum();
+    let of_one = emission(&spectrum).unwrap_or_default();
+    of_one.map(|channel| channel * luminance as f32)
+}
+
 /// Returns η and k of a metal whose reflectance at normal incidence, under daylight, equals that of the
 /// spectral index: η is the mean over each channel, and k follows from
 /// R = ((η - 1)² + k²) / ((η + 1)² + k²).

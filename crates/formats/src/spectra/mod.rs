@@ -9,8 +9,8 @@ mod named;
 mod table;
 
 pub(crate) use color::{
-    Primaries, adapted, conductor, daylight_white, emission, planckian_white, reflectance,
-    rgb_from_rgb,
+    LUMINANCE_OF_ONE, Primaries, adapted, black_body, conductor, daylight_white, emission,
+    planckian_white, reflectance, rgb_from_rgb,
 };
 pub(crate) use named::{named, names};
 

@@ -89,6 +89,11 @@ impl Context<'_> {
         Spectrum::parse(text).map_err(|error| refuse(error.to_string()))
     }
 
+    /// Reads the bytes of a NanoVDB file, which `span` names.
+    pub(super) fn read_grids(&mut self, path: &Path, span: Span) -> Result<Vec<u8>, Fault> {
+        self.read(path, limits::LARGEST_GRID, Content::Grid, span)
+    }
+
     /// Reads a file of the scene.
     fn read(
         &mut self,

@@ -3,10 +3,10 @@
 use super::super::color::to_rec709;
 use super::super::reader::Reader;
 use super::super::shape::check_point;
-use super::{color, own_coefficients, phase, scale, scaled};
+use super::{color, glow, own_coefficients, phase, scale, scaled};
 use crate::pbrt::parameters::{Parameter, ParameterType, Values};
 use crate::pbrt::transform::Transforms;
-use crate::source::Fault;
+use crate::source::{Fault, Span};
 use bidir::math::Affine3A;
 use bidir::medium::{Grid, Medium};
 use color::Purpose;
@@ -17,35 +17,27 @@ pub(super) fn uniform(
     reader: &mut Reader<'_, '_>,
     transforms: &Transforms,
 ) -> Result<Medium, Fault> {
-    let place = place(reader, transforms)?;
-    let size = size(reader)?;
+    let cells = cells(reader, transforms)?;
     let given = own_coefficients(reader)?.map(|given| given.unwrap_or([1.0; 3]));
     let scale = scale(reader)?;
     let coefficients = scaled(reader, given, scale)?;
-    super::refuse_emission(reader)?;
-    for name in ["temperatureoffset", "temperaturecutoff", "temperaturescale"] {
-        reader.ignore(ParameterType::Float, name);
-    }
-    let cold = "the medium does not glow";
-    reader.unsupported(ParameterType::Float, "temperature", cold)?;
+    let light = glow::of_cells(reader, cells)?;
     let phase = phase(reader)?;
     let Some(density) = reader.find(ParameterType::Float, "density") else {
         return Err(Fault::scene(reader.span(), "the medium has no `density`"));
     };
-    let values = numbers(density, size, 1)?;
+    let values = numbers(density, cells.size, 1)?;
     let values = values.iter().map(|&value| [value]).collect();
-    let grid = build(density, size, values, place)?;
-    Medium::of_density(coefficients, grid, phase).ok_or_else(|| too_dense(density))
+    let grid = build(density.value_span, values, cells)?;
+    let medium = Medium::of_density(coefficients, grid, phase);
+    glow::add(reader, medium.ok_or_else(|| too_dense(density))?, light)
 }
 
 /// Reads a medium with coefficients for each cell.
 pub(super) fn rgb(reader: &mut Reader<'_, '_>, transforms: &Transforms) -> Result<Medium, Fault> {
-    let place = place(reader, transforms)?;
-    let size = size(reader)?;
+    let cells = cells(reader, transforms)?;
     let scale = scale(reader)? * reader.context.layout.space.unit as f32;
-    let glow = "the medium does not glow";
-    reader.unsupported(ParameterType::Rgb, "Le", glow)?;
-    reader.ignore(ParameterType::Float, "Lescale");
+    let light = glow::of_colors(reader, cells)?;
     let phase = phase(reader)?;
     let [absorption, scattering] =
         ["sigma_a", "sigma_s"].map(|name| reader.find(ParameterType::Rgb, name));
@@ -53,13 +45,13 @@ pub(super) fn rgb(reader: &mut Reader<'_, '_>, transforms: &Transforms) -> Resul
         let message = "the medium has neither `sigma_a` nor `sigma_s`";
         return Err(Fault::scene(reader.span(), message));
     };
-    let count = numbers(any, size, 3)?.len() / 3;
+    let count = numbers(any, cells.size, 3)?.len() / 3;
     let read = |parameter: Option<&Parameter>| {
         // Coefficients that the file does not have are 1.
         let Some(parameter) = parameter else {
             return Ok(vec![[scale; 3]; count]);
         };
-        let values = numbers(parameter, size, 3)?;
+        let values = numbers(parameter, cells.size, 3)?;
         let colors = values.as_chunks::<3>().0.iter();
         let convert = |&rgb| to_rec709(parameter.color_space, rgb, Purpose::Unbounded);
         Ok(colors
@@ -69,9 +61,32 @@ pub(super) fn rgb(reader: &mut Reader<'_, '_>, transforms: &Transforms) -> Resul
     let [absorption, scattering] = [read(absorption)?, read(scattering)?];
     let sum = |(a, s): (&[f32; 3], &[f32; 3])| std::array::from_fn(|i| a[i] + s[i]);
     let extinction = absorption.iter().zip(&scattering).map(sum).collect();
-    let extinction = build(any, size, extinction, place)?;
-    let scattering = build(any, size, scattering, place)?;
-    Medium::chromatic(extinction, scattering, phase).ok_or_else(|| too_dense(any))
+    let extinction = build(any.value_span, extinction, cells)?;
+    let scattering = build(any.value_span, scattering, cells)?;
+    let medium = Medium::chromatic(extinction, scattering, phase);
+    glow::add(reader, medium.ok_or_else(|| too_dense(any))?, light)
+}
+
+/// The cells of a box.
+#[derive(Clone, Copy)]
+pub(super) struct Cells {
+    /// Their numbers along each axis.
+    pub(super) size: [usize; 3],
+    /// The place of the box, as a unit cube.
+    pub(super) place: Affine3A,
+}
+
+impl Cells {
+    /// The number of cells, of which a parameter has values.
+    pub(super) fn count(&self) -> usize {
+        self.size.iter().product()
+    }
+}
+
+fn cells(reader: &mut Reader<'_, '_>, transforms: &Transforms) -> Result<Cells, Fault> {
+    let place = place(reader, transforms)?;
+    let size = size(reader)?;
+    Ok(Cells { size, place })
 }
 
 /// Reads the corners of the box, and places the unit cube there.
@@ -79,11 +94,6 @@ pub(super) fn place(
     reader: &mut Reader<'_, '_>,
     transforms: &Transforms,
 ) -> Result<Affine3A, Fault> {
-    if transforms.is_animated() {
-        let (span, what) = (reader.span(), "a medium that moves");
-        let substitute = "it stays where it is at the start";
-        reader.context.unsupported(span, what, substitute)?;
-    }
     let [low, high] = [
         reader.point3("p0", [0.0; 3])?,
         reader.point3("p1", [1.0; 3])?,
@@ -94,6 +104,20 @@ pub(super) fn place(
         return Err(Fault::scene(reader.span(), message));
     }
     let cube = DAffine3::from_translation(low) * DAffine3::from_scale(high - low);
+    placed(reader, transforms, cube)
+}
+
+/// The place of a unit cube that the medium's own space has at `cube`.
+pub(super) fn placed(
+    reader: &mut Reader<'_, '_>,
+    transforms: &Transforms,
+    cube: DAffine3,
+) -> Result<Affine3A, Fault> {
+    if transforms.is_animated() {
+        let (span, what) = (reader.span(), "a medium that moves");
+        let substitute = "it stays where it is at the start";
+        reader.context.unsupported(span, what, substitute)?;
+    }
     let placed = reader.context.place(transforms) * cube;
     let corners =
         (0..8).map(|i| DVec3::new(f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2)));
@@ -113,7 +137,11 @@ fn size(reader: &mut Reader<'_, '_>) -> Result<[usize; 3], Fault> {
 }
 
 /// The values of a parameter that has so many channels for each cell.
-fn numbers(parameter: &Parameter, size: [usize; 3], channels: usize) -> Result<&[f32], Fault> {
+pub(super) fn numbers(
+    parameter: &Parameter,
+    size: [usize; 3],
+    channels: usize,
+) -> Result<&[f32], Fault> {
     let expected = size.iter().try_fold(channels, |n, &k| n.checked_mul(k));
     let fault = |message: String| Fault::scene(parameter.value_span, message);
     let Values::Floats(values) = &parameter.values else {
@@ -144,15 +172,14 @@ fn too_dense(parameter: &Parameter) -> Fault {
     Fault::scene(parameter.value_span, message)
 }
 
-/// The grid of a parameter.
-fn build<const N: usize>(
-    parameter: &Parameter,
-    size: [usize; 3],
+/// The grid of values that stand at `span`.
+pub(super) fn build<const N: usize>(
+    span: Span,
     values: Vec<[f32; N]>,
-    place: Affine3A,
+    cells: Cells,
 ) -> Result<Grid<N>, Fault> {
-    Grid::new(size, values, place).ok_or_else(|| {
+    Grid::new(cells.size, values, cells.place).ok_or_else(|| {
         let message = "the box of the medium has no volume, or its coefficients are too large";
-        Fault::scene(parameter.value_span, message)
+        Fault::scene(span, message)
     })
 }

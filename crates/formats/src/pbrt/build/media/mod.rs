@@ -1,8 +1,10 @@
 //! Participating media, and which of them are on the sides of shapes.
 
 mod cloud;
+mod glow;
 mod grid;
 mod layer;
+mod nanovdb;
 pub(super) mod subsurface;
 
 use super::color::{self, Purpose};
@@ -11,7 +13,6 @@ use super::reader::Reader;
 use crate::error::ErrorKind;
 use crate::limits;
 use crate::pbrt::lexer::shorten;
-use crate::pbrt::parameters::ParameterType;
 use crate::pbrt::scene::{MediumDescription, MediumInterface, MediumReference};
 use crate::source::Fault;
 use bidir::medium::{Coefficients, HenyeyGreenstein, Medium, MediumId, MediumSides};
@@ -69,10 +70,7 @@ impl Media {
             let message = format!("there are more than {} clouds", limits::MOST_CLOUDS);
             return Err(Fault::new(ErrorKind::Limit, *span, message));
         }
-        let built = match read(context, medium)? {
-            Some(recipe) => builder.medium(recipe()?),
-            None => MediumId::VACUUM,
-        };
+        let built = builder.medium(read(context, medium)?()?);
         self.built.insert(Arc::clone(name), built);
         Ok(built)
     }
@@ -88,23 +86,18 @@ impl Media {
     }
 }
 
-/// Reads a medium. None: its kind is not supported.
-fn read(context: &mut Context<'_>, medium: &MediumDescription) -> Result<Option<Recipe>, Fault> {
+/// Reads a medium of a kind that is known to be one.
+fn read(context: &mut Context<'_>, medium: &MediumDescription) -> Result<Recipe, Fault> {
     let mut reader = Reader::new(context, &medium.entity);
     let built = match medium.entity.kind.as_str() {
-        "homogeneous" => ready(homogeneous(&mut reader)?),
         "uniformgrid" => ready(grid::uniform(&mut reader, &medium.transforms)?),
         "rgbgrid" => ready(grid::rgb(&mut reader, &medium.transforms)?),
         "cloud" => cloud::read(&mut reader, &medium.transforms)?,
-        kind => {
-            let what = format!("the medium type `{}`", shorten(kind));
-            let span = reader.span();
-            (reader.context).unsupported(span, &what, "vacuum is used instead")?;
-            return Ok(None);
-        }
+        "nanovdb" => ready(nanovdb::read(&mut reader, &medium.transforms)?),
+        _ => ready(homogeneous(&mut reader)?),
     };
     reader.finish()?;
-    Ok(Some(built))
+    Ok(built)
 }
 
 fn ready(medium: Medium) -> Recipe {
@@ -115,8 +108,9 @@ fn homogeneous(reader: &mut Reader<'_, '_>) -> Result<Medium, Fault> {
     let given = coefficients(reader)?;
     let scale = scale(reader)?;
     let coefficients = scaled(reader, given, scale)?;
-    refuse_emission(reader)?;
-    Ok(Medium::homogeneous(coefficients, phase(reader)?))
+    let light = glow::even(reader)?;
+    let medium = Medium::homogeneous(coefficients, phase(reader)?);
+    glow::add(reader, medium, light)
 }
 
 /// The factor of all coefficients.
@@ -171,18 +165,6 @@ fn preset(reader: &mut Reader<'_, '_>, parameter: &'static str) -> Result<Option
     let substitute = "the other coefficients are used instead";
     reader.context.unsupported(span, &what, substitute)?;
     Ok(None)
-}
-
-/// Refuses a medium that glows.
-fn refuse_emission(reader: &mut Reader<'_, '_>) -> Result<(), Fault> {
-    let emission = color::read(reader, "Le", Purpose::Unbounded)?;
-    reader.ignore(ParameterType::Float, "Lescale");
-    if emission.is_some_and(|emission| emission.iter().any(|&lane| lane > 0.0)) {
-        let span = reader.span();
-        let substitute = "the medium does not glow";
-        return (reader.context).unsupported(span, "light of a medium", substitute);
-    }
-    Ok(())
 }
 
 /// Reduced scattering and absorption of substances, in 1/mm \[Jensen01\].

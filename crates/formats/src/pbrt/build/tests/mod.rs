@@ -62,10 +62,10 @@ fn check_world(text: &str, expected: &str) {
 #[test]
 fn inputs_are_all_named_files_except_the_film() {
     let text = "Film \"rgb\" \"string filename\" \"film.exr\" WorldBegin \
-        Attribute \"medium\" \"string filename\" \"default.nvdb\" \
-        MakeNamedMedium \"m\" \"string type\" \"nanovdb\" \"string filename\" \"smoke.nvdb\"";
+        Attribute \"light\" \"string filename\" \"default.exr\" \
+        LightSource \"goniometric\" \"string filename\" \"lamp.exr\"";
     let loaded = load_text(text, &LENIENT);
-    let inputs = ["default.nvdb", "s.pbrt", "smoke.nvdb"].map(std::path::PathBuf::from);
-    let files = vec![inputs[1].clone()];
+    let inputs = ["default.exr", "lamp.exr", "s.pbrt"].map(std::path::PathBuf::from);
+    let files = vec![inputs[2].clone()];
     assert_eq!((loaded.inputs, loaded.files), (inputs.into(), files));
 }

@@ -1,0 +1,251 @@
+//! Grids of numbers from NanoVDB files \[Museth21\]: trees of boxes of cells, of which few are kept.
+//!
+//! A file has segments: a header, for each grid a description and its name, and then the grids, plain or deflated.
+//! Numbers are little-endian. All bytes are untrusted: each is asked for by its place, and the cells that a file
+//! describes are counted before any memory is taken.
+
+mod tree;
+
+#[cfg(test)]
+pub(crate) mod tests;
+
+use crate::error::{Error, ErrorKind, Result};
+use crate::limits;
+use flate2::read::ZlibDecoder;
+use glam::{DAffine3, DMat3, DVec3};
+use std::borrow::Cow;
+use std::io::Read;
+
+/// The first bytes of a segment, by the age of its writer.
+const MAGIC: [&[u8; 8]; 2] = [b"NanoVDB0", b"NanoVDB2"];
+/// The versions whose layout is read.
+const MAJOR: u32 = 32;
+const HEADER: usize = 16;
+const DESCRIPTION: usize = 176;
+/// The part of a grid before its tree.
+const GRID: usize = 672;
+
+/// A box of cells: those from the first to the last number along each axis, both included.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct CellBox {
+    pub(crate) first: [i32; 3],
+    pub(crate) last: [i32; 3],
+}
+
+/// A grid of a file.
+#[derive(Debug)]
+pub(crate) struct Grid<'f> {
+    bytes: Cow<'f, [u8]>,
+    /// The cells that are active.
+    pub(crate) bounds: CellBox,
+    /// The map from numbers of cells to the file's world.
+    pub(crate) world_from_cells: DAffine3,
+}
+
+/// Bytes at places of a file.
+#[derive(Clone, Copy)]
+struct Bytes<'b>(&'b [u8]);
+
+/// A grid as a segment describes it.
+struct Described<'f> {
+    size: u64,
+    stored: u64,
+    kind: u32,
+    class: u32,
+    codec: u16,
+    name: &'f [u8],
+}
+
+impl CellBox {
+    /// The number of cells along each axis.
+    pub(crate) fn size(&self) -> [u64; 3] {
+        std::array::from_fn(|i| (i64::from(self.last[i]) - i64::from(self.first[i]) + 1) as u64)
+    }
+
+    /// The same with a cell more on each side.
+    pub(crate) fn grown(&self) -> Self {
+        Self {
+            first: self.first.map(|n| n.saturating_sub(1)),
+            last: self.last.map(|n| n.saturating_add(1)),
+        }
+    }
+}
+
+/// Finds the grid of single numbers that has a name. None: the file has none of this name.
+pub(crate) fn find<'f>(file: &'f [u8], name: &str) -> Result<Option<Grid<'f>>> {
+    let bytes = Bytes(file);
+    let mut at = 0;
+    while at < file.len() {
+        let magic = bytes.at::<8>(at)?;
+        if !MAGIC.iter().any(|known| **known == magic) {
+            return Err(broken("the file is not NanoVDB, or has no header"));
+        }
+        let version = bytes.u32(at + 8)?;
+        if version >> 21 != MAJOR {
+            let (major, minor) = (version >> 21, version >> 10 & 0x7ff);
+            let message = format!("NanoVDB {major}.{minor} is not supported; {MAJOR} is");
+            return Err(Error::new(ErrorKind::Unsupported, message));
+        }
+        let (count, mut next) = (bytes.u16(at + 12)?, at + HEADER);
+        let mut all = Vec::new();
+        for _ in 0..count {
+            let described = bytes.described(next)?;
+            next += DESCRIPTION + described.name.len();
+            all.push(described);
+        }
+        for described in all {
+            let stored = usize::try_from(described.stored).ok();
+            let end = stored.and_then(|stored| next.checked_add(stored));
+            let part = end.and_then(|end| file.get(next..end)).ok_or_else(short)?;
+            if text(described.name) == name {
+                return grid(&described, part).map(Some);
+            }
+            next += part.len();
+        }
+        at = next;
+    }
+    Ok(None)
+}
+
+/// A name or a text without what follows its end.
+fn text(bytes: &[u8]) -> Cow<'_, str> {
+    let end = bytes.iter().position(|&byte| byte == 0);
+    String::from_utf8_lossy(&bytes[..end.unwrap_or(bytes.len())])
+}
+
+/// Opens the grid that is stored in `part`.
+fn grid<'f>(described: &Described<'f>, part: &'f [u8]) -> Result<Grid<'f>> {
+    const FLOATS: u32 = 1;
+    const UNKNOWN: u32 = 0;
+    const FOG: u32 = 2;
+    let name = text(described.name);
+    if described.kind != FLOATS {
+        return Err(unsupported(&name, "has other cells than 32-bit numbers"));
+    }
+    if ![UNKNOWN, FOG].contains(&described.class) {
+        return Err(unsupported(
+            &name,
+            "is no fog, but a surface or something else",
+        ));
+    }
+    let bytes = unpack(described, part)?;
+    let view = Bytes(&bytes);
+    let place = |at: usize, i: usize| view.f64(at + 8 * i);
+    // Rows in the file.
+    let mut matrix = [0.0; 9];
+    for (i, number) in matrix.iter_mut().enumerate() {
+        *number = place(384, i)?;
+    }
+    let translation = DVec3::new(place(528, 0)?, place(528, 1)?, place(528, 2)?);
+    let matrix = DMat3::from_cols_array(&matrix).transpose();
+    let bounds = tree::bounds(view)?;
+    Ok(Grid {
+        bounds,
+        world_from_cells: DAffine3::from_mat3_translation(matrix, translation),
+        bytes,
+    })
+}
+
+/// The bytes of a grid, which are stored plainly or deflated.
+fn unpack<'f>(described: &Described<'_>, part: &'f [u8]) -> Result<Cow<'f, [u8]>> {
+    const PLAIN: u16 = 0;
+    const DEFLATED: u16 = 1;
+    match described.codec {
+        PLAIN => Ok(Cow::Borrowed(part)),
+        DEFLATED => {
+            let packed = part.get(8..).ok_or_else(short)?;
+            let limit = limits::UNPACKED.of(part.len() as u64).min(described.size);
+            let mut bytes = Vec::new();
+            let read = ZlibDecoder::new(packed).take(limit).read_to_end(&mut bytes);
+            read.map_err(|error| broken(&format!("a grid cannot be unpacked: {error}")))?;
+            if (bytes.len() as u64) < described.size {
+                let message = format!("a grid unpacks to less, or more than {limit} bytes");
+                return Err(Error::new(ErrorKind::Limit, message));
+            }
+            Ok(Cow::Owned(bytes))
+        }
+        _ => {
+            let error = unsupported(&text(described.name), "is packed by another codec than zip");
+            Err(error.with_hint("write it anew with the codec zip, or with none"))
+        }
+    }
+}
+
+impl Grid<'_> {
+    /// The values of the cells of a box, x fastest; the background where the file has none.
+    pub(crate) fn values(&self, within: CellBox) -> Result<Vec<f32>> {
+        tree::values(Bytes(&self.bytes), within)
+    }
+}
+
+impl<'b> Bytes<'b> {
+    fn slice(self, at: usize, count: usize) -> Result<&'b [u8]> {
+        let end = at.checked_add(count);
+        end.and_then(|end| self.0.get(at..end)).ok_or_else(short)
+    }
+
+    fn at<const N: usize>(self, at: usize) -> Result<[u8; N]> {
+        let bytes = self.slice(at, N)?;
+        bytes.try_into().map_err(|_| short())
+    }
+
+    fn u16(self, at: usize) -> Result<u16> {
+        self.at(at).map(u16::from_le_bytes)
+    }
+
+    fn u32(self, at: usize) -> Result<u32> {
+        self.at(at).map(u32::from_le_bytes)
+    }
+
+    fn u64(self, at: usize) -> Result<u64> {
+        self.at(at).map(u64::from_le_bytes)
+    }
+
+    fn f32(self, at: usize) -> Result<f32> {
+        self.at(at).map(f32::from_le_bytes)
+    }
+
+    fn f64(self, at: usize) -> Result<f64> {
+        self.at(at).map(f64::from_le_bytes)
+    }
+
+    /// Three numbers of a cell.
+    fn cell(self, at: usize) -> Result<[i32; 3]> {
+        let number = |i: usize| self.at(at + 4 * i).map(i32::from_le_bytes);
+        Ok([number(0)?, number(1)?, number(2)?])
+    }
+
+    /// The place that a number at `at` gives relative to `origin`.
+    fn place(self, origin: usize, at: usize) -> Result<usize> {
+        let offset = self.at(at).map(i64::from_le_bytes)?;
+        let offset = usize::try_from(offset).ok();
+        let place = offset.and_then(|offset| origin.checked_add(offset));
+        place
+            .filter(|&place| place < self.0.len())
+            .ok_or_else(short)
+    }
+
+    fn described(self, at: usize) -> Result<Described<'b>> {
+        let length = self.u32(at + 136)? as usize;
+        Ok(Described {
+            size: self.u64(at)?,
+            stored: self.u64(at + 8)?,
+            kind: self.u32(at + 32)?,
+            class: self.u32(at + 36)?,
+            codec: self.u16(at + 168)?,
+            name: self.slice(at + DESCRIPTION, length)?,
+        })
+    }
+}
+
+fn broken(message: &str) -> Error {
+    Error::new(ErrorKind::Data, message)
+}
+
+fn short() -> Error {
+    broken("the file ends within a grid, or a place in it lies outside")
+}
+
+fn unsupported(name: &str, what: &str) -> Error {
+    Error::new(ErrorKind::Unsupported, format!("the grid `{name}` {what}"))
+}
