@@ -31,6 +31,7 @@ _MAIN_NOTES = {
     "fog.pbrt": "A caustic in fog, behind the ball: no camera walk finds it.",
     "cloud.pbrt": "Noise in a grid of cells, bounded by an ellipsoid: light that scatters many times.",
     "liquids.pbrt": "Media within smooth glass: light that is absorbed, and light that scatters many times.",
+    "candles.pbrt": "Flames that glow by their temperature, as light of wax, wall and a caustic.",
 }
 
 _TORTURE = """

@@ -102,6 +102,11 @@ class SceneText:
         self.line()
         self.line("WorldBegin")
 
+    def values(self, parameter, values):
+        """A parameter of many numbers."""
+        text = _wrapped([num(value) for value in values], 18, self.indent + "    ")
+        self.line('  "%s" [%s]' % (parameter, text))
+
     def begin(self):
         self.line("AttributeBegin")
         self.indent += "  "

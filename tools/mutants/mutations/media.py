@@ -1,9 +1,11 @@
 """Faults in participating media."""
 
-from .tests import media, unit
+from .tests import formats, media, unit
 
 PASSAGE = "crates/bidir/src/scene/passage.rs"
+GLOW = "crates/formats/src/pbrt/build/media/glow.rs"
 FURNACE = media("a_furnace_full_of_fog")
+EQUILIBRIUM = media("glow::matter_in_equilibrium")
 
 MEDIA = [
     (
@@ -23,7 +25,7 @@ MEDIA = [
     (
         "walks stopped by the media that they are weighted by",
         "crates/bidir/src/medium/flight.rs",
-        "if !self.scatters {",
+        "if !self.stops_walks() {",
         "if false {",
         media("a_slab"),
     ),
@@ -117,5 +119,75 @@ MEDIA = [
         "color.unbounded(self.at(point).extinction, wavelengths)",
         "color.unbounded(self.at(point).extinction.map(|c| c.max(0.4)), wavelengths)",
         media("smoke_that_absorbs_nothing"),
+    ),
+    (
+        "a fire that walks from the camera do not see",
+        "crates/bidir/src/path/vertex.rs",
+        "light: context.job.scene.glow(locus.media.outside),",
+        "light: None,",
+        media("glow::a_ball"),
+    ),
+    (
+        "fire beyond the boundary of its medium",
+        "crates/bidir/src/scene/glow.rs",
+        "self.medium_at(at.locus.point) == light.medium()",
+        "self.medium_at(at.locus.point) == light.medium() || true",
+        EQUILIBRIUM,
+    ),
+    (
+        "light of all that a medium takes, scattered or absorbed",
+        "crates/bidir/src/medium/glow.rs",
+        "(self.at(point).absorption(), glow.at(point))",
+        "(self.at(point).extinction, glow.at(point))",
+        EQUILIBRIUM,
+    ),
+    (
+        "points of a fire as likely in each of its cells",
+        "crates/bidir/src/light/volume.rs",
+        "self.points.pdf(within) * self.inverse_volume",
+        "self.inverse_volume",
+        unit("light::tests::densities"),
+    ),
+    (
+        "points of a fire drawn by the centres of cells alone",
+        "crates/bidir/src/medium/grid.rs",
+        "*mean = 0.125 * low + 0.75 * before[i] + 0.125 * high;",
+        "*mean = 0.0 * (low + high) + before[i];",
+        unit("light::tests::power"),
+    ),
+    (
+        "temperatures without their offset",
+        GLOW,
+        "(value - offset) * scale",
+        "(value - 0.0 * offset) * scale",
+        formats("hot_cells"),
+    ),
+    (
+        "the light of temperatures brought to luminance 1",
+        "crates/formats/src/spectra/color.rs",
+        "of_one.map(|channel| channel * luminance as f32)",
+        "of_one.map(|channel| channel * luminance.min(1.0) as f32)",
+        formats("hot_cells"),
+    ),
+    (
+        "rows of a NanoVDB map taken for columns",
+        "crates/formats/src/nanovdb/mod.rs",
+        "DMat3::from_cols_array(&matrix).transpose()",
+        "DMat3::from_cols_array(&matrix)",
+        formats("nanovdb::"),
+    ),
+    (
+        "cells of a NanoVDB leaf in the wrong order",
+        "crates/formats/src/nanovdb/tree.rs",
+        "(x << 6 | y << 3 | z) as usize",
+        "(z << 6 | y << 3 | x) as usize",
+        formats("nanovdb::"),
+    ),
+    (
+        "parts of a NanoVDB tree without a child left empty",
+        "crates/formats/src/nanovdb/tree.rs",
+        "self.fill(range, bytes.f32(entry)?);",
+        "self.fill(range, 0.0 * bytes.f32(entry)?);",
+        formats("nanovdb::"),
     ),
 ]
