@@ -150,3 +150,15 @@ pub fn spectrum(bytes: &[u8]) {
         build(&text, &[false]);
     }
 }
+
+/// A file with grids of densities and temperatures, as the smoke of a scene.
+pub fn nanovdb(bytes: &[u8]) {
+    static FILE: LazyLock<PathBuf> = LazyLock::new(|| FOLDER.path().join("smoke.nvdb"));
+    fs::write(&*FILE, bytes).expect("a temporary file can be written");
+    let name = FILE.to_str().expect("temporary files have plain names");
+    let text = format!(
+        "PixelFilter \"box\" WorldBegin MakeNamedMedium \"m\" \"string type\" \"nanovdb\" \"string filename\" \"{name}\" \
+         MediumInterface \"m\" \"\" Material \"interface\" Shape \"sphere\""
+    );
+    build(&text, &[false, true]);
+}

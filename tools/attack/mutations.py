@@ -14,7 +14,8 @@ import part
 import runs
 
 # Parsers and their shares of the cases; those that build scenes are slower and have more code.
-TARGETS = {"pbrt": 2, "gltf": 2, "ply": 3, "image": 2, "film": 3, "spectrum": 1, "experiment": 3}
+TARGETS = {"pbrt": 2, "gltf": 2, "ply": 3, "image": 2, "film": 3, "spectrum": 1, "nanovdb": 1,
+           "experiment": 3}
 # Of processors, for one input; and of all of a process. Unit: seconds, bytes.
 SLOW = 10
 MEMORY = 2 * runs.GIB

@@ -30,6 +30,8 @@ pub enum BlindSpot {
     SeenBySpecular,
     /// L E of a sky that parallel rays see.
     Sky,
+    /// Media without an end that glow.
+    EndlessGlow,
     /// L S+ D of lights that rays hit: by hits alone.
     ChanceCaustics,
     /// L S+ D S+ E of lights that rays hit: by hits alone.
@@ -40,9 +42,11 @@ impl BlindSpot {
     /// True where the light is missing from pictures, and not only noisy.
     pub const fn is_missing(self) -> bool {
         match self {
-            Self::Caustics | Self::CausticsSeenBySpecular | Self::SeenBySpecular | Self::Sky => {
-                true
-            }
+            Self::Caustics
+            | Self::CausticsSeenBySpecular
+            | Self::SeenBySpecular
+            | Self::Sky
+            | Self::EndlessGlow => true,
             Self::ChanceCaustics | Self::ChanceCausticsSeenBySpecular => false,
         }
     }
@@ -53,6 +57,7 @@ impl BlindSpot {
             Self::Caustics | Self::CausticsSeenBySpecular => light.is_delta(),
             Self::ChanceCaustics | Self::ChanceCausticsSeenBySpecular => !light.is_delta(),
             Self::Sky => matches!(light, Light::Infinite(_)),
+            Self::EndlessGlow => light.is_endless(),
             Self::SeenBySpecular => true,
         }
     }
@@ -60,7 +65,7 @@ impl BlindSpot {
     /// The fewest vertices of these paths.
     const fn shortest(self) -> usize {
         match self {
-            Self::Sky => 2,
+            Self::Sky | Self::EndlessGlow => 2,
             Self::CausticsSeenBySpecular | Self::SeenBySpecular => 3,
             Self::Caustics | Self::ChanceCaustics => 4,
             Self::ChanceCausticsSeenBySpecular => 5,
@@ -79,7 +84,10 @@ impl BlindSpot {
             Self::SeenBySpecular => {
                 "strategies s0 and s1 make these paths, which `path`, `bdpt`, `lvc` and `auto` have"
             }
-            Self::Sky | Self::ChanceCaustics | Self::ChanceCausticsSeenBySpecular => {
+            Self::Sky
+            | Self::EndlessGlow
+            | Self::ChanceCaustics
+            | Self::ChanceCausticsSeenBySpecular => {
                 "strategy s0 makes these paths, which `path`, `bdpt`, `lvc` and `auto` have"
             }
         }
@@ -96,6 +104,7 @@ impl BlindSpot {
             }
             Self::SeenBySpecular => "everything seen in mirrors or through clear glass (S E)",
             Self::Sky => "the sky in view of a camera with parallel rays (L E)",
+            Self::EndlessGlow => "the light of media that glow and have no end",
             Self::ChanceCaustics => {
                 "caustics (L S+ D): only camera paths that hit the light find them"
             }
@@ -119,16 +128,20 @@ pub fn blind_spots(scene: &Scene, view: &View, integrator: IntegratorKind) -> Ve
             BlindSpot::CausticsSeenBySpecular,
             BlindSpot::ChanceCausticsSeenBySpecular,
         ],
-        IntegratorKind::Light => &[BlindSpot::SeenBySpecular, BlindSpot::Sky],
+        IntegratorKind::Light => &[
+            BlindSpot::SeenBySpecular,
+            BlindSpot::Sky,
+            BlindSpot::EndlessGlow,
+        ],
     };
     let is_parallel = view.camera().is_parallel();
     let is_there = |spot: &BlindSpot| {
-        let has_surface = if *spot == BlindSpot::Sky {
-            is_parallel
-        } else {
-            has_specular
+        let is_possible = match spot {
+            BlindSpot::Sky => is_parallel,
+            BlindSpot::EndlessGlow => true,
+            _ => has_specular,
         };
-        has_surface && lights.iter().any(|light| spot.concerns(light))
+        is_possible && lights.iter().any(|light| spot.concerns(light))
     };
     spots.iter().copied().filter(is_there).collect()
 }

@@ -10,7 +10,7 @@ pub enum LocusKind {
     Surface,
     /// A point in space.
     Space,
-    /// A point in space where a medium scatters.
+    /// A point in space where a medium scatters or glows.
     Medium,
     /// A place at infinity.
     Infinity,
@@ -56,7 +56,7 @@ impl Locus {
         }
     }
 
-    /// A point where `medium` scatters.
+    /// A point where `medium` scatters or glows.
     #[inline]
     pub fn in_medium(point: Vec3, medium: MediumId) -> Self {
         Self {

@@ -52,6 +52,11 @@ fn spectra() {
 }
 
 #[test]
+fn grids() {
+    check("nanovdb", 150, inputs::nanovdb);
+}
+
+#[test]
 #[should_panic(expected = "panics: mutation")]
 fn a_panic_fails_the_test() {
     check("spectrum", 50, |bytes| assert!(!bytes.contains(&0xff)));

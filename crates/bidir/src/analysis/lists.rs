@@ -137,6 +137,8 @@ enum LightKind {
     Sky {
         is_parallel: bool,
     },
+    /// A medium without an end, whose points are found by hits alone.
+    Endless,
 }
 
 impl LightKind {
@@ -147,6 +149,7 @@ impl LightKind {
         match (self, s) {
             (Self::Delta, 0) => false,
             (_, 0) => true,
+            (Self::Endless, _) => false,
             // Strategy (1, 1): the image of the light itself.
             (Self::Delta | Self::Sky { is_parallel: true }, 1) if n == 2 => false,
             _ => is_diffuse[s - 1] && is_diffuse[s],
@@ -168,6 +171,7 @@ fn kinds(scene: &Scene, view: &View) -> Vec<LightKind> {
         let kind = match light {
             light if light.is_delta() => LightKind::Delta,
             Light::Infinite(_) => LightKind::Sky { is_parallel },
+            light if light.is_endless() => LightKind::Endless,
             _ => LightKind::Area,
         };
         if !kinds.contains(&kind) {

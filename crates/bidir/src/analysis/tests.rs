@@ -5,6 +5,7 @@ use crate::film::{FilmSettings, Filter};
 use crate::light::{InfiniteLight, PointLight};
 use crate::material::{ConductorIndex, Mixture, PrincipledMaterial, Roughness, ScaledFloat};
 use crate::math::{Affine3A, Vec3};
+use crate::medium::{Coefficients, Glow, HenyeyGreenstein, Medium, MediumId, MediumSides};
 use crate::scene::SceneBuilder;
 use crate::shape::{Orientation, Shape, Sphere};
 use crate::texture::{ColorTexture, FloatTexture};
@@ -92,6 +93,36 @@ fn thinly_coated() -> Material {
         coat: ScaledFloat::constant(0.1),
         ..PrincipledMaterial::default()
     }))
+}
+
+/// A medium without a boundary around everything, which glows.
+fn endless_glow() -> Scene {
+    let mut builder = SceneBuilder::new();
+    let coefficients = Coefficients::new([0.1; 3], [0.1; 3]).unwrap();
+    let gas = Medium::homogeneous(coefficients, HenyeyGreenstein::new(0.0).unwrap());
+    let gas = builder.medium(gas.glowing(Glow::Even([1.0; 3])).unwrap());
+    builder.medium_at(Vec3::ZERO, gas);
+    let ball = Sphere::new(Affine3A::IDENTITY, 0.2, Orientation::Natural);
+    let media = MediumSides {
+        outside: gas,
+        inside: MediumId::VACUUM,
+    };
+    builder.boundary(Shape::Sphere(ball), media);
+    builder.build().unwrap()
+}
+
+#[test]
+fn light_without_an_end_is_found_by_camera_walks_alone() {
+    let scene = endless_glow();
+    let spots = |integrator| blind_spots(&scene, &view(), integrator);
+    assert_eq!(spots(IntegratorKind::Light), [BlindSpot::EndlessGlow]);
+    assert_eq!(spots(IntegratorKind::Bdpt), []);
+    let settings = PathSettings {
+        strategies: "all,-s0".parse().unwrap(),
+        ..PathSettings::default()
+    };
+    let lost = lost_light(&scene, &view(), IntegratorKind::Bdpt, &settings);
+    assert!(matches!(lost, Some(LostLight::Lengths(_))), "{lost:?}");
 }
 
 #[test]

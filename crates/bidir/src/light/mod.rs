@@ -186,6 +186,11 @@ impl Light {
         }
     }
 
+    /// True for a medium without an end: nothing but walks from the camera finds all of its points.
+    pub fn is_endless(&self) -> bool {
+        matches!(self, Self::Volume(light) if light.is_endless())
+    }
+
     /// True for lights outside the scene.
     #[inline]
     pub fn is_infinite(&self) -> bool {

@@ -92,7 +92,7 @@ fn ember(i: usize) -> f32 {
 fn fire(glow: Glow) -> Medium {
     let density = (0..60).map(|i| [ember(i)]).collect();
     let density = Grid::new(FIRE, density, fireplace()).unwrap();
-    let coefficients = Coefficients::new([0.5, 1.0, 2.0], [0.1; 3]).unwrap();
+    let coefficients = Coefficients::new([0.1, 0.2, 0.4], [0.1; 3]).unwrap();
     let phase = HenyeyGreenstein::new(0.0).unwrap();
     let smoke = Medium::of_density(coefficients, density, phase).unwrap();
     smoke.glowing(glow).unwrap()

@@ -1,4 +1,5 @@
-//! Media that glow: σ_a L_e (W/(m³ sr)) in all directions from each point; power 4π ∫ σ_a L_e dV.
+//! Media that glow: σ_a L_e (W/(m³ sr)) in all directions from each point; power 4π ∫ σ_a L_e dV, and at most
+//! π times the area and the largest L_e, of which more does not leave a thick medium.
 //!
 //! A point is drawn by cells of the medium's box, in proportion to the light of each (1/m³); a direction evenly,
 //! 1/(4π) (1/sr). A walk from the camera comes upon the light where it stops in the medium.
@@ -17,6 +18,8 @@ pub struct VolumeLight {
     medium: MediumId,
     /// None: nothing but walks from the camera finds points of it.
     cells: Option<Cells>,
+    /// True where the medium reaches beyond the cells, if it has any.
+    is_endless: bool,
 }
 
 /// The choice of a point.
@@ -28,7 +31,7 @@ struct Cells {
     /// Unit: 1/m³.
     inverse_volume: f32,
     bounds: Aabb,
-    /// ∫ σ_a L_e dV. Unit: W/sr, luminance.
+    /// ∫ σ_a L_e dV, or less where the medium takes much of it. Unit: W/sr, luminance.
     intensity: f32,
 }
 
@@ -38,16 +41,31 @@ impl VolumeLight {
         Self {
             medium,
             cells: None,
+            is_endless: true,
         }
     }
 
     /// The light of medium number `id`, which is within `bounds` if it has no box of its own.
     pub(crate) fn new(id: MediumId, medium: &Medium, bounds: Option<Aabb>) -> Self {
         let cells = medium.glow_cells(bounds);
+        let cells = cells.and_then(|cells| {
+            let bounds = medium.bounds().or(bounds)?;
+            Cells::new(&cells, bounds, medium.brightest())
+        });
         Self {
             medium: id,
-            cells: cells.and_then(|cells| Cells::new(&cells, medium.bounds().or(bounds)?)),
+            is_endless: cells.is_none(),
+            cells,
         }
+    }
+
+    /// Notes that the medium has no end, unless it has a box of its own.
+    pub(crate) fn set_around(&mut self, medium: &Medium) {
+        self.is_endless |= medium.bounds().is_none();
+    }
+
+    pub(super) fn is_endless(&self) -> bool {
+        self.is_endless
     }
 
     /// The medium.
@@ -113,12 +131,16 @@ impl VolumeLight {
 
 impl Cells {
     /// None: nothing is within.
-    fn new(cells: &GlowCells, bounds: Aabb) -> Option<Self> {
+    fn new(cells: &GlowCells, bounds: Aabb, brightest: f32) -> Option<Self> {
+        /// The sum over all lights stays finite.
+        const MOST: f32 = 1e30;
         let volume = cells.world_from_cube.matrix3.determinant().abs();
         let sum: f64 = cells.emission.iter().copied().map(f64::from).sum();
-        let intensity = (sum / cells.emission.len() as f64) as f32 * volume;
+        let emitted = (sum / cells.emission.len() as f64) as f32 * volume;
+        // A convex surface of area A and radiance L sends out π A L, and no medium within it more.
+        let intensity = emitted.min(0.5 * bounds.half_area() * brightest);
         let [nx, ny, _] = cells.size;
-        let fits = intensity > 0.0 && intensity < f32::INFINITY && (1.0 / volume).is_finite();
+        let fits = intensity > 0.0 && intensity < MOST && (1.0 / volume).is_finite();
         fits.then(|| Self {
             world_from_cube: cells.world_from_cube,
             cube_from_world: cells.world_from_cube.inverse(),

@@ -94,6 +94,18 @@ impl Medium {
         })
     }
 
+    /// The largest L_e. Unit: luminance.
+    pub(crate) fn brightest(&self) -> f32 {
+        match &self.glow {
+            None => 0.0,
+            Some(Glow::Even(radiance)) => luminance(*radiance),
+            Some(Glow::Grid(grid)) => {
+                let cells = grid.values().iter();
+                cells.map(|&rgb| luminance(rgb)).fold(0.0, f32::max)
+            }
+        }
+    }
+
     /// True where light begins.
     #[inline]
     pub const fn glows(&self) -> bool {

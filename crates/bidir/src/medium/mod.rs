@@ -11,7 +11,7 @@
 //!
 //! p_ω |cosθ_b| / d² · mean(T) on a surface, p_ω / d² · mean(σ_t T) in a medium,
 //!
-//! with T of the media that scatter alone, and means over lanes: it draws its distance by one lane, each as likely as
+//! with T of the media that scatter or glow alone, and means over lanes: it draws its distance by one lane, each as likely as
 //! others, so that the density is one function of the path, from whichever end it is walked
 //! (docs/derivations/media.md).
 //!

@@ -17,8 +17,8 @@ pub struct Arrival {
     pub wo: Vec3,
     /// Throughput up to the light.
     pub beta: Spectrum,
-    /// The density of the point as the walk drew it, without roulette. Measure: area, 1/m²; at infinity
-    /// solid angle, 1/sr.
+    /// The density of the point as the walk drew it, without roulette. Measure: area, 1/m²; in a medium volume, 1/m³;
+    /// at infinity solid angle, 1/sr.
     pub pdf: f32,
     /// The factor that turns a density of the direction `wo` into one of the vertex before.
     pub to_previous: f32,

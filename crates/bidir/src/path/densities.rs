@@ -22,7 +22,7 @@ pub struct VertexDensities {
 pub struct PathDensities {
     /// One entry per vertex, from the light.
     pub vertices: Vec<VertexDensities>,
-    /// The density e of x_0 when strategy s = 1 draws it, by area, or by solid angle at infinity.
+    /// The density e of x_0 when strategy s = 1 draws it, by area, by volume in a medium, or by solid angle at infinity.
     pub next_event: f32,
     /// True where no ray can hit the light by chance.
     pub light_is_delta: bool,

@@ -100,7 +100,7 @@ pub fn light_subpath(
 }
 
 /// Draws the start of a light subpath and the ray that leaves it. None: the draw has no density, the light is cut
-/// out there, or a medium without end swallows it.
+/// out or its medium ended before, or a medium without end swallows it.
 fn draw_emission(
     context: &PathContext<'_>,
     stream: &SampleStream,

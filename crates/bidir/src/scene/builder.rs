@@ -176,7 +176,7 @@ impl SceneBuilder {
         self.shapes.push(shape);
     }
 
-    /// Adds a medium, and a light if it glows; equal media share a number. It is where the [sides](Self::sides) of shapes say, or
+    /// Adds a medium, and a light of the [`DEFAULT_GROUP`] if it glows; equal media share a number. It is where the [sides](Self::sides) of shapes say, or
     /// [around a point](Self::medium_at).
     pub fn medium(&mut self, medium: Medium) -> MediumId {
         let known = self.media.iter().position(|known| *known == medium);
@@ -188,7 +188,10 @@ impl SceneBuilder {
         });
         let id = MediumId::new(index).unwrap_or_default();
         if known.is_none() && self.media[index].glows() {
+            // Media are shared by shapes of any group.
+            let group = self.group.take();
             self.light(Light::Volume(VolumeLight::of(id)));
+            self.group = group;
         }
         id
     }
@@ -374,6 +377,7 @@ impl SceneBuilder {
         if scene.has_media() {
             if let Some((point, medium)) = self.around {
                 scene.around = scene.medium_beyond(point, medium);
+                scene.note_endless_glow();
             }
             let lights = scene.lights.iter();
             scene.light_media = lights.map(|light| media_of(&scene, light)).collect();

@@ -62,6 +62,17 @@ pub(super) fn lights_of(media: &[Medium], lights: &[Light]) -> Vec<Option<u32>> 
 }
 
 impl Scene {
+    /// Tells the light of the medium around everything that it has no end.
+    pub(super) fn note_endless_glow(&mut self) {
+        let around = self.around;
+        let (Some(light), Some(index)) = (self.glow(around), around.index()) else {
+            return;
+        };
+        if let Light::Volume(volume) = &mut self.lights[light as usize] {
+            volume.set_around(&self.media[index]);
+        }
+    }
+
     /// The light that a medium is, by index, if it glows.
     #[inline]
     pub(crate) fn glow(&self, id: MediumId) -> Option<u32> {

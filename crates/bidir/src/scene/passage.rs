@@ -19,7 +19,7 @@ use std::ops::ControlFlow;
 pub enum Interaction {
     /// A point of a surface, and the media on its sides.
     Surface(SurfaceHit, MediumSides),
-    /// A point where a medium scatters.
+    /// A point where a medium scatters or glows.
     Medium(Locus, MediumScattering),
     /// Infinity.
     Escape,
@@ -296,7 +296,7 @@ impl Scene {
         }
     }
 
-    /// The depth where a walk scatters.
+    /// The depth where a walk stops.
     fn draw(&self, chances: Chances<'_>) -> Drawn {
         let [u_lane, u_depth] = chances.flight();
         Drawn {
@@ -466,6 +466,6 @@ fn by_most(answer: impl Fn(Vec3) -> MediumId) -> MediumId {
         Vec3::new(-0.6, 0.64, -0.48),
         Vec3::new(0.28, -0.96, 0.0),
     ];
-    let [a, b, c] = RAYS.map(answer);
-    if a == c { a } else { b }
+    let [a, b] = [RAYS[0], RAYS[1]].map(&answer);
+    if a == b || answer(RAYS[2]) == a { a } else { b }
 }

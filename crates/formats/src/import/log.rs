@@ -123,6 +123,11 @@ impl<P> Log<P> {
         self.reading.image(image)
     }
 
+    /// Counts the cells of a grid, before they are read. Errors: all grids are too large for their files.
+    pub(crate) fn cells(&mut self, count: u64) -> Result<()> {
+        self.reading.cells(count)
+    }
+
     /// Adds bytes of the scene, and the names of the file that they are of.
     pub(crate) fn add(
         &mut self,

@@ -17,6 +17,8 @@ pub(crate) struct Reading {
     again: u64,
     /// The numbers in all images.
     numbers: u64,
+    /// The cells of all grids of NanoVDB files.
+    cells: u64,
 }
 
 impl Reading {
@@ -27,6 +29,7 @@ impl Reading {
             files: BTreeSet::new(),
             again: 0,
             numbers: 0,
+            cells: 0,
         }
     }
 
@@ -58,6 +61,12 @@ impl Reading {
         Ok(image)
     }
 
+    /// Counts the cells of a grid, before they are read. Errors: all grids are too large for their files.
+    pub(crate) fn cells(&mut self, count: u64) -> Result<()> {
+        self.cells = self.cells.saturating_add(count);
+        self.check((self.cells, "cells of grids"), limits::VOXELS)
+    }
+
     fn check(&self, (count, what): (u64, &str), allowance: Allowance) -> Result<()> {
         let stored = self.stored;
         let most = allowance.of(stored);
@@ -85,6 +94,14 @@ mod tests {
         let error = read(1).expect_err("but not for ever");
         assert_eq!(error.kind(), ErrorKind::Limit);
         assert_eq!(reading.stored(), 1050);
+    }
+
+    #[test]
+    fn all_grids_of_a_scene_share_a_limit() {
+        let mut reading = Reading::new(10);
+        reading.cells(limits::VOXELS.of(10)).expect("as many");
+        let error = reading.cells(1).expect_err("one too many");
+        assert!(error.to_string().contains("cells of grids"), "{error}");
     }
 
     #[test]

@@ -34,12 +34,23 @@ pub(crate) struct CellBox {
 
 /// A grid of a file.
 #[derive(Debug)]
-pub(crate) struct Grid<'f> {
-    bytes: Cow<'f, [u8]>,
+pub(crate) struct Grid {
+    bytes: Vec<u8>,
     /// The cells that are active.
     pub(crate) bounds: CellBox,
     /// The map from numbers of cells to the file's world.
     pub(crate) world_from_cells: DAffine3,
+}
+
+/// The outcome of a search for a grid.
+#[derive(Debug)]
+pub(crate) enum Found {
+    /// It is there.
+    Grid(Grid),
+    /// The file has none of this name.
+    Nothing,
+    /// It is there, but of a kind that is not read: a phrase that says which.
+    Unsupported(String),
 }
 
 /// Bytes at places of a file.
@@ -62,6 +73,12 @@ impl CellBox {
         std::array::from_fn(|i| (i64::from(self.last[i]) - i64::from(self.first[i]) + 1) as u64)
     }
 
+    /// The number of all cells.
+    pub(crate) fn count(&self) -> u64 {
+        let size = self.size().into_iter();
+        size.fold(1, u64::saturating_mul)
+    }
+
     /// The same with a cell more on each side.
     pub(crate) fn grown(&self) -> Self {
         Self {
@@ -71,8 +88,8 @@ impl CellBox {
     }
 }
 
-/// Finds the grid of single numbers that has a name. None: the file has none of this name.
-pub(crate) fn find<'f>(file: &'f [u8], name: &str) -> Result<Option<Grid<'f>>> {
+/// Finds the grid of single numbers that has a name.
+pub(crate) fn find(file: &[u8], name: &str) -> Result<Found> {
     let bytes = Bytes(file);
     let mut at = 0;
     while at < file.len() {
@@ -83,8 +100,7 @@ pub(crate) fn find<'f>(file: &'f [u8], name: &str) -> Result<Option<Grid<'f>>> {
         let version = bytes.u32(at + 8)?;
         if version >> 21 != MAJOR {
             let (major, minor) = (version >> 21, version >> 10 & 0x7ff);
-            let message = format!("NanoVDB {major}.{minor} is not supported; {MAJOR} is");
-            return Err(Error::new(ErrorKind::Unsupported, message));
+            return Ok(Found::Unsupported(format!("NanoVDB {major}.{minor}")));
         }
         let (count, mut next) = (bytes.u16(at + 12)?, at + HEADER);
         let mut all = Vec::new();
@@ -98,13 +114,13 @@ pub(crate) fn find<'f>(file: &'f [u8], name: &str) -> Result<Option<Grid<'f>>> {
             let end = stored.and_then(|stored| next.checked_add(stored));
             let part = end.and_then(|end| file.get(next..end)).ok_or_else(short)?;
             if text(described.name) == name {
-                return grid(&described, part).map(Some);
+                return grid(&described, part);
             }
             next += part.len();
         }
         at = next;
     }
-    Ok(None)
+    Ok(Found::Nothing)
 }
 
 /// A name or a text without what follows its end.
@@ -114,21 +130,23 @@ fn text(bytes: &[u8]) -> Cow<'_, str> {
 }
 
 /// Opens the grid that is stored in `part`.
-fn grid<'f>(described: &Described<'f>, part: &'f [u8]) -> Result<Grid<'f>> {
+fn grid(described: &Described<'_>, part: &[u8]) -> Result<Found> {
     const FLOATS: u32 = 1;
     const UNKNOWN: u32 = 0;
     const FOG: u32 = 2;
-    let name = text(described.name);
+    let unsupported = |what: &str| {
+        let name = text(described.name);
+        Ok(Found::Unsupported(format!("the grid `{name}` of {what}")))
+    };
     if described.kind != FLOATS {
-        return Err(unsupported(&name, "has other cells than 32-bit numbers"));
+        return unsupported("other cells than 32-bit numbers");
     }
     if ![UNKNOWN, FOG].contains(&described.class) {
-        return Err(unsupported(
-            &name,
-            "is no fog, but a surface or something else",
-        ));
+        return unsupported("a surface, or of anything else but fog");
     }
-    let bytes = unpack(described, part)?;
+    let Some(bytes) = unpack(described, part)? else {
+        return unsupported("another codec than zip");
+    };
     let view = Bytes(&bytes);
     let place = |at: usize, i: usize| view.f64(at + 8 * i);
     // Rows in the file.
@@ -139,19 +157,19 @@ fn grid<'f>(described: &Described<'f>, part: &'f [u8]) -> Result<Grid<'f>> {
     let translation = DVec3::new(place(528, 0)?, place(528, 1)?, place(528, 2)?);
     let matrix = DMat3::from_cols_array(&matrix).transpose();
     let bounds = tree::bounds(view)?;
-    Ok(Grid {
+    Ok(Found::Grid(Grid {
         bounds,
         world_from_cells: DAffine3::from_mat3_translation(matrix, translation),
         bytes,
-    })
+    }))
 }
 
-/// The bytes of a grid, which are stored plainly or deflated.
-fn unpack<'f>(described: &Described<'_>, part: &'f [u8]) -> Result<Cow<'f, [u8]>> {
+/// The bytes of a grid, which are stored plainly or deflated. None: another codec packed them.
+fn unpack(described: &Described<'_>, part: &[u8]) -> Result<Option<Vec<u8>>> {
     const PLAIN: u16 = 0;
     const DEFLATED: u16 = 1;
     match described.codec {
-        PLAIN => Ok(Cow::Borrowed(part)),
+        PLAIN => Ok(Some(part.to_vec())),
         DEFLATED => {
             let packed = part.get(8..).ok_or_else(short)?;
             let limit = limits::UNPACKED.of(part.len() as u64).min(described.size);
@@ -162,17 +180,15 @@ fn unpack<'f>(described: &Described<'_>, part: &'f [u8]) -> Result<Cow<'f, [u8]>
                 let message = format!("a grid unpacks to less, or more than {limit} bytes");
                 return Err(Error::new(ErrorKind::Limit, message));
             }
-            Ok(Cow::Owned(bytes))
+            Ok(Some(bytes))
         }
-        _ => {
-            let error = unsupported(&text(described.name), "is packed by another codec than zip");
-            Err(error.with_hint("write it anew with the codec zip, or with none"))
-        }
+        _ => Ok(None),
     }
 }
 
-impl Grid<'_> {
-    /// The values of the cells of a box, x fastest; the background where the file has none.
+impl Grid {
+    /// The values of the cells of a box, x fastest; the background where the file has none. The caller has counted
+    /// them.
     pub(crate) fn values(&self, within: CellBox) -> Result<Vec<f32>> {
         tree::values(Bytes(&self.bytes), within)
     }
@@ -244,8 +260,4 @@ fn broken(message: &str) -> Error {
 
 fn short() -> Error {
     broken("the file ends within a grid, or a place in it lies outside")
-}
-
-fn unsupported(name: &str, what: &str) -> Error {
-    Error::new(ErrorKind::Unsupported, format!("the grid `{name}` {what}"))
 }

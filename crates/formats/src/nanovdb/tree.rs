@@ -4,8 +4,7 @@
 //! its cells have one value.
 
 use super::{Bytes, CellBox, GRID, broken};
-use crate::error::{Error, ErrorKind, Result};
-use crate::limits;
+use crate::error::{Error, Result};
 use std::collections::BTreeSet;
 
 /// The part of a root before its tiles, and the size of each.
@@ -56,20 +55,20 @@ pub(super) fn bounds(bytes: Bytes<'_>) -> Result<CellBox> {
     Ok(CellBox { first, last })
 }
 
-/// The values of a box, x fastest.
+/// The values of a box, x fastest, whose cells the caller has counted.
 pub(super) fn values(bytes: Bytes<'_>, within: CellBox) -> Result<Vec<f32>> {
     let root = root(bytes)?;
     let tiles = bytes.u32(root + 24)? as usize;
     let background = bytes.f32(root + 28)?;
-    let mut dense = Dense::new(within, background, bytes.0.len())?;
+    let mut dense = Dense::new(within, background)?;
     let mut seen = BTreeSet::new();
     for tile in (0..tiles).map(|i| root + ROOT + TILE * i) {
         let key = bytes.u64(tile)?;
-        if !seen.insert(key) {
-            return Err(broken("a part of the tree occurs twice"));
-        }
         let part = |shift: u32| ((key >> shift) as i32) << ROOT_BITS;
         let first = [part(42), part(21), part(0)].map(i64::from);
+        if !seen.insert(first) {
+            return Err(broken("a part of the tree occurs twice"));
+        }
         let Some(range) = dense.range(first, ROOT_BITS) else {
             continue;
         };
@@ -92,18 +91,11 @@ struct Dense {
 }
 
 impl Dense {
-    fn new(within: CellBox, value: f32, stored: usize) -> Result<Self> {
-        let size = within.size();
-        let count = size.iter().try_fold(1_u64, |n, &k| n.checked_mul(k));
-        let most = limits::VOXELS.of(stored as u64);
-        let count = count.filter(|&count| count <= most).ok_or_else(|| {
-            let [x, y, z] = size;
-            let message = format!("the grid spans {x} · {y} · {z} cells, more than {most}");
-            Error::new(ErrorKind::Limit, message)
-        })?;
+    fn new(within: CellBox, value: f32) -> Result<Self> {
+        let (size, count) = (within.size(), within.count());
         let mut values = Vec::new();
-        let reserved = values.try_reserve_exact(count as usize);
-        reserved.map_err(|_| Error::memory("a grid", 4 * count))?;
+        let reserved = values.try_reserve_exact(usize::try_from(count).unwrap_or(usize::MAX));
+        reserved.map_err(|_| Error::memory("a grid", count.saturating_mul(4)))?;
         values.resize(count as usize, value);
         Ok(Self {
             first: within.first.map(i64::from),

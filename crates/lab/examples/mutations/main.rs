@@ -49,6 +49,7 @@ impl Target {
             "image" => inputs::image,
             "film" => inputs::film,
             "spectrum" => inputs::spectrum,
+            "nanovdb" => inputs::nanovdb,
             "experiment" => experiments::experiment,
             _ => return Err(format!("there is no target {name}")),
         };

@@ -2,12 +2,13 @@
 
 use super::super::color::{self, Purpose, check_emission, to_rec709};
 use super::super::reader::Reader;
-use super::grid::{Cells, build, numbers};
+use super::grid::{Cells, build, numbers, signed_numbers};
 use crate::pbrt::parameters::ParameterType;
 use crate::source::{Fault, Span};
 use crate::spectra;
 use bidir::medium::{Glow, Medium};
 use bidir::spectrum::Rgb;
+use std::sync::LazyLock;
 
 /// The temperature up to which nothing glows. Unit: K.
 const COLD: f32 = 100.0;
@@ -15,15 +16,11 @@ const COLD: f32 = 100.0;
 const HOTTEST: f32 = 1e8;
 
 /// Gives a medium its light, if it has any.
-pub(super) fn add(
-    reader: &Reader<'_, '_>,
-    medium: Medium,
-    glow: Option<Glow>,
-) -> Result<Medium, Fault> {
+pub(super) fn add(span: Span, medium: Medium, glow: Option<Glow>) -> Result<Medium, Fault> {
     let Some(glow) = glow else { return Ok(medium) };
     medium
         .glowing(glow)
-        .ok_or_else(|| Fault::scene(reader.span(), "the medium emits too much light"))
+        .ok_or_else(|| Fault::scene(span, "the medium emits too much light"))
 }
 
 /// Reads L_e of a medium that is the same everywhere.
@@ -78,67 +75,82 @@ pub(super) fn of_colors(reader: &mut Reader<'_, '_>, cells: Cells) -> Result<Opt
 
 /// Reads L_e of black bodies of the temperatures of cells.
 fn temperatures(reader: &mut Reader<'_, '_>, cells: Cells) -> Result<Option<Vec<Rgb>>, Fault> {
-    let to_kelvin = kelvins(reader)?;
+    let [offset, scale] = kelvins(reader)?;
     let Some(parameter) = reader.find(ParameterType::Float, "temperature") else {
         return Ok(None);
     };
-    let values = numbers(parameter, cells.size, 1)?;
+    let values = signed_numbers(parameter, cells.size, 1)?;
+    let to_kelvin = |value| (value - offset) * scale;
     black_bodies(parameter.value_span, values, to_kelvin).map(Some)
 }
 
-/// Reads L_e of the temperatures of a file's cells, which stand at `span`, if it has any.
-pub(super) fn of_temperatures(
-    reader: &mut Reader<'_, '_>,
-    span: Span,
-    temperatures: Option<&[f32]>,
-    cells: Cells,
-) -> Result<Option<Glow>, Fault> {
-    let to_kelvin = kelvins(reader)?;
-    let scale = reader.float_within("Lescale", 1.0, [0.0, f32::MAX])?;
-    let Some(temperatures) = temperatures else {
-        return Ok(None);
-    };
-    let values = black_bodies(span, temperatures, to_kelvin)?.into_iter();
-    let values = values.map(|radiance| bright(reader, scaled(radiance, scale)));
-    grid(reader, values.collect::<Result<_, _>>()?, cells)
+/// The light of the temperatures of a file's cells.
+pub(super) struct Heat {
+    offset: f32,
+    scale: f32,
+    factor: f32,
 }
 
-/// Reads the map from the numbers of a file to K.
-fn kelvins(reader: &mut Reader<'_, '_>) -> Result<impl Fn(f32) -> f32 + use<>, Fault> {
+impl Heat {
+    /// Reads the map from the numbers of a file to L_e.
+    pub(super) fn read(reader: &mut Reader<'_, '_>) -> Result<Self, Fault> {
+        let [offset, scale] = kelvins(reader)?;
+        let factor = reader.float_within("Lescale", 1.0, [0.0, f32::MAX])?;
+        Ok(Self {
+            offset,
+            scale,
+            factor,
+        })
+    }
+
+    /// L_e of cells whose temperatures stand at `span`.
+    pub(super) fn glow(&self, span: Span, values: &[f32], cells: Cells) -> Result<Glow, Fault> {
+        let to_kelvin = |value| (value - self.offset) * self.scale;
+        let values = black_bodies(span, values, to_kelvin)?.into_iter();
+        let values = values.map(|radiance| check_emission(span, scaled(radiance, self.factor)));
+        build(span, values.collect::<Result<_, _>>()?, cells).map(Glow::Grid)
+    }
+}
+
+/// Reads the offset of a file's numbers, and the scale that leads to K.
+fn kelvins(reader: &mut Reader<'_, '_>) -> Result<[f32; 2], Fault> {
     let old = reader.float("temperaturecutoff", 0.0)?;
     let offset = reader.float("temperatureoffset", old)?;
-    let scale = reader.float("temperaturescale", 1.0)?;
-    Ok(move |value| (value - offset) * scale)
+    Ok([offset, reader.float("temperaturescale", 1.0)?])
 }
 
-/// L_e of black bodies, by Planck's law relative to its peak, as the format has it; from a table, between whose
-/// entries it is linear. The values stand at `span`.
+/// L_e of black bodies, by Planck's law relative to its peak, as the format has it. The values stand at `span`.
 fn black_bodies(
     span: Span,
     values: &[f32],
     to_kelvin: impl Fn(f32) -> f32,
 ) -> Result<Vec<Rgb>, Fault> {
-    const STEPS: usize = 4096;
-    let kelvins: Vec<f32> = values.iter().map(|&value| to_kelvin(value)).collect();
-    let hottest = kelvins.iter().copied().fold(COLD, f32::max);
-    if hottest > HOTTEST || kelvins.iter().any(|kelvin| kelvin.is_nan()) {
-        let message = format!("a temperature is above {HOTTEST:e} kelvin, or not a number");
-        return Err(Fault::scene(span, message));
-    }
-    let step = (hottest - COLD) / STEPS as f32;
-    let table: Vec<Rgb> = (0..=STEPS)
-        .map(|i| spectra::black_body(f64::from(COLD + step * i as f32)))
-        .collect();
-    let at = |&kelvin: &f32| {
-        if kelvin <= COLD {
-            return [0.0; 3];
+    let radiance = |&value: &f32| {
+        let kelvin = to_kelvin(value);
+        if !(f32::MIN..=HOTTEST).contains(&kelvin) {
+            let message = format!("a temperature is above {HOTTEST:e} kelvin, or not a number");
+            return Err(Fault::scene(span, message));
         }
-        let place = (kelvin - COLD) / step;
-        let i = (place as usize).min(STEPS - 1);
-        let [low, high] = [table[i], table[i + 1]];
-        std::array::from_fn(|k| low[k] + (high[k] - low[k]) * (place - i as f32))
+        Ok(black_body(kelvin))
     };
-    Ok(kelvins.iter().map(at).collect())
+    values.iter().map(radiance).collect()
+}
+
+/// L_e of a black body from a table, between whose entries it is linear in 1/T, as log L_e nearly is.
+fn black_body(kelvin: f32) -> Rgb {
+    const STEPS: usize = 4096;
+    static TABLE: LazyLock<Vec<Rgb>> = LazyLock::new(|| {
+        let inverse = |i: usize| i as f64 / STEPS as f64 / f64::from(COLD);
+        let kelvins = (0..=STEPS).map(|i| 1.0 / inverse(i).max(1.0 / f64::from(HOTTEST)));
+        kelvins.map(spectra::black_body).collect()
+    });
+    if kelvin <= COLD {
+        return [0.0; 3];
+    }
+    let place = COLD / kelvin * STEPS as f32;
+    let i = (place as usize).min(STEPS - 1);
+    let [low, high] = [TABLE[i], TABLE[i + 1]];
+    std::array::from_fn(|k| low[k] + (high[k] - low[k]) * (place - i as f32))
 }
 
 fn scaled(radiance: Rgb, scale: f32) -> Rgb {

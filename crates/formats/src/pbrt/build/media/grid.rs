@@ -30,7 +30,11 @@ pub(super) fn uniform(
     let values = values.iter().map(|&value| [value]).collect();
     let grid = build(density.value_span, values, cells)?;
     let medium = Medium::of_density(coefficients, grid, phase);
-    glow::add(reader, medium.ok_or_else(|| too_dense(density))?, light)
+    glow::add(
+        reader.span(),
+        medium.ok_or_else(|| too_dense(density))?,
+        light,
+    )
 }
 
 /// Reads a medium with coefficients for each cell.
@@ -41,6 +45,10 @@ pub(super) fn rgb(reader: &mut Reader<'_, '_>, transforms: &Transforms) -> Resul
     let phase = phase(reader)?;
     let [absorption, scattering] =
         ["sigma_a", "sigma_s"].map(|name| reader.find(ParameterType::Rgb, name));
+    if light.is_some() && absorption.is_none() {
+        let message = "a medium with `Le` needs `sigma_a`";
+        return Err(Fault::scene(reader.span(), message));
+    }
     let Some(any) = absorption.or(scattering) else {
         let message = "the medium has neither `sigma_a` nor `sigma_s`";
         return Err(Fault::scene(reader.span(), message));
@@ -64,7 +72,7 @@ pub(super) fn rgb(reader: &mut Reader<'_, '_>, transforms: &Transforms) -> Resul
     let extinction = build(any.value_span, extinction, cells)?;
     let scattering = build(any.value_span, scattering, cells)?;
     let medium = Medium::chromatic(extinction, scattering, phase);
-    glow::add(reader, medium.ok_or_else(|| too_dense(any))?, light)
+    glow::add(reader.span(), medium.ok_or_else(|| too_dense(any))?, light)
 }
 
 /// The cells of a box.
@@ -136,33 +144,42 @@ fn size(reader: &mut Reader<'_, '_>) -> Result<[usize; 3], Fault> {
     Ok([count("nx")?, count("ny")?, count("nz")?])
 }
 
-/// The values of a parameter that has so many channels for each cell.
+/// The values of a parameter that has so many channels for each cell, none of them below 0.
 pub(super) fn numbers(
     parameter: &Parameter,
     size: [usize; 3],
     channels: usize,
 ) -> Result<&[f32], Fault> {
+    let values = signed_numbers(parameter, size, channels)?;
+    let is_wrong = |value: &&f32| !(0.0..=f32::MAX).contains(*value);
+    if let Some(wrong) = values.iter().find(is_wrong) {
+        let message = format!(
+            "`{}` has the value {wrong}, but must have none below 0",
+            parameter.name
+        );
+        return Err(Fault::scene(parameter.value_span, message));
+    }
+    Ok(values)
+}
+
+/// The values of a parameter that has so many channels for each cell.
+pub(super) fn signed_numbers(
+    parameter: &Parameter,
+    size: [usize; 3],
+    channels: usize,
+) -> Result<&[f32], Fault> {
     let expected = size.iter().try_fold(channels, |n, &k| n.checked_mul(k));
-    let fault = |message: String| Fault::scene(parameter.value_span, message);
     let Values::Floats(values) = &parameter.values else {
         return Ok(&[]);
     };
     if expected != Some(values.len()) {
         let [nx, ny, nz] = size;
-        return Err(fault(format!(
+        let message = format!(
             "`{}` has {} values, but must have {nx} · {ny} · {nz}",
             parameter.name,
             values.len() / channels
-        )));
-    }
-    if let Some(wrong) = values
-        .iter()
-        .find(|value| !(0.0..=f32::MAX).contains(*value))
-    {
-        return Err(fault(format!(
-            "`{}` has the value {wrong}, but must have none below 0",
-            parameter.name
-        )));
+        );
+        return Err(Fault::scene(parameter.value_span, message));
     }
     Ok(values)
 }

@@ -93,7 +93,7 @@ fn read(context: &mut Context<'_>, medium: &MediumDescription) -> Result<Recipe,
         "uniformgrid" => ready(grid::uniform(&mut reader, &medium.transforms)?),
         "rgbgrid" => ready(grid::rgb(&mut reader, &medium.transforms)?),
         "cloud" => cloud::read(&mut reader, &medium.transforms)?,
-        "nanovdb" => ready(nanovdb::read(&mut reader, &medium.transforms)?),
+        "nanovdb" => nanovdb::read(&mut reader, &medium.transforms)?,
         _ => ready(homogeneous(&mut reader)?),
     };
     reader.finish()?;
@@ -110,7 +110,7 @@ fn homogeneous(reader: &mut Reader<'_, '_>) -> Result<Medium, Fault> {
     let coefficients = scaled(reader, given, scale)?;
     let light = glow::even(reader)?;
     let medium = Medium::homogeneous(coefficients, phase(reader)?);
-    glow::add(reader, medium, light)
+    glow::add(reader.span(), medium, light)
 }
 
 /// The factor of all coefficients.

@@ -2,84 +2,151 @@
 
 use super::super::reader::Reader;
 use super::grid::{Cells, build, placed};
-use super::{glow, own_coefficients, phase, scale, scaled};
-use crate::error::Error;
-use crate::nanovdb::{self, CellBox, Grid};
+use super::{Recipe, glow, own_coefficients, phase, ready, scale, scaled};
+use crate::nanovdb::{self, CellBox, Found, Grid};
 use crate::pbrt::lexer::shorten;
 use crate::pbrt::transform::Transforms;
 use crate::source::{Fault, Span};
-use bidir::medium::Medium;
+use bidir::medium::{Coefficients, Glow, HenyeyGreenstein, Medium};
 use glam::{DAffine3, DVec3};
+
+/// A grid of a medium, and the box of its cells that is read.
+struct Part {
+    grid: Grid,
+    within: CellBox,
+}
+
+/// The content of a medium that was read.
+struct Smoke {
+    span: Span,
+    density: Part,
+    temperature: Option<Part>,
+    cells: Cells,
+    heat: glow::Heat,
+    coefficients: Coefficients,
+    phase: HenyeyGreenstein,
+}
 
 /// Reads a medium of the densities of a file, which are linear between the cells that it numbers, and fade over one
 /// cell around those that are active.
-pub(super) fn read(reader: &mut Reader<'_, '_>, transforms: &Transforms) -> Result<Medium, Fault> {
-    let Some((file, span)) = reader.string("filename")? else {
+pub(super) fn read(reader: &mut Reader<'_, '_>, transforms: &Transforms) -> Result<Recipe, Fault> {
+    let Some((name, span)) = reader.string("filename")? else {
         return Err(Fault::scene(reader.span(), "the medium has no `filename`"));
     };
-    let path = reader.context.document.resolve(file);
+    let path = reader.context.document.resolve(name);
     let bytes = reader.context.read_grids(&path, span)?;
-    let refuse = |error: Error| Fault::from_error(span, &error.in_file(&path));
-    let name = |given: Option<(&str, Span)>, name: &str| {
-        given.map_or_else(|| name.to_owned(), |(given, _)| given.to_owned())
-    };
-    let density_name = name(reader.string("gridname")?, "density");
-    let density = nanovdb::find(&bytes, &density_name).map_err(refuse)?;
-    let density = density.ok_or_else(|| {
-        let message = format!("the file has no grid `{}`", shorten(&density_name));
-        Fault::scene(span, message).with_hint("`gridname` is the name of the densities")
-    })?;
-    let within = density.bounds.grown();
-    let values = density.values(within).map_err(refuse)?;
-    if let Some(wrong) = values
-        .iter()
-        .find(|value| !(0.0..=f32::MAX).contains(*value))
-    {
-        let message = format!(
-            "the grid `{}` has the density {wrong}",
-            shorten(&density_name)
-        );
-        return Err(Fault::scene(span, message));
-    }
-    let cells = cells(reader, transforms, &density, within)?;
-    let temperature_name = name(reader.string("temperaturename")?, "temperature");
-    let temperatures = nanovdb::find(&bytes, &temperature_name).map_err(refuse)?;
-    if let Some(grid) = &temperatures
-        && grid.world_from_cells != density.world_from_cells
-    {
-        let message = "the temperatures have other cells than the densities";
-        return Err(Fault::scene(span, message));
-    }
-    let temperatures = temperatures.map(|grid| grid.values(within)).transpose();
-    let temperatures = temperatures.map_err(refuse)?;
-    let light = glow::of_temperatures(reader, span, temperatures.as_deref(), cells)?;
+    let heat = glow::Heat::read(reader)?;
     let given = own_coefficients(reader)?.map(|given| given.unwrap_or([1.0; 3]));
     let scale = scale(reader)?;
     let coefficients = scaled(reader, given, scale)?;
     let phase = phase(reader)?;
-    let grid = build(
+    let density = reader
+        .string("gridname")?
+        .map_or("density", |(name, _)| name);
+    let temperature = reader.string("temperaturename")?;
+    let temperature = temperature.map_or("temperature", |(name, _)| name);
+    let find = |name| {
+        let found = nanovdb::find(&bytes, name);
+        found.map_err(|error| Fault::from_error(span, &error.in_file(&path)))
+    };
+    let grid = match find(density)? {
+        Found::Grid(grid) => grid,
+        Found::Nothing => {
+            let message = format!("the file has no grid `{}`", shorten(density));
+            let hint = "`gridname` is the name of the densities";
+            return Err(Fault::scene(span, message).with_hint(hint));
+        }
+        Found::Unsupported(what) => {
+            (reader.context).unsupported(span, &what, "vacuum is used instead")?;
+            let nothing = scaled(reader, [[0.0; 3]; 2], 1.0)?;
+            return Ok(ready(Medium::homogeneous(nothing, phase)));
+        }
+    };
+    let within = grid.bounds.grown();
+    let density = Part { grid, within };
+    let temperature = match find(temperature)? {
+        Found::Grid(grid) => Some(Part { grid, within }),
+        Found::Nothing => None,
+        Found::Unsupported(what) => {
+            (reader.context).unsupported(span, &what, "the medium does not glow")?;
+            None
+        }
+    };
+    if let Some(part) = &temperature
+        && !are_close(part.grid.world_from_cells, density.grid.world_from_cells)
+    {
+        let message = "the temperatures have other cells than the densities";
+        return Err(Fault::scene(span, message));
+    }
+    for part in [Some(&density), temperature.as_ref()].into_iter().flatten() {
+        let counted = reader.context.log.cells(part.within.count());
+        counted.map_err(|error| Fault::from_error(span, &error))?;
+    }
+    let cells = cells(reader, transforms, &density)?;
+    let smoke = Smoke {
         span,
-        values.into_iter().map(|value| [value]).collect(),
+        density,
+        temperature,
         cells,
-    )?;
-    let medium = Medium::of_density(coefficients, grid, phase);
-    let message = "the coefficients of the medium are too large";
-    let medium = medium.ok_or_else(|| Fault::scene(span, message))?;
-    glow::add(reader, medium, light)
+        heat,
+        coefficients,
+        phase,
+    };
+    Ok(Box::new(move || smoke.medium()))
+}
+
+/// True where two maps differ by rounding at most.
+fn are_close(a: DAffine3, b: DAffine3) -> bool {
+    let pairs = a.to_cols_array().into_iter().zip(b.to_cols_array());
+    let size = a
+        .to_cols_array()
+        .into_iter()
+        .fold(0.0, |most: f64, x| most.max(x.abs()));
+    pairs
+        .map(|(a, b)| (a - b).abs())
+        .all(|error| error <= 1e-6 * size)
+}
+
+impl Part {
+    fn values(&self, span: Span) -> Result<Vec<f32>, Fault> {
+        let values = self.grid.values(self.within);
+        values.map_err(|error| Fault::from_error(span, &error))
+    }
+}
+
+impl Smoke {
+    fn medium(&self) -> Result<Medium, Fault> {
+        let Self { span, cells, .. } = *self;
+        // Filters leave densities a little below 0.
+        let values = self.density.values(span)?.into_iter();
+        let values = values.map(|value| [value.max(0.0)]).collect();
+        let grid = build(span, values, cells)?;
+        let medium = Medium::of_density(self.coefficients, grid, self.phase);
+        let message = "the coefficients of the medium are too large";
+        let medium = medium.ok_or_else(|| Fault::scene(span, message))?;
+        glow::add(span, medium, self.light()?)
+    }
+
+    fn light(&self) -> Result<Option<Glow>, Fault> {
+        let Some(part) = &self.temperature else {
+            return Ok(None);
+        };
+        let values = part.values(self.span)?;
+        self.heat.glow(self.span, &values, self.cells).map(Some)
+    }
 }
 
 /// The cells of a box, each around its number.
 fn cells(
     reader: &mut Reader<'_, '_>,
     transforms: &Transforms,
-    grid: &Grid<'_>,
-    within: CellBox,
+    part: &Part,
 ) -> Result<Cells, Fault> {
-    let size = within.size();
-    let first = DVec3::from_array(within.first.map(f64::from)) - 0.5;
+    let size = part.within.size();
+    let first = DVec3::from_array(part.within.first.map(f64::from)) - 0.5;
     let scale = DVec3::from_array(size.map(|n| n as f64));
     let cube = DAffine3::from_translation(first) * DAffine3::from_scale(scale);
-    let place = placed(reader, transforms, grid.world_from_cells * cube)?;
+    let place = placed(reader, transforms, part.grid.world_from_cells * cube)?;
     let size = size.map(|n| n as usize);
     Ok(Cells { size, place })
 }

@@ -275,6 +275,11 @@ fn grids_that_make_no_sense_are_refused() {
         "s.pbrt:2:91: a temperature is above 1e8 kelvin, or not a number",
     );
     check(
+        "rgbgrid",
+        "\"rgb sigma_s\" [1 1 1] \"rgb Le\" [1 1 1]",
+        "s.pbrt:2:39: a medium with `Le` needs `sigma_a`",
+    );
+    check(
         "homogeneous",
         "\"rgb Le\" [1e10 0 0] \"float Lescale\" 1e10",
         "s.pbrt:2:39: the light emits more than 1e12",
@@ -355,6 +360,8 @@ fn hot_cells_glow() {
     let moved = "\"float temperature\" [300 1600] \"float temperaturescale\" 2";
     check(&format!("{moved} \"float temperatureoffset\" 100"), HOT[0]);
     check(&format!("{moved} \"float temperaturecutoff\" 100"), HOT[0]);
+    let celsius = "\"float temperature\" [-20 2726.85] \"float temperatureoffset\" -273.15";
+    check(celsius, HOT[0]);
     let cold = luminance_of("\"float temperature\" [90 3000]", 0.25);
     assert!(cold <= 0.0, "{cold}");
 }
