@@ -20,7 +20,7 @@ const TOLERANCE: f64 = 0.005;
 /// Sets of walks for each direction, and walks of a set.
 const WALKS: [u64; 2] = [64, 1 << 8];
 /// The same where facets lose much of the light by chance.
-const WALKS_OF_ROUGH: [u64; 2] = [64, 1 << 11];
+const WALKS_OF_ROUGH: [u64; 2] = [64, 1 << 12];
 /// The same for a table.
 const WALKS_SHOWN: [u64; 2] = [64, 1 << 10];
 const COSINES: [f32; 3] = [0.2, 0.6, 1.0];
