@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TypeAlias
@@ -15,7 +15,7 @@ import numpy.typing as npt
 from bidir.errors import SettingsError
 from bidir.scene import Scene, StrPath, from_text
 
-__all__ = ["Material", "SceneBuilder", "Texture"]
+__all__ = ["Material", "Medium", "SceneBuilder", "Texture"]
 
 Rgb: TypeAlias = Sequence[float]
 Point: TypeAlias = Sequence[float]
@@ -32,6 +32,14 @@ class Material:
 @dataclass(frozen=True)
 class Texture:
     """A texture of a :class:`SceneBuilder`."""
+
+    #: Its name in the text.
+    name: str
+
+
+@dataclass(frozen=True)
+class Medium:
+    """A participating medium of a :class:`SceneBuilder`."""
 
     #: Its name in the text.
     name: str
@@ -63,6 +71,7 @@ class SceneBuilder:
             'Integrator "bdpt" "integer maxdepth" 16\n'
         )
         self._camera = ""
+        self._media: list[str] = []
         self._world: list[str] = []
         self._files: dict[str, bytes] = {}
         self._count = 0
@@ -76,6 +85,7 @@ class SceneBuilder:
         fov: float = 40.0,
         lens_radius: float = 0.0,
         focal_distance: float | None = None,
+        medium: Medium | None = None,
     ) -> SceneBuilder:
         """Set the camera.
 
@@ -86,14 +96,16 @@ class SceneBuilder:
             fov: The angle of view along the shorter side. Unit: degrees.
             lens_radius: Radius of the lens; 0 is a pinhole camera.
             focal_distance: Distance in focus; None is the distance of the target.
+            medium: The medium around it; None is the vacuum.
         """
         eye_, target_, up_ = (_numbers(part, 3, "camera") for part in (eye, target, up))
         if focal_distance is None:
             focal_distance = float(np.linalg.norm(np.subtract(target_, eye_)))
         place = " ".join(_number(x) for x in (*eye_, *target_, *up_))
         # pbrt's space is left-handed, which would mirror the image of a right-handed world.
+        around = "" if medium is None else f'MediumInterface "{medium.name}"\n'
         self._camera = (
-            f'Scale -1 1 1\nLookAt {place}\nCamera "perspective" "float fov" {_number(fov)} '
+            f'{around}Scale -1 1 1\nLookAt {place}\nCamera "perspective" "float fov" {_number(fov)} '
             f'"float lensradius" {_number(lens_radius)} '
             f'"float focaldistance" {_number(focal_distance)}\n'
         )
@@ -114,6 +126,38 @@ class SceneBuilder:
             f'MakeNamedMaterial "{material.name}" "string type" {_text(kind)}{_list(parameters)}\n'
         )
         return material
+
+    def medium(
+        self,
+        kind: str,
+        *,
+        low: Point | None = None,
+        high: Point | None = None,
+        cells: Mapping[str, npt.ArrayLike] | None = None,
+        **parameters: Value,
+    ) -> Medium:
+        """Add a medium, such as ``medium("homogeneous", sigma_a=(0.1, 0.1, 0.1), sigma_s=(1, 1, 1))``.
+
+        It is where shapes have it ``inside`` or ``outside``, and around the camera.
+
+        Args:
+            kind: A pbrt-v4 medium: ``homogeneous``, ``uniformgrid``, ``rgbgrid``, ``cloud``, ``nanovdb``.
+            low: The corner of its box with the smallest coordinates; None is the origin.
+            high: The other corner; None is (1, 1, 1).
+            cells: Parameters with a value for each cell of the box, such as ``{"density": array}``. Shape:
+                (nx, ny, nz); (nx, ny, nz, 3) for colours.
+            **parameters: The other parameters, as for :meth:`material`.
+
+        Errors: :class:`bidir.SettingsError` for other or different shapes.
+        """
+        medium = Medium(self._name("medium"))
+        text = f'MakeNamedMedium "{medium.name}" "string type" {_text(kind)}{_list(parameters)}'
+        for name, corner in (("p0", low), ("p1", high)):
+            if corner is not None:
+                numbers = " ".join(_number(x) for x in _numbers(corner, 3, name))
+                text += f' "point3 {name}" [{numbers}]'
+        self._media.append(f"{text}{_cells(cells or {})}\n")
+        return medium
 
     def texture(self, image: npt.ArrayLike) -> Texture:
         """Add an image, linear Rec. 709 or plain numbers, row 0 at v = 1.
@@ -145,6 +189,8 @@ class SceneBuilder:
         uv: npt.ArrayLike | None = None,
         emission: Rgb | None = None,
         transform: npt.ArrayLike | None = None,
+        inside: Medium | None = None,
+        outside: Medium | None = None,
     ) -> SceneBuilder:
         """Add a mesh.
 
@@ -156,12 +202,16 @@ class SceneBuilder:
             uv: Texture coordinates. Shape: (n, 2).
             emission: Radiance that its front emits, linear Rec. 709. Unit: W/(m² sr).
             transform: Object to world, for column vectors. Shape: (4, 4).
+            inside: The medium behind its front, which closed meshes enclose. With the material
+                ``interface`` the mesh is its boundary alone. None is the vacuum where ``outside`` is given.
+            outside: The medium before its front, likewise.
 
         Errors: :class:`bidir.SettingsError` for other shapes, or vertices that do not exist.
         """
         name = self._name("mesh")
         self._files[f"{name}.ply"] = _ply(vertices, faces, normals, uv)
-        self._shape(f'"plymesh" "string filename" "{name}.ply"', material, emission, transform)
+        shape = f'"plymesh" "string filename" "{name}.ply"'
+        self._shape(shape, material, emission, transform, (inside, outside))
         return self
 
     def sphere(
@@ -171,14 +221,17 @@ class SceneBuilder:
         material: Material,
         *,
         emission: Rgb | None = None,
+        inside: Medium | None = None,
+        outside: Medium | None = None,
     ) -> SceneBuilder:
-        """Add a sphere; ``emission`` as for :meth:`mesh`.
+        """Add a sphere; ``emission``, ``inside`` and ``outside`` as for :meth:`mesh`.
 
         Errors: :class:`bidir.SettingsError` if the centre is not a point.
         """
         place = np.eye(4)
         place[:3, 3] = _numbers(center, 3, "center")
-        self._shape(f'"sphere" "float radius" {_number(radius)}', material, emission, place)
+        shape = f'"sphere" "float radius" {_number(radius)}'
+        self._shape(shape, material, emission, place, (inside, outside))
         return self
 
     def light(self, kind: str, **parameters: Value) -> SceneBuilder:
@@ -199,7 +252,8 @@ class SceneBuilder:
         """
         if not self._camera:
             raise SettingsError("the scene has no camera: call camera()")
-        return self._camera + self._film + "WorldBegin\n" + "".join(self._world)
+        world = "".join(self._world)
+        return "".join(self._media) + self._camera + self._film + "WorldBegin\n" + world
 
     def build(self) -> Scene:
         """Return the scene.
@@ -232,8 +286,12 @@ class SceneBuilder:
         material: Material,
         emission: Rgb | None,
         transform: npt.ArrayLike | None,
+        media: tuple[Medium | None, Medium | None],
     ) -> None:
         parts = ["AttributeBegin\n"]
+        if media != (None, None):
+            names = ['""' if medium is None else f'"{medium.name}"' for medium in media]
+            parts.append(f"  MediumInterface {' '.join(names)}\n")
         if transform is not None:
             matrix = np.asarray(transform, float)
             if matrix.shape != (4, 4):
@@ -261,7 +319,7 @@ def _numbers(value: Sequence[float], count: int, name: str) -> list[float]:
     return numbers
 
 
-def _list(parameters: dict[str, Value]) -> str:
+def _list(parameters: Mapping[str, Value]) -> str:
     return "".join(f" {_parameter(name, value)}" for name, value in parameters.items())
 
 
@@ -286,6 +344,29 @@ def _typed(name: str, value: Value) -> tuple[str, str]:
         return "float", _number(value)
     numbers = " ".join(_number(x) for x in value)
     return "rgb", f"[{numbers}]"
+
+
+def _cells(arrays: Mapping[str, npt.ArrayLike]) -> str:
+    """Return parameters with a value for each cell, x fastest, and the numbers of cells.
+
+    Errors: :class:`bidir.SettingsError` for other or different shapes.
+    """
+    text = ""
+    sizes = set()
+    for name, given in arrays.items():
+        array = np.asarray(given, float)
+        is_color = array.ndim == 4 and array.shape[3] == 3
+        if array.size == 0 or not (is_color or array.ndim == 3):
+            raise SettingsError(f"{name}: the shape {array.shape} is not that of cells")
+        sizes.add(array.shape[:3])
+        values = array.transpose((2, 1, 0, 3) if is_color else (2, 1, 0)).ravel()
+        numbers = " ".join(_number(x) for x in values)
+        text += f' "{"rgb" if is_color else "float"} {name}" [{numbers}]'
+    if len(sizes) > 1:
+        raise SettingsError(f"the cells of a medium have different shapes: {sorted(sizes)}")
+    for size in sizes:
+        text += "".join(f' "integer n{axis}" {n}' for axis, n in zip("xyz", size, strict=True))
+    return text
 
 
 #: The integer parameters of materials and lights.

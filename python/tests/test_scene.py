@@ -110,6 +110,42 @@ def test_a_built_scene_has_the_expected_radiance() -> None:
     np.testing.assert_allclose(image.pixels[4, 4], [0.5, 0.25, 0.0], atol=0.02)
 
 
+def test_a_ball_of_gas_shines_along_its_diameter() -> None:
+    builder = bidir.SceneBuilder((9, 9)).camera((0, 0, 5), (0, 0, 0), fov=1)
+    gas = builder.medium("homogeneous", sigma_a=(0.5, 1, 2), sigma_s=(0, 0, 0), Le=(1, 2, 3))
+    builder.sphere((0, 0, 0), 1, builder.material("interface"), inside=gas)
+    pixels = bidir.render(builder.build(), bidir.Path(), spp=1024).pixels
+    expected = np.array([1, 2, 3]) * -np.expm1([-1, -2, -4])
+    np.testing.assert_allclose(pixels.mean(axis=(0, 1)), expected, rtol=0.03)
+
+
+def test_cells_of_a_medium_are_indexed_by_x_y_z() -> None:
+    density = np.zeros((3, 2, 1))
+    density[2, 0, 0] = 50
+    builder = bidir.SceneBuilder((30, 20))
+    arrays = {"density": density, "Lescale": np.ones_like(density)}
+    box = {"low": (-3, -2, -1), "high": (3, 2, 1)}
+    smoke = builder.medium("uniformgrid", cells=arrays, **box, sigma_s=(0, 0, 0), Le=(1, 1, 1))
+    builder.camera((0, 0, 8), (0, 0, 0), medium=smoke)
+    pixels = bidir.render(builder.build(), bidir.Path(), spp=16).pixels
+    row, column = np.unravel_index(pixels.sum(axis=2).argmax(), pixels.shape[:2])
+    # Lower right.
+    assert row >= 10
+    assert column >= 20
+
+
+@pytest.mark.parametrize(
+    ("arrays", "words"),
+    [
+        ({"density": np.ones((2, 2))}, "density: the shape"),
+        ({"density": np.ones((2, 2, 1)), "Lescale": np.ones((2, 1, 2))}, "different shapes"),
+    ],
+)
+def test_cells_of_wrong_shapes_are_refused(arrays: dict[str, np.ndarray], words: str) -> None:
+    with pytest.raises(bidir.SettingsError, match=words):
+        bidir.SceneBuilder().medium("uniformgrid", cells=arrays)
+
+
 def test_the_world_of_a_builder_is_right_handed() -> None:
     builder = bidir.SceneBuilder((30, 30)).camera((0, 0, 5), (0, 0, 0))
     white = builder.material("diffuse", reflectance=(0, 0, 0))
