@@ -9,6 +9,7 @@ use bidir::film::{Film, Layers};
 use bidir::integrator::IntegratorKind;
 use bidir::light::Light;
 use bidir::material::Material;
+use bidir::medium::Medium;
 use bidir::scene::Scene;
 use bidir::shape::Shape;
 use bidir::view::View;
@@ -40,7 +41,7 @@ struct Info {
     shared_instances: usize,
     materials: Counts,
     /// Participating media, without the vacuum.
-    media: usize,
+    media: Counts,
     lights: Counts,
     /// The number of lights in each group.
     light_groups: BTreeMap<String, usize>,
@@ -117,7 +118,7 @@ impl Info {
             instances: loaded.summary.instances,
             shared_instances: scene.instance_count(),
             materials: count(scene.materials(), Material::kind),
-            media: scene.media().len(),
+            media: count(scene.media(), Medium::kind),
             lights: count(scene.lights(), Light::kind),
             light_groups: light_groups(scene),
             textures: loaded.summary.textures,
@@ -182,7 +183,7 @@ impl Info {
             ("triangles", self.triangles.to_string()),
             ("instances", self.instances_text()),
             ("materials", list(&self.materials)),
-            ("media", self.media.to_string()),
+            ("media", list(&self.media)),
             ("lights", list(&self.lights)),
             ("light groups", list(&self.light_groups)),
             ("textures", self.textures.to_string()),

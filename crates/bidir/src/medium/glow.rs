@@ -74,8 +74,8 @@ impl Medium {
     /// The largest σ_t L_e, so that products with volumes stay finite.
     pub const BRIGHTEST: f32 = 1e18;
 
-    /// The same medium, which glows as well. None: σ_t L_e may be above [`BRIGHTEST`](Self::BRIGHTEST), or the grid of
-    /// L_e has not the cells of the medium's.
+    /// The same medium, which glows as well. None: L_e is negative or not finite, σ_t L_e may be above
+    /// [`BRIGHTEST`](Self::BRIGHTEST), or the grid of L_e has not the cells of the medium's.
     pub fn glowing(self, glow: Glow) -> Option<Self> {
         let most = glow.most();
         let is_along = match (&glow, &self.field) {
@@ -86,8 +86,12 @@ impl Medium {
                 ours.has_cells_of(extinction)
             }
         };
-        // Not a number is no radiance either.
-        let is_valid = is_along && most * self.most() <= Self::BRIGHTEST;
+        let is_light = match &glow {
+            Glow::Even(radiance) => radiance.iter().all(|l| (0.0..=f32::MAX).contains(l)),
+            // Grids have no other numbers.
+            Glow::Grid(_) => true,
+        };
+        let is_valid = is_along && is_light && most * self.most() <= Self::BRIGHTEST;
         is_valid.then_some(Self {
             glow: (most > 0.0).then_some(glow),
             ..self

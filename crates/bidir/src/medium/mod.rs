@@ -212,6 +212,15 @@ impl Medium {
         })
     }
 
+    /// The name of its kind.
+    pub const fn kind(&self) -> &'static str {
+        match &self.field {
+            Field::Homogeneous(_) => "homogeneous",
+            Field::Density(..) => "density grid",
+            Field::Chromatic { .. } => "colour grid",
+        }
+    }
+
     /// The box that the medium fills. None: it has no end.
     pub fn bounds(&self) -> Option<Aabb> {
         match &self.field {

@@ -170,3 +170,57 @@ fn grids_with_wrong_numbers_are_refused() {
     let flat = Affine3A::from_scale(Vec3::new(1.0, 0.0, 1.0));
     assert!(Grid::new([1; 3], vec![[1.0]], flat).is_none());
 }
+
+/// A mean over a cell is the mean of the points of a fine lattice in it, whose own error is below 1 %.
+#[test]
+fn means_of_cells_are_those_of_their_points() {
+    let grid = grid();
+    let means = grid.cell_means(|i| grid.values()[i][0]);
+    let [nx, ny, nz] = grid.size();
+    let largest = grid.most();
+    for (x, y, z) in [
+        (0, 0, 0),
+        (18, 10, 5),
+        (36, 19, 10),
+        (20, 0, 3),
+        (17, 9, 10),
+    ] {
+        let mut sum = 0.0;
+        for i in 0..512 {
+            let part = [i & 7, i >> 3 & 7, i >> 6].map(|k| (k as f32 + 0.5) / 8.0);
+            let at = Vec3::new(x as f32, y as f32, z as f32) + Vec3::from_array(part);
+            let cube = at / Vec3::new(nx as f32, ny as f32, nz as f32);
+            let [value] = grid.at(grid.world_from_cube().transform_point3(cube));
+            sum += value;
+        }
+        let (found, expected) = (means[(z * ny + y) * nx + x], sum / 512.0);
+        assert!(
+            (found - expected).abs() < 0.01 * largest,
+            "{x} {y} {z}: {found}, {expected}"
+        );
+    }
+}
+
+#[test]
+fn light_that_is_none_or_too_much_is_refused() {
+    let coefficients = Coefficients::new([1e9; 3], [0.0; 3]).unwrap();
+    let phase = HenyeyGreenstein::new(0.0).unwrap();
+    let medium = Medium::homogeneous(coefficients, phase);
+    let glowing = |radiance| medium.clone().glowing(Glow::Even(radiance));
+    for radiance in [[f32::NAN, 1.0, 1.0], [-1.0, 1.0, 1.0], [1e10; 3]] {
+        assert!(glowing(radiance).is_none(), "{radiance:?}");
+    }
+    assert!(glowing([1.0, 0.0, 0.0]).unwrap().glows());
+    assert!(!glowing([0.0; 3]).unwrap().glows());
+    let light = Grid::new([1, 1, 2], vec![[1.0; 3]; 2], Affine3A::IDENTITY).unwrap();
+    assert!(medium.clone().glowing(Glow::Grid(light.clone())).is_none());
+    let thin = Coefficients::new([1.0; 3], [0.0; 3]).unwrap();
+    let of_density = |size: [usize; 3]| {
+        let values = vec![[1.0]; size.iter().product()];
+        let density = Grid::new(size, values, Affine3A::IDENTITY).unwrap();
+        Medium::of_density(thin, density, phase).unwrap()
+    };
+    let glow = || Glow::Grid(light.clone());
+    assert!(of_density([1, 2, 1]).glowing(glow()).is_none());
+    assert!(of_density([1, 1, 2]).glowing(glow()).is_some());
+}
