@@ -37,13 +37,11 @@ fn put(bytes: &mut [u8], at: usize, value: &[u8]) {
     bytes[at..at + value.len()].copy_from_slice(value);
 }
 
-/// The grid's bytes, whose cells are cubes of half a unit, x along the world's y.
+/// The grid's bytes, whose cells are cubes of half a unit: x along the world's y, y along its z, and z along its x.
 fn kept_bytes(kept: &Kept) -> Vec<u8> {
     let mut bytes = vec![0; LEAF_AT + LEAF_SIZE];
-    for (i, number) in [0.0, 0.5, 0.0, 0.5, 0.0, 0.0, 0.0, 0.0, 0.5_f64]
-        .iter()
-        .enumerate()
-    {
+    let map = [0.0, 0.0, 0.5, 0.5, 0.0, 0.0, 0.0, 0.5, 0.0_f64];
+    for (i, number) in map.iter().enumerate() {
         put(&mut bytes, 384 + 8 * i, &number.to_le_bytes());
     }
     put(&mut bytes, 528, &10.0_f64.to_le_bytes());
@@ -198,7 +196,7 @@ fn cells_are_placed_by_the_rows_of_the_map() {
     let placed = grid
         .world_from_cells
         .transform_point3(DVec3::new(1.0, 2.0, 3.0));
-    assert_eq!(placed, DVec3::new(11.0, 0.5, 1.5));
+    assert_eq!(placed, DVec3::new(11.5, 0.5, 1.0));
 }
 
 #[test]

@@ -383,8 +383,8 @@ fn files_of_smoke_are_read() {
     let scene = world(&medium("\"rgb sigma_a\" [0 1 2] \"rgb sigma_s\" [1 1 1]"));
     let kinds: Vec<_> = scene.lights().iter().map(Light::kind).collect();
     assert_eq!(kinds, ["volume"]);
-    // Cell (2, 3, 4) of the leaf, along y, x and z of the world.
-    let at = Vec3::new(10.0 + 0.5 * 123.0, 0.5 * -6.0, 3.0 + 0.5 * 4.0);
+    // Cell (2, 3, 4) of the leaf, along y, z and x of the world.
+    let at = Vec3::new(10.0 + 0.5 * 4.0, 0.5 * -6.0, 3.0 + 0.5 * 123.0);
     let lanes = scene.media()[0].extinction(at, scene.color(), &Wavelengths::default());
     assert_eq!([0, 1, 2].map(|i| lanes[i].round() as i32), [282, 564, 846]);
     let hot = scene.media()[0].emission(at);
