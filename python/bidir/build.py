@@ -55,7 +55,7 @@ class SceneBuilder:
 
     The world is right-handed, lengths have no unit, +y is up unless the camera has another ``up``. The
     builder keeps pbrt-v4 text with meshes and images in memory; :meth:`save` writes them. Kinds of
-    materials and lights and the names of their parameters are those of pbrt-v4.
+    materials, media and lights, and the names of their parameters, are those of pbrt-v4.
     """
 
     def __init__(self, size: tuple[int, int] = (640, 480), *, spp: int = 16) -> None:

@@ -93,7 +93,7 @@ impl VolumeLight {
         medium.map_or([0.0; 3], |medium| medium.emission(at.locus.point))
     }
 
-    /// Draws a point of the medium's box; what glows may end before.
+    /// Draws a point of the medium's box. The medium may end before it, which the scene knows.
     #[inline]
     pub(super) fn sample(&self, u: Vec3) -> Option<LightSample> {
         let cells = self.cells.as_ref()?;

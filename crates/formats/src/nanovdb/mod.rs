@@ -1,8 +1,8 @@
 //! Grids of numbers from NanoVDB files \[Museth21\]: trees of boxes of cells, of which few are kept.
 //!
 //! A file has segments: a header, for each grid a description and its name, and then the grids, plain or deflated.
-//! Numbers are little-endian. All bytes are untrusted: each is asked for by its place, and the cells that a file
-//! describes are counted before any memory is taken.
+//! Numbers are little-endian. All bytes are untrusted: each is asked for by its place. The caller counts the
+//! cells of a box before it asks for their values.
 
 mod tree;
 
@@ -123,7 +123,7 @@ pub(crate) fn find(file: &[u8], name: &str) -> Result<Found> {
     Ok(Found::Nothing)
 }
 
-/// A name or a text without what follows its end.
+/// The part of a name before its first zero byte.
 fn text(bytes: &[u8]) -> Cow<'_, str> {
     let end = bytes.iter().position(|&byte| byte == 0);
     String::from_utf8_lossy(&bytes[..end.unwrap_or(bytes.len())])
