@@ -108,9 +108,40 @@ PATHS = [
     (
         "connections of diffuse vertices without the camera's other strategies",
         "crates/bidir/src/path/diffuse.rs",
-        "(r_z * z.others + r_y * y.others)",
-        "(r_z * z.others)",
+        "(r_z * lanes.others + r_y * y.others)",
+        "(r_z * lanes.others)",
         RUNNING,
+    ),
+    (
+        "weights of diffuse vertices from the lane beside them",
+        "crates/bidir/src/path/diffuse.rs",
+        "weights: weights.to_array(),",
+        "weights: {\n"
+        "                let [a, b, c, d] = weights.to_array();\n"
+        "                [b, c, d, a]\n"
+        "            },",
+        RUNNING,
+    ),
+    (
+        "connections of diffuse vertices that face away from each other",
+        "crates/bidir/src/path/diffuse.rs",
+        "factors: Vec4::select(a & b & c & d, factors, Vec4::ZERO).to_array(),",
+        "factors: factors.to_array(),",
+        RUNNING,
+    ),
+    (
+        "light vertices lost behind the last four",
+        "crates/bidir/src/integrator/stages/connect.rs",
+        "ends.chunks(4)",
+        "ends.chunks_exact(4)",
+        analytic("a_closed_sphere"),
+    ),
+    (
+        "light vertices lost in the last lane",
+        "crates/bidir/src/integrator/stages/connect.rs",
+        "four.iter().enumerate()",
+        "four.iter().enumerate().take(3)",
+        analytic("a_closed_sphere"),
     ),
     (
         "connections of diffuse vertices behind a shading normal",
@@ -195,8 +226,8 @@ PATHS = [
     ),
     (
         "candidates of a light cache not shared among each other",
-        "crates/bidir/src/integrator/stages/draw.rs",
-        "(draw.share / count) as f32,",
+        "crates/bidir/src/integrator/stages/light_ends.rs",
+        "(draw.share * part) as f32,",
         "draw.share as f32,",
         analytic("a_closed_sphere"),
     ),
@@ -210,8 +241,8 @@ PATHS = [
     (
         "proposals that forget their uniform part",
         "crates/bidir/src/guide/proposals.rs",
-        "part / all as f64 + (1.0 - part) * gamma / of_cell as f64",
-        "(1.0 - part) * gamma / of_cell as f64",
+        "(part * of_cell + unit * self.units(light) * all)",
+        "(unit * self.units(light) * all)",
         unit("cache::tests"),
     ),
     (
@@ -392,8 +423,8 @@ PATHS = [
     (
         "draws of a cell that begin behind it",
         "crates/bidir/src/guide/proposals.rs",
-        "let begin = part as f64 / PARTS as f64;",
-        "let begin = (part as f64 + 0.5) / PARTS as f64;",
+        "let begin = part as u16 * UNITS_OF_PART;",
+        "let begin = part as u16 * UNITS_OF_PART + UNITS_OF_PART / 2;",
         unit("every_number_leads_to_the_cell_that_holds_it"),
     ),
     (
@@ -426,7 +457,7 @@ PATHS = [
     ),
     (
         "paths one vertex too long",
-        "crates/bidir/src/integrator/stages/connect.rs",
+        "crates/bidir/src/integrator/stages/light_ends.rs",
         ".min(settings.max_vertices() - t);",
         ".min(settings.max_vertices() + 1 - t);",
         analytic("every_limit_of_depth"),

@@ -32,8 +32,9 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 /// Pixels are handed to threads in runs of this length.
 const RUN: u64 = 256;
 
-/// How many samples go through the stages together: as many as stay in a processor's fastest cache.
-const BATCH: usize = 8;
+/// How many samples go through the stages together: so many that a stage's code serves some before another stage's
+/// takes its place in a processor's fastest cache, and so few that their vertices stay in the next one.
+const BATCH: usize = 32;
 
 /// A render that goes pass by pass.
 ///

@@ -9,7 +9,7 @@ mod cells;
 mod proposals;
 
 pub use cells::{Cell, Cells};
-pub(crate) use proposals::CellDraw;
+pub(crate) use proposals::{CellDraw, ProposalRow};
 pub use proposals::{LightProposals, PairSums};
 
 use crate::light::LightChoice;
@@ -24,12 +24,18 @@ pub struct Guide<'a> {
     pub light_start: Option<&'a LightChoice>,
 }
 
-impl Guide<'_> {
+impl<'a> Guide<'a> {
     /// The cell of a vertex with the unit normal `n`; the default one without proposals.
     #[inline]
     pub(crate) fn cell(&self, point: Vec3, n: Vec3) -> Cell {
         let cell = |all: &LightProposals| all.cells().of(point, n);
         self.proposals.map_or(Cell::default(), cell)
+    }
+
+    /// The choice of light vertices for camera vertices in the cell `y`. None: each is as likely as others.
+    #[inline]
+    pub(crate) fn row(&self, y: Cell) -> Option<&'a ProposalRow> {
+        self.proposals.map(|all| all.row(y))
     }
 
     /// n κ / M: the number of samples of a connection of these cells, relative to uniform proposals; 1 without

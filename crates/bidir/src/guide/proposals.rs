@@ -21,6 +21,7 @@
 //! they are compared by, V̂ being the part of the connections of two cells that arrived in training.
 
 use super::cells::{Cell, Cells};
+use std::array::from_fn;
 
 /// ε: the fraction of uniform proposals. Connections that training did not see cost at most 1/ε times as much as
 /// without it.
@@ -30,24 +31,36 @@ const UNIFORM_PART: f32 = 0.2;
 /// as if all had arrived.
 const LEAST_VISIBILITY: f64 = 1.0 / 16.0;
 
+/// Γ and √V̂ come in whole numbers of units, so that all pairs of cells stay in the cache beside the vertices.
+const UNITS: u16 = u16::MAX;
+const VISIBILITY_UNITS: u8 = u8::MAX;
+
 /// Into how many parts the numbers of a draw are divided, each of which knows the first cell that it
 /// may lead to: a guide table \[Chen74\].
-const PARTS: usize = 64;
+const PARTS: usize = 128;
+/// The units of a part.
+const UNITS_OF_PART: u16 = UNITS / PARTS as u16 + 1;
 const _: () = assert!(Cells::COUNT <= 256, "the number of a cell takes a byte");
 
 /// The proposals of light vertices of a cache to camera vertices.
 #[derive(Clone, Debug)]
 pub struct LightProposals {
     cells: Cells,
-    /// For each cell of camera vertices Σ_{c' < c} Γ(c' | r), and 1 at the end.
-    cumulative: Vec<f32>,
-    /// For each cell of camera vertices the first cell c that numbers of each part lead to: draws begin
-    /// there instead of at the first cell of all.
-    first: Vec<u8>,
-    /// For each pair of cells, by that of camera vertices first, n κ / M.
-    count_factors: Vec<f32>,
-    /// For each pair √V̂.
-    root_visibility: Vec<f32>,
+    /// By the cell of camera vertices.
+    rows: Vec<ProposalRow>,
+    /// For each cell of light vertices (1 - ε) κ / κ_c for a unit of Γ; 0 where κ_c is 0.
+    count_factors: Vec<f64>,
+}
+
+/// The proposals to camera vertices of one cell r.
+#[derive(Clone, Debug)]
+pub(crate) struct ProposalRow {
+    /// Σ_{c' < c} Γ(c' | r), in units.
+    cumulative: [u16; Cells::COUNT + 1],
+    /// The first cell c that numbers of each part lead to: draws begin there instead of at the first cell of all.
+    first: [u8; PARTS],
+    /// √V̂, in units, by the cell of light vertices.
+    root_visibility: [u8; Cells::COUNT],
 }
 
 /// The results of training for pairs of cells.
@@ -96,31 +109,19 @@ pub(crate) enum CellDraw {
 impl LightProposals {
     /// The proposals that suit `sums`.
     pub fn new(cells: Cells, sums: &PairSums) -> Self {
-        let mut cumulative = Vec::with_capacity(Cells::COUNT * (Cells::COUNT + 1));
-        let mut first = Vec::with_capacity(Cells::COUNT * PARTS);
-        let mut count_factors = Vec::with_capacity(Cells::COUNT * Cells::COUNT);
         let kappa = &sums.light_vertices;
         let all: f64 = kappa.iter().sum();
-        for squares in sums.squares.chunks_exact(Cells::COUNT) {
-            let begin = cumulative.len();
-            accumulate(kappa, squares, &mut cumulative);
-            let ends = &cumulative[begin..];
-            first.extend((0..PARTS).map(|part| first_end_beyond(ends, part)));
-            let of_cell = |(&kappa, ends): (&f64, &[f32])| match kappa {
-                0.0 => UNIFORM_PART,
-                kappa => {
-                    let prob = f64::from(ends[1] - ends[0]);
-                    UNIFORM_PART + (1.0 - UNIFORM_PART) * (prob * all / kappa) as f32
-                }
-            };
-            count_factors.extend(kappa.iter().zip(ends.windows(2)).map(of_cell));
-        }
+        let learned = (1.0 - f64::from(UNIFORM_PART)) * all / f64::from(UNITS);
+        let count_factor = |&kappa: &f64| if kappa > 0.0 { learned / kappa } else { 0.0 };
+        let squares = sums.squares.chunks_exact(Cells::COUNT);
+        let arrived = sums.arrived.chunks_exact(Cells::COUNT);
+        let pairs = squares.zip(arrived);
         Self {
             cells,
-            cumulative,
-            first,
-            count_factors,
-            root_visibility: sums.arrived.iter().copied().map(root_visibility).collect(),
+            rows: pairs
+                .map(|(squares, arrived)| ProposalRow::new(kappa, squares, arrived))
+                .collect(),
+            count_factors: kappa.iter().map(count_factor).collect(),
         }
     }
 
@@ -133,81 +134,100 @@ impl LightProposals {
     /// n κ / M of a light vertex in the cell `light` for a camera vertex in the cell `camera`.
     #[inline]
     pub(super) fn count_factor(&self, light: Cell, camera: Cell) -> f64 {
-        f64::from(self.count_factors[Cells::pair(light, camera)])
+        let learned = self.count_factors[light.index()] * self.row(camera).units(light);
+        f64::from(UNIFORM_PART) + learned
     }
 
     /// √V̂ of a light vertex in the cell `light` and a camera vertex in the cell `camera`.
     #[inline]
     pub(super) fn root_visibility(&self, light: Cell, camera: Cell) -> f32 {
-        self.root_visibility[Cells::pair(light, camera)]
+        let units = self.row(camera).root_visibility[light.index()];
+        f32::from(units) * (1.0 / f32::from(VISIBILITY_UNITS))
     }
 
-    /// Draws a cell of light vertices for a camera vertex in the cell `camera`.
+    /// The proposals to camera vertices in the cell `camera`.
     #[inline]
-    pub(crate) fn draw(&self, camera: Cell, u: f64) -> CellDraw {
+    pub(crate) fn row(&self, camera: Cell) -> &ProposalRow {
+        &self.rows[camera.index()]
+    }
+}
+
+impl ProposalRow {
+    fn new(kappa: &[f64], squares: &[f64], arrived: &[[u32; 2]]) -> Self {
+        let cumulative = accumulated(kappa, squares);
+        Self {
+            cumulative,
+            first: from_fn(|part| first_end_beyond(&cumulative, part)),
+            root_visibility: from_fn(|light| root_visibility(arrived[light])),
+        }
+    }
+
+    /// Draws a cell of light vertices.
+    #[inline]
+    pub(crate) fn draw(&self, u: f64) -> CellDraw {
         let part = f64::from(UNIFORM_PART);
         if u < part {
-            return CellDraw::All(u / part);
+            return CellDraw::All(u * (1.0 / part));
         }
-        let u = (u - part) / (1.0 - part);
-        let row = self.row(camera);
-        let part = camera.index() * PARTS + ((u * PARTS as f64) as usize).min(PARTS - 1);
-        let mut cell = usize::from(self.first[part]);
-        while cell + 1 < Cells::COUNT && f64::from(row[cell + 1]) <= u {
+        let units = (u - part) * (f64::from(UNITS) / (1.0 - part));
+        let unit = (units as u16).min(UNITS - 1);
+        let mut cell = usize::from(self.first[usize::from(unit / UNITS_OF_PART)]);
+        while self.cumulative[cell + 1] <= unit {
             cell += 1;
         }
-        let [from, to] = [row[cell], row[cell + 1]].map(f64::from);
-        CellDraw::One(Cells::cell(cell), (u - from) / (to - from))
+        let [from, to] = [self.cumulative[cell], self.cumulative[cell + 1]].map(f64::from);
+        CellDraw::One(Cells::cell(cell), (units - from) / (to - from))
     }
 
-    /// P(z | y) for a light vertex in the cell `light`, where `[K, K_c]` = `counts`.
+    /// 1 / P(z | y) for a light vertex in the cell `light`, where `[K, K_c]` = `counts`.
     #[inline]
-    pub(crate) fn prob(&self, light: Cell, camera: Cell, [all, of_cell]: [usize; 2]) -> f64 {
-        let (row, cell) = (self.row(camera), light.index());
-        let gamma = f64::from(row[cell + 1] - row[cell]);
+    pub(crate) fn inverse_prob(&self, light: Cell, counts: [usize; 2]) -> f64 {
+        let [all, of_cell] = counts.map(|count| count as f64);
         let part = f64::from(UNIFORM_PART);
-        part / all as f64 + (1.0 - part) * gamma / of_cell as f64
+        let unit = (1.0 - part) / f64::from(UNITS);
+        all * of_cell / (part * of_cell + unit * self.units(light) * all)
     }
 
+    /// Γ(c | r) of the cell c = `light`, in units.
     #[inline]
-    fn row(&self, camera: Cell) -> &[f32] {
-        let begin = camera.index() * (Cells::COUNT + 1);
-        &self.cumulative[begin..=begin + Cells::COUNT]
+    fn units(&self, light: Cell) -> f64 {
+        let cell = light.index();
+        f64::from(self.cumulative[cell + 1] - self.cumulative[cell])
     }
 }
 
-/// The first of the cells that end at `ends[1..]` that holds a number of this part or ends behind it.
-fn first_end_beyond(ends: &[f32], part: usize) -> u8 {
-    let begin = part as f64 / PARTS as f64;
-    let cell = ends[1..Cells::COUNT].partition_point(|&end| f64::from(end) <= begin);
-    cell as u8
+/// The first of the cells with these ends, without the 0 at the front, that holds a number of this part or ends
+/// behind it.
+fn first_end_beyond(ends: &[u16; Cells::COUNT + 1], part: usize) -> u8 {
+    let begin = part as u16 * UNITS_OF_PART;
+    ends[1..Cells::COUNT].partition_point(|&end| end <= begin) as u8
 }
 
-/// √V̂ if so many connections were traced and arrived. Pairs of cells that training did not see count as
+/// √V̂ in units if so many connections were traced and arrived. Pairs of cells that training did not see count as
 /// visible, and none counts as hidden for sure.
-fn root_visibility([traced, arrived]: [u32; 2]) -> f32 {
+fn root_visibility([traced, arrived]: [u32; 2]) -> u8 {
     let visible = f64::from(arrived + 1) / f64::from(traced + 1);
-    visible.max(LEAST_VISIBILITY).sqrt() as f32
+    let root = visible.max(LEAST_VISIBILITY).sqrt();
+    (root * f64::from(VISIBILITY_UNITS)).round() as u8
 }
 
-/// Appends the sums of Γ(c | r) ∝ √(κ_c Σ X²), or of κ_c where nothing was found.
-fn accumulate(kappa: &[f64], squares: &[f64], sums: &mut Vec<f32>) {
+/// The sums of Γ(c | r) ∝ √(κ_c Σ X²), or of κ_c where nothing was found, in units.
+fn accumulated(kappa: &[f64], squares: &[f64]) -> [u16; Cells::COUNT + 1] {
     let learned = || kappa.iter().zip(squares).map(|(k, q)| (k * q).sqrt());
     let total: f64 = learned().sum();
     let all: f64 = kappa.iter().sum();
+    let mut sums = [0; Cells::COUNT + 1];
     let mut sum = 0.0;
-    sums.push(0.0);
-    for (kappa, learned) in kappa.iter().zip(learned()) {
+    for ((end, kappa), learned) in sums[1..].iter_mut().zip(kappa).zip(learned()) {
         sum += if total > 0.0 {
             learned / total
         } else {
             kappa / all
         };
-        sums.push(sum.min(1.0) as f32);
+        *end = (sum * f64::from(UNITS)).round() as u16;
     }
-    if let Some(last) = sums.last_mut() {
-        *last = 1.0;
-    }
+    sums[Cells::COUNT] = UNITS;
+    sums
 }
 
 #[cfg(test)]
@@ -227,8 +247,14 @@ mod tests {
         }
         let proposals = LightProposals::new(cells, &sums);
         let root = |light| f64::from(proposals.root_visibility(light, y));
-        assert!((root(seen) - libm::sqrt(0.26)).abs() < 1e-6);
-        assert!((root(hidden) - 0.25).abs() < 1e-6, "not hidden for sure");
+        let half_a_unit = 0.5 / f64::from(VISIBILITY_UNITS);
+        let check = |light, expected: f64| {
+            let error = (root(light) - expected).abs();
+            assert!(error < 1.01 * half_a_unit, "{} for {expected}", root(light));
+        };
+        check(seen, libm::sqrt(0.26));
+        // Not hidden for sure.
+        check(hidden, 0.25);
         assert!((root(unknown) - 1.0).abs() < 1e-6);
     }
 
@@ -243,8 +269,11 @@ mod tests {
             sums.see(Cells::pair(z, y), i % 4 == 0);
         }
         let after = LightProposals::new(cells, &sums);
-        assert!((f64::from(after.root_visibility(z, y)) - libm::sqrt(0.26)).abs() < 1e-6);
-        assert_eq!(after.cumulative, before.cumulative);
+        let root = f64::from(after.root_visibility(z, y));
+        assert!((root - libm::sqrt(0.26)).abs() < 1.0 / f64::from(VISIBILITY_UNITS));
+        for (after, before) in after.rows.iter().zip(&before.rows) {
+            assert_eq!(after.cumulative, before.cumulative);
+        }
         assert_eq!(after.count_factors, before.count_factors);
     }
 
@@ -260,14 +289,16 @@ mod tests {
         }
         let proposals = LightProposals::new(cells, &sums);
         let row = proposals.row(y);
+        let ends = &row.cumulative;
         let uniform = f64::from(UNIFORM_PART);
         for i in 0..4096 {
             let u = (f64::from(i) + 0.5) / 4096.0;
-            let CellDraw::One(cell, _) = proposals.draw(y, uniform + (1.0 - uniform) * u) else {
+            let units = u * f64::from(UNITS);
+            let CellDraw::One(cell, _) = row.draw(uniform + (1.0 - uniform) * u) else {
                 panic!("the part of all vertices ends at {uniform}");
             };
-            let [from, to] = [row[cell.index()], row[cell.index() + 1]].map(f64::from);
-            assert!(from <= u && u < to, "{u} leads to {from} .. {to}");
+            let [from, to] = [ends[cell.index()], ends[cell.index() + 1]].map(f64::from);
+            assert!(from <= units && units < to, "{units} leads to {from} .. {to}");
         }
     }
 }

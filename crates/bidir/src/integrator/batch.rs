@@ -1,6 +1,6 @@
 //! The samples in flight, and what each stage leaves for the next: arrays that the next batch uses again.
 
-use super::cache::{CachedEnd, LightCache};
+use super::cache::{LightCache, Place};
 use super::stages::{ShadowPassage, lens_vertex};
 use super::{Entry, Fate, Link};
 use crate::contribution::{Term, is_summable};
@@ -61,6 +61,34 @@ impl Sample {
     }
 }
 
+/// A light vertex that a camera vertex is connected with.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct LightEnd {
+    /// Its place.
+    pub(super) place: Place,
+    /// Its number in the sample, as [`Candidate::light_vertex`] has it.
+    pub(super) number: u32,
+    /// How much the connection counts.
+    pub(super) share: f32,
+}
+
+impl LightEnd {
+    /// Vertex number `z` of all, a point on `light` by next-event estimation.
+    #[inline]
+    pub(super) fn point(z: usize, light: u32) -> Self {
+        Self {
+            place: Place {
+                z: z as u32,
+                s: 1,
+                is_diffuse: false,
+                light,
+            },
+            number: 0,
+            share: 1.0,
+        }
+    }
+}
+
 /// A light point of next-event estimation.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct NextEvent {
@@ -68,8 +96,8 @@ pub(super) struct NextEvent {
     pub(super) sample: u32,
     /// The number of the camera vertex that it was drawn for.
     pub(super) t: u32,
-    /// Its number among the light vertices.
-    pub(super) z: usize,
+    /// The point as a light vertex.
+    pub(super) end: LightEnd,
     /// e, the density that it was drawn with.
     pub(super) pdf: f32,
 }
@@ -88,8 +116,10 @@ pub struct Batch {
     pub(super) light_sums: RunningSums,
     pub(super) weights: Weights,
     pub(super) cache: LightCache,
-    /// The draws of all camera vertices, in their order.
-    pub(super) cached: Vec<CachedEnd>,
+    /// The vertices of light subpaths that camera vertices are connected with, camera vertex by camera vertex.
+    pub(super) light_ends: Vec<LightEnd>,
+    /// For each camera vertex from t = 2 on the end of its light vertices.
+    pub(super) light_ends_end: Vec<usize>,
     /// The connections that may be traced, sample by sample.
     pub candidates: Vec<Candidate>,
     /// For each sample the end of its candidates.
@@ -130,7 +160,8 @@ impl Batch {
         self.camera_sums.clear();
         self.light.forget_points();
         self.next_events.clear();
-        self.cached.clear();
+        self.light_ends.clear();
+        self.light_ends_end.clear();
         self.candidates.clear();
         self.candidates_end.clear();
         self.unoffered.clear();

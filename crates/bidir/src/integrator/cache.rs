@@ -1,6 +1,6 @@
 //! The light vertex cache: which vertices of a group's light subpaths can be connected, and draws of them.
 
-use crate::guide::{Cell, CellDraw, Cells, LightProposals};
+use crate::guide::{Cell, CellDraw, Cells, LightProposals, ProposalRow};
 use crate::path::{LightPointChoice, RunningSums, Subpath, Subpaths, Vertex};
 use std::ops::Range;
 
@@ -36,22 +36,22 @@ pub(super) struct Place {
     /// True where the sums have it as a diffuse vertex.
     pub(super) is_diffuse: bool,
     /// The light that its subpath begins on.
-    pub(super) light: Option<u32>,
+    pub(super) light: u32,
 }
 
-/// A vertex that was drawn from the cache to be connected with a camera vertex.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct CachedEnd {
-    /// The sample, by number.
-    pub(super) sample: u32,
-    /// The number of the camera vertex.
-    pub(super) t: u32,
-    /// The number of the vertex in the cache.
-    pub(super) entry: u32,
-    /// How much its connection counts.
-    pub(super) share: f32,
-    /// Its place.
-    pub(super) place: Place,
+impl Place {
+    /// The place of vertex number `i` of a light subpath, of which there are `sums`. None: the subpath begins on no
+    /// light.
+    #[inline]
+    pub(super) fn new(subpath: &Subpath<'_>, i: usize, sums: &RunningSums) -> Option<Self> {
+        let z = subpath.first + i;
+        Some(Self {
+            z: z as u32,
+            s: i as u16 + 1,
+            is_diffuse: sums.diffuse(z).is_some(),
+            light: subpath.vertices[0].light?,
+        })
+    }
 }
 
 /// A draw from the cache.
@@ -83,18 +83,12 @@ impl LightCache {
         self.clear();
         self.subpaths = walks.count();
         for subpath in 0..walks.count() {
-            let Subpath {
-                first, vertices, ..
-            } = walks.get(subpath);
-            let connectable = connectable(light_point, vertices);
-            self.unsorted.extend(connectable.map(|i| CachedVertex {
-                place: Place {
-                    z: (first + i) as u32,
-                    s: i as u16 + 1,
-                    is_diffuse: sums.diffuse(first + i).is_some(),
-                    light: vertices[0].light,
-                },
-                cell: vertices[i].cell,
+            let subpath = walks.get(subpath);
+            let connectable = connectable(light_point, subpath.vertices);
+            self.unsorted.extend(connectable.filter_map(|i| {
+                let place = Place::new(&subpath, i, sums)?;
+                let cell = subpath.vertices[i].cell;
+                Some(CachedVertex { place, cell })
             }));
         }
         match proposals {
@@ -121,23 +115,22 @@ impl LightCache {
         }
     }
 
-    /// Draws a vertex for a camera vertex in the cell `y` by the number `u`. None: there is none, and the draw
-    /// counts as one that finds nothing.
+    /// Draws a vertex by the number `u` for a camera vertex with the proposals `row`. None: there is none, and the
+    /// draw counts as one that finds nothing.
     #[inline]
-    pub(super) fn draw(&self, proposals: Option<&LightProposals>, y: Cell, u: f64) -> Option<Draw> {
+    pub(super) fn draw(&self, row: Option<&ProposalRow>, u: f64) -> Option<Draw> {
         let all = 0..self.entries.len();
-        let subpaths = self.subpaths as f64;
-        let Some(proposals) = proposals else {
-            let share = all.len() as f64 / subpaths;
+        let of_subpath = 1.0 / self.subpaths as f64;
+        let Some(row) = row else {
+            let share = all.len() as f64 * of_subpath;
             return pick(&all, u).map(|entry| Draw { entry, share });
         };
-        let entry = match proposals.draw(y, u) {
-            CellDraw::All(u) => pick(&all, u),
-            CellDraw::One(cell, u) => pick(&self.of_cell(cell), u),
+        let (entry, cell) = match row.draw(u) {
+            CellDraw::All(u) => pick(&all, u).map(|entry| (entry, self.entries[entry].cell)),
+            CellDraw::One(cell, u) => pick(&self.of_cell(cell), u).map(|entry| (entry, cell)),
         }?;
-        let cell = self.entries[entry].cell;
         let counts = [all.len(), self.of_cell(cell).len()];
-        let share = 1.0 / (subpaths * proposals.prob(cell, y, counts));
+        let share = row.inverse_prob(cell, counts) * of_subpath;
         Some(Draw { entry, share })
     }
 
@@ -158,7 +151,7 @@ impl LightCache {
 /// The number at the part `u` of a range. None: it is empty.
 #[inline]
 fn pick(range: &Range<usize>, u: f64) -> Option<usize> {
-    let i = range.start + (u * range.len() as f64) as usize;
+    let i = range.start + (u * range.len() as f64) as u32 as usize;
     // Rounding may lead to the end.
     (!range.is_empty()).then(|| i.min(range.end - 1))
 }

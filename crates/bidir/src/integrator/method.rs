@@ -9,7 +9,7 @@
 //! likewise.
 
 use super::stages::{
-    Source, Weighting, connect, direct, draw_cached, hits, light_image, next_events, select,
+    Weighting, connect, direct, draw_cached, hits, light_image, next_events, own_light, select,
     shadow_rays, sum_camera, sum_light, walk_camera, walk_light,
 };
 use super::{Batch, CandidateCount, IntegratorKind, LvcSettings};
@@ -83,7 +83,8 @@ impl Method {
                 hits(job, batch);
                 light_image(job, batch, Weighting::Combined);
                 next_events(job, batch, CandidateCount::of(1));
-                connect(job, batch, Source::Own);
+                own_light(job, batch);
+                connect(job, batch);
                 select(&**selector, batch);
                 shadow_rays(job, batch);
             }
@@ -93,7 +94,7 @@ impl Method {
                 hits(job, batch);
                 next_events(job, batch, lvc.next_events);
                 draw_cached(job, batch, lvc.candidates);
-                connect(job, batch, Source::Cache);
+                connect(job, batch);
                 select(&**selector, batch);
                 shadow_rays(job, batch);
             }

@@ -41,18 +41,22 @@ impl PathContext<'_> {
     #[inline]
     pub fn count(&self, s: usize, t: usize, [z, y]: [Cell; 2]) -> f64 {
         let SampleCounts {
-            connections,
             next_events,
             light_subpaths,
+            ..
         } = self.job.counts;
         match t {
             _ if !self.takes(s, t) => 0.0,
             1 => light_subpaths,
-            _ if s >= self.job.settings.light_point.first_walked() => {
-                connections[usize::from(t > 2)] * self.job.guide.count_factor(z, y)
-            }
+            _ if s >= self.job.settings.light_point.first_walked() => self.count_walked(t, [z, y]),
             _ => next_events[usize::from(t > 2)],
         }
+    }
+
+    /// The same of a strategy that links a vertex of a light subpath with camera vertex number `t` ≥ 2 and takes part.
+    #[inline]
+    pub(crate) fn count_walked(&self, t: usize, [z, y]: [Cell; 2]) -> f64 {
+        self.job.counts.connections[usize::from(t > 2)] * self.job.guide.count_factor(z, y)
     }
 
     /// The same for s = 0, which links nothing.

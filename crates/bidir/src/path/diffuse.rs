@@ -16,12 +16,13 @@
 
 use super::densities::factor;
 use super::running::EndSums;
-use super::segment::inverse;
 use super::{MisHeuristic, PathContext, Scattering, Vertex};
 use crate::bsdf::{Bsdf, TransportMode};
 use crate::guide::Cell;
 use crate::math::{INV_PI, Vec3};
 use crate::spectrum::Spectrum;
+use glam::{Mat4, Vec4};
+use std::ops::{Mul, Sub};
 
 /// A diffuse vertex of a walk, with all that its connections with other ones need: a line of memory.
 #[derive(Clone, Copy, Debug)]
@@ -46,7 +47,7 @@ const _: () = assert!(size_of::<DiffuseEnd>() == 64);
 
 impl DiffuseEnd {
     /// Any other vertex.
-    const NONE: Self = Self {
+    pub(crate) const NONE: Self = Self {
         point: Vec3::ZERO,
         others: 0.0,
         n_g: Vec3::ZERO,
@@ -109,24 +110,137 @@ impl DiffuseEnd {
         self.cell
     }
 
-    /// C of the connection of the light vertex `self` with the camera vertex `y`, before visibility, and its weight,
-    /// where its strategy takes `count` samples. None: C is zero.
+    /// The connections of the camera vertex `self` with four light vertices, before visibility, where the strategy of
+    /// each takes so many samples.
     #[inline]
-    pub fn connect(&self, y: &Self, count: f32) -> Option<(Spectrum, f32)> {
-        let z = self;
-        let across = y.point - z.point;
-        let inverse2 = inverse(across.length_squared());
+    pub fn connect<'a>(&'a self, z: [&'a Self; 4], counts: [f32; 4]) -> DiffuseConnections<'a> {
+        let (y, lanes, counts) = (self, DiffuseLanes::of(z), Vec4::from(counts));
+        let across = Lanes3::splat(y.point) - lanes.point;
+        let inverse2 = inverse(across.dot(&across));
         let w = across * inverse2.sqrt();
-        let [g_z, s_z] = [z.n_g.dot(w), z.n_s.dot(w)];
-        let [g_y, s_y] = [-y.n_g.dot(w), -y.n_s.dot(w)];
+        let [g_z, s_z] = [lanes.n_g.dot(&w), lanes.n_s.dot(&w)];
+        let [g_y, s_y] = [y.n_g, y.n_s].map(|n| -Lanes3::splat(n).dot(&w));
         // Not true of a NaN.
-        if [g_z, s_z, g_y, s_y].map(|cos| cos > 0.0) != [true; 4] {
+        let [a, b, c, d] = [g_z, s_z, g_y, s_y].map(|cos| cos.cmpgt(Vec4::ZERO));
+        let factors = g_z * s_y * inverse2;
+        let r_z = y.density * s_y * (g_z * inverse2);
+        let r_y = lanes.density * s_z * (g_y * inverse2);
+        let weights = counts / (counts + (r_z * lanes.others + r_y * y.others));
+        DiffuseConnections {
+            y,
+            z,
+            factors: Vec4::select(a & b & c & d, factors, Vec4::ZERO).to_array(),
+            weights: weights.to_array(),
+        }
+    }
+}
+
+/// Connections of a diffuse camera vertex with four diffuse light vertices, before visibility.
+pub struct DiffuseConnections<'a> {
+    y: &'a DiffuseEnd,
+    z: [&'a DiffuseEnd; 4],
+    /// (n_g·w)_z (n_s·-w)_y / d²; 0 where either end scatters nothing to the other.
+    factors: [f32; 4],
+    weights: [f32; 4],
+}
+
+impl DiffuseConnections<'_> {
+    /// C and the weight of number `lane`. None: C is zero.
+    #[inline]
+    pub fn get(&self, lane: usize) -> Option<(Spectrum, f32)> {
+        let factor = self.factors[lane];
+        if factor == 0.0 {
             return None;
         }
-        let contribution = z.flux * y.flux * (g_z * s_y * inverse2);
-        let r_z = y.density * s_y * (g_z * inverse2);
-        let r_y = z.density * s_z * (g_y * inverse2);
-        let weight = count / (count + (r_z * z.others + r_y * y.others));
-        (!contribution.is_black()).then_some((contribution, weight))
+        let contribution = self.z[lane].flux * self.y.flux * factor;
+        (!contribution.is_black()).then_some((contribution, self.weights[lane]))
     }
+}
+
+/// Four vertices, a number of each in a lane.
+struct DiffuseLanes {
+    point: Lanes3,
+    others: Vec4,
+    n_g: Lanes3,
+    density: Vec4,
+    n_s: Lanes3,
+}
+
+impl DiffuseLanes {
+    #[inline]
+    fn of(ends: [&DiffuseEnd; 4]) -> Self {
+        let (point, others) = transposed(ends.map(|end| end.point.extend(end.others)));
+        let (n_g, density) = transposed(ends.map(|end| end.n_g.extend(end.density)));
+        let (n_s, _) = transposed(ends.map(|end| end.n_s.extend(0.0)));
+        Self {
+            point,
+            others,
+            n_g,
+            density,
+            n_s,
+        }
+    }
+}
+
+/// Four vectors, a coordinate of each in a lane.
+struct Lanes3 {
+    x: Vec4,
+    y: Vec4,
+    z: Vec4,
+}
+
+impl Lanes3 {
+    #[inline]
+    fn splat(v: Vec3) -> Self {
+        let [x, y, z] = v.to_array().map(Vec4::splat);
+        Self { x, y, z }
+    }
+
+    #[inline]
+    fn dot(&self, other: &Self) -> Vec4 {
+        self.x * other.x + self.y * other.y + self.z * other.z
+    }
+}
+
+impl Sub for Lanes3 {
+    type Output = Self;
+    #[inline]
+    fn sub(self, other: Self) -> Self {
+        Self {
+            x: self.x - other.x,
+            y: self.y - other.y,
+            z: self.z - other.z,
+        }
+    }
+}
+
+impl Mul<Vec4> for Lanes3 {
+    type Output = Self;
+    #[inline]
+    fn mul(self, scale: Vec4) -> Self {
+        Self {
+            x: self.x * scale,
+            y: self.y * scale,
+            z: self.z * scale,
+        }
+    }
+}
+
+/// The first three columns of a matrix with these rows, and the last one.
+#[inline]
+fn transposed([a, b, c, d]: [Vec4; 4]) -> (Lanes3, Vec4) {
+    let columns = Mat4::from_cols(a, b, c, d).transpose();
+    let lanes = Lanes3 {
+        x: columns.x_axis,
+        y: columns.y_axis,
+        z: columns.z_axis,
+    };
+    (lanes, columns.w_axis)
+}
+
+/// 1 / `x` lane by lane; 0 where that is no number.
+#[inline]
+fn inverse(x: Vec4) -> Vec4 {
+    let inverse = Vec4::ONE / x;
+    Vec4::select(inverse.cmplt(Vec4::INFINITY), inverse, Vec4::ZERO)
 }

@@ -40,7 +40,7 @@ pub use arrival::Arrival;
 pub use connect::{JoinedPath, Junction, next_event_pdf, sample_next_event};
 pub use count::SampleCounts;
 pub use densities::{PathDensities, VertexDensities};
-pub use diffuse::DiffuseEnd;
+pub use diffuse::{DiffuseConnections, DiffuseEnd};
 pub use light_choice::{LightChoiceKind, LightPointChoice};
 pub use mis::{MisHeuristic, mis_weight};
 pub use roulette::PathRoulette;

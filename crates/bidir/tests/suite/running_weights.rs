@@ -14,6 +14,7 @@ use bidir::path::{
     Strategies, Subpath, Vertex, Weights, sample_next_event,
 };
 use bidir::shape::Shape;
+use std::array::from_fn;
 
 /// Both forms take the same densities, and sum in f64; weights are f32.
 const TOLERANCE: f32 = 1e-6;
@@ -116,7 +117,15 @@ impl Comparison {
         let path = JoinedPath::connection(light, camera);
         let contribution = path.contribution(context);
         let count = context.count(s, t, [light[s - 1].cell, camera[t - 1].cell]);
-        let Some((found, weight)) = z.connect(y, count as f32) else {
+        // Other vertices, with counts of their own, are in the other lanes.
+        let own = (s + t) % 4;
+        let ends = from_fn(|lane| match of_light.diffuse((s + lane) % 8) {
+            Some(other) if lane != own => other,
+            _ => z,
+        });
+        let counts = from_fn(|lane| count as f32 * if lane == own { 1.0 } else { 3.0 });
+        let connections = y.connect(ends, counts);
+        let Some((found, weight)) = connections.get(own) else {
             assert!(
                 contribution.is_black(),
                 "s = {s}, t = {t}: {contribution:?}"

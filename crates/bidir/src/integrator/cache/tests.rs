@@ -11,7 +11,7 @@ const SUBPATHS: usize = 20;
 /// The places of numbers that are drawn with, evenly spaced.
 const DRAWS: u32 = 1 << 20;
 
-/// A vertex in a cell.
+/// A vertex in a cell, of a subpath that begins on a light.
 fn vertex(cell: Cell) -> Vertex {
     let lens = LensSample {
         locus: Locus::on_surface(Vec3::ZERO, Vec3::Z, 0.0),
@@ -19,6 +19,7 @@ fn vertex(cell: Cell) -> Vertex {
     };
     Vertex {
         cell,
+        light: Some(0),
         ..Vertex::camera(&lens, MediumId::VACUUM)
     }
 }
@@ -50,10 +51,10 @@ fn check(proposals: Option<&LightProposals>, cells: &Cells) {
     let cache = cache(proposals, cells);
     let connectable = (0..SUBPATHS).map(|i| i % 4).sum();
     let mut found = vec![(0u32, 0.0); connectable];
-    let y = cell(cells, 1);
+    let row = proposals.map(|all| all.row(cell(cells, 1)));
     for i in 0..DRAWS {
         let u = (f64::from(i) + 0.5) / f64::from(DRAWS);
-        if let Some(draw) = cache.draw(proposals, y, u) {
+        if let Some(draw) = cache.draw(row, u) {
             found[draw.entry].0 += 1;
             found[draw.entry].1 = draw.share;
         }

@@ -1,157 +1,61 @@
 //! s ≥ 1 and t ≥ 2: the connections of light vertices with camera vertices, before visibility.
 
-use super::super::batch::{NextEvent, drop_term};
-use super::super::cache::CachedEnd;
+use super::super::batch::{LightEnd, drop_term};
 use super::super::{Batch, Sample};
-use super::pairs::Pairs;
 use crate::contribution::{Term, is_summable};
 use crate::path::{
     DiffuseEnd, EndSums, Job, JoinedPath, PathContext, PathSums, RunningSums, Subpath, Subpaths,
-    Vertex, Weights,
+    Weights,
 };
 use crate::select::Candidate;
 use crate::spectrum::Spectrum;
 use crate::stats::{Stage, Stats};
 use crate::strategy::Strategy;
-use std::iter::Peekable;
-use std::slice::Iter;
-
-/// The origin of light vertices, besides those of next-event estimation.
-#[derive(Clone, Copy)]
-pub(in super::super) enum Source {
-    /// The sample's own light subpath.
-    Own,
-    /// The light vertex cache, of which [`draw_cached`](super::draw_cached) drew some.
-    Cache,
-}
+use std::array::from_fn;
 
 /// Evaluates the connections of all camera vertices.
 #[inline(never)]
-pub(in super::super) fn connect(job: &Job<'_>, batch: &mut Batch, source: Source) {
-    let first = match source {
-        Source::Own => batch.first_light(),
-        Source::Cache => 0,
-    };
-    let Batch {
-        samples,
-        camera,
-        light,
-        next_events,
-        camera_sums,
-        light_sums,
-        cached,
-        weights,
-        candidates,
-        candidates_end,
-        unoffered,
-        stats,
-        ..
-    } = batch;
-    let lights = Lights {
-        walks: light,
-        sums: light_sums,
-    };
-    let mut drawn = Drawn {
-        next_events: next_events.iter().peekable(),
-        cached: cached.iter().peekable(),
-    };
-    for (number, sample) in samples.iter().enumerate() {
-        let walk = camera.get(number);
-        let connector = Connector {
+pub(in super::super) fn connect(job: &Job<'_>, batch: &mut Batch) {
+    let mut next_events = batch.next_events.iter().peekable();
+    let (mut light_ends, mut ends) = (&batch.light_ends[..], batch.light_ends_end.iter());
+    let mut begin = 0;
+    for (number, sample) in batch.samples.iter().enumerate() {
+        let mut connector = Connector {
             context: sample.context(job),
             sample,
-            camera: walk,
-            camera_sums,
-            weights,
-            candidates,
-            unoffered,
-            stats,
+            camera: batch.camera.get(number),
+            camera_sums: &batch.camera_sums,
+            light: &batch.light,
+            light_sums: &batch.light_sums,
+            weights: &mut batch.weights,
+            candidates: &mut batch.candidates,
+            unoffered: &mut batch.unoffered,
+            stats: &mut batch.stats,
         };
-        let own = match source {
-            Source::Own => Some(first + number),
-            Source::Cache => None,
-        };
-        connector.offer_all(number, &lights, &mut drawn, own);
-        candidates_end.push(candidates.len());
+        for t in 2..=connector.camera.vertices.len() {
+            let is_due = |of: [u32; 2]| of == [number as u32, t as u32];
+            while let Some(event) = next_events.next_if(|it| is_due([it.sample, it.t])) {
+                connector.offer_general(t, &event.end, Some(event.pdf));
+            }
+            let end = ends.next().copied().unwrap_or(begin);
+            let (of_vertex, others) = light_ends.split_at(end - begin);
+            connector.offer_all(t, of_vertex);
+            (light_ends, begin) = (others, end);
+        }
+        batch.candidates_end.push(batch.candidates.len());
     }
-    debug_assert!(drawn.next_events.next().is_none() && drawn.cached.next().is_none());
+    debug_assert!(next_events.next().is_none() && light_ends.is_empty());
     batch.stopwatch.end(Stage::Candidates);
 }
 
-/// All light vertices.
-struct Lights<'a> {
-    walks: &'a Subpaths,
-    sums: &'a RunningSums,
-}
-
-/// The light vertices that were drawn for camera vertices, in the order of these.
-struct Drawn<'a> {
-    next_events: Peekable<Iter<'a, NextEvent>>,
-    cached: Peekable<Iter<'a, CachedEnd>>,
-}
-
-/// A light vertex to connect, with the subpath up to it.
-struct LightEnd<'a> {
-    /// From x_0 to the vertex.
-    vertices: &'a [Vertex],
-    sums: &'a EndSums,
-    /// The vertex as a diffuse one.
-    diffuse: Option<&'a DiffuseEnd>,
-    /// The light that the subpath begins on.
-    light: Option<u32>,
-    /// The density of a light point that was drawn for the camera vertex.
-    next_event: Option<f32>,
-    /// The number of the vertex among all light vertices.
-    z: usize,
-    /// The number of the vertex in the sample; 0 for all light points of next-event estimation.
-    number: usize,
-    /// How much its connection counts.
-    share: f32,
-}
-
-impl<'a> Lights<'a> {
-    /// A light point of next-event estimation.
-    #[inline]
-    fn point(&self, drawn: &NextEvent) -> LightEnd<'a> {
-        let z = drawn.z;
-        let point = &self.walks.vertices()[z];
-        LightEnd {
-            vertices: std::slice::from_ref(point),
-            sums: &EndSums::NONE,
-            diffuse: None,
-            light: point.light,
-            next_event: Some(drawn.pdf),
-            z,
-            number: 0,
-            share: 1.0,
-        }
-    }
-
-    /// A vertex of the cache.
-    #[inline]
-    fn cached(&self, cached: &CachedEnd) -> LightEnd<'a> {
-        LightEnd {
-            number: cached.entry as usize + 1,
-            share: cached.share,
-            light: cached.place.light,
-            ..self.at(cached.place.z as usize, cached.place.s.into())
-        }
-    }
-
-    /// Vertex number `z` of all, the last of `s` of its subpath.
-    #[inline]
-    fn at(&self, z: usize, s: usize) -> LightEnd<'a> {
-        LightEnd {
-            vertices: &self.walks.vertices()[z + 1 - s..=z],
-            sums: self.sums.at(z),
-            diffuse: self.sums.diffuse(z),
-            light: None,
-            next_event: None,
-            z,
-            number: s - 1,
-            share: 1.0,
-        }
-    }
+/// A connection that is not zero, before visibility.
+#[derive(Clone, Copy)]
+struct Connection {
+    /// C.
+    contribution: Spectrum,
+    weight: f32,
+    /// √V̂ of its shadow ray.
+    root_visibility: f32,
 }
 
 /// Connects the camera subpath of a sample.
@@ -160,6 +64,8 @@ struct Connector<'a> {
     sample: &'a Sample,
     camera: Subpath<'a>,
     camera_sums: &'a RunningSums,
+    light: &'a Subpaths,
+    light_sums: &'a RunningSums,
     weights: &'a mut Weights,
     candidates: &'a mut Vec<Candidate>,
     unoffered: &'a mut Vec<Candidate>,
@@ -167,65 +73,101 @@ struct Connector<'a> {
 }
 
 impl Connector<'_> {
-    /// Connects all camera vertices of sample `number` with the light vertices that were drawn for them, and with
-    /// its own light subpath, number `own`, if it has one.
-    fn offer_all(
-        mut self,
-        number: usize,
-        lights: &Lights<'_>,
-        drawn: &mut Drawn<'_>,
-        own: Option<usize>,
-    ) {
-        let mut pairs = Pairs::new(&self.context, &self.sample.camera);
-        for t in 2..=self.camera.vertices.len() {
-            if self.camera.vertices[t - 1].is_delta() {
-                continue;
+    /// Connects camera vertex number `t` with vertices of light subpaths: diffuse ones four at a time, if it is
+    /// diffuse itself.
+    fn offer_all(&mut self, t: usize, ends: &[LightEnd]) {
+        let Some(y) = self.camera_sums.diffuse(self.camera.first + t - 1) else {
+            for end in ends {
+                self.offer_general(t, end, None);
             }
-            let is_due = |of: [u32; 2]| of == [number as u32, t as u32];
-            while let Some(event) = drawn.next_events.next_if(|it| is_due([it.sample, it.t])) {
-                self.offer(t, &lights.point(event));
-            }
-            while let Some(cached) = drawn.cached.next_if(|it| is_due([it.sample, it.t])) {
-                self.offer(t, &lights.cached(cached));
-            }
-            if let Some(own) = own {
-                self.offer_own(t, lights, own, &mut pairs);
-            }
-        }
-    }
-
-    /// Connects camera vertex number `t` with the vertices of the sample's own light subpath.
-    fn offer_own(&mut self, t: usize, lights: &Lights<'_>, number: usize, pairs: &mut Pairs) {
-        let settings = self.context.job.settings;
-        let walk = lights.walks.get(number);
-        let longest = walk.vertices.len().min(settings.max_vertices() - t);
-        for s in settings.light_point.first_walked()..=longest {
-            if let Some(share) = pairs.take(s + t) {
-                let end = LightEnd {
-                    light: walk.vertices[0].light,
-                    share,
-                    ..lights.at(walk.first + s - 1, s)
-                };
-                self.offer(t, &end);
-            }
-        }
-    }
-
-    /// Evaluates a connection, and offers it for selection. It is compared by its luminance times the √V̂ of its
-    /// shadow ray.
-    #[inline]
-    fn offer(&mut self, t: usize, end: &LightEnd<'_>) {
-        let Some((term, root_visibility)) = self.term(t, end) else {
             return;
+        };
+        for four in ends.chunks(4) {
+            let z = from_fn(|lane| {
+                let end = four.get(lane);
+                let z = end.and_then(|end| self.light_sums.diffuse(end.place.z as usize));
+                z.unwrap_or(&DiffuseEnd::NONE)
+            });
+            let count = |z: &DiffuseEnd| self.context.count_walked(t, [z.cell(), y.cell()]) as f32;
+            let connections = y.connect(z, z.map(count));
+            for (lane, end) in four.iter().enumerate() {
+                if !end.place.is_diffuse {
+                    self.offer_general(t, end, None);
+                } else if let Some((contribution, weight)) = connections.get(lane) {
+                    let guide = &self.context.job.guide;
+                    let connection = Connection {
+                        contribution,
+                        weight,
+                        root_visibility: guide.root_visibility(z[lane].cell(), y.cell()),
+                    };
+                    self.offer(t, end, connection);
+                }
+            }
+        }
+    }
+
+    /// Connects camera vertex number `t` with any light vertex. `next_event` is the density of a light point that was
+    /// drawn for it.
+    fn offer_general(&mut self, t: usize, end: &LightEnd, next_event: Option<f32>) {
+        if let Some(connection) = self.general(t, end, next_event) {
+            self.offer(t, end, connection);
+        }
+    }
+
+    /// The connection of any two vertices. None: it is zero. Media are guessed.
+    fn general(
+        &mut self,
+        t: usize,
+        end: &LightEnd,
+        next_event: Option<f32>,
+    ) -> Option<Connection> {
+        let (z, s) = (end.place.z as usize, usize::from(end.place.s));
+        let light = &self.light.vertices()[z + 1 - s..=z];
+        let mut path = JoinedPath::connection(light, &self.camera.vertices[..t]);
+        let contribution = path.contribution(&self.context);
+        if contribution == Spectrum::ZERO {
+            return None;
+        }
+        let sums = PathSums {
+            light: match next_event {
+                Some(_) => &EndSums::NONE,
+                None => self.light_sums.at(z),
+            },
+            camera: self.camera_sums.at(self.camera.first + t - 1),
+            next_event,
+        };
+        let (z, y) = (path.z(), path.y());
+        let mut root_visibility = self.context.root_visibility(z, y);
+        let scene = self.context.job.scene;
+        if !scene.is_clear(&z.locus, &y.locus) {
+            let guess = scene.guessed_edge(&z.locus, &y.locus, &self.context.wavelengths);
+            path.pass(&guess);
+            root_visibility *= scene.color().mean(guess.transmittance);
+        }
+        Some(Connection {
+            contribution,
+            weight: self.weights.weight(&self.context, &path, &sums),
+            root_visibility,
+        })
+    }
+
+    /// Offers a connection for selection. It is compared by its luminance times the √V̂ of its shadow ray.
+    #[inline]
+    fn offer(&mut self, t: usize, end: &LightEnd, connection: Connection) {
+        let term = Term {
+            strategy: Strategy::new(end.place.s.into(), t),
+            light: end.place.light,
+            contribution: connection.contribution * end.share,
+            weight: connection.weight,
         };
         self.stats.count_candidate(term.strategy);
         let value = term.value();
         let luminance = self.context.luminance(value.map(f32::abs));
         let candidate = Candidate {
             term,
-            score: Candidate::score(luminance * root_visibility),
-            vertices: [end.z, self.camera.first + t - 1].map(|vertex| vertex as u32),
-            light_vertex: end.number as u32,
+            score: Candidate::score(luminance * connection.root_visibility),
+            vertices: [end.place.z, (self.camera.first + t - 1) as u32],
+            light_vertex: end.number,
         };
         if is_summable(value) && !value.is_black() {
             self.candidates.push(candidate);
@@ -240,62 +182,5 @@ impl Connector<'_> {
             drop_term(self.stats, self.sample, candidate.term.strategy);
         }
         self.unoffered.push(candidate);
-    }
-
-    /// The term of a connection, and the √V̂ of its shadow ray. None: the term is zero.
-    #[inline]
-    fn term(&mut self, t: usize, end: &LightEnd<'_>) -> Option<(Term, f32)> {
-        let (s, y) = (end.vertices.len(), self.camera.first + t - 1);
-        if !self.context.takes(s, t) {
-            return None;
-        }
-        let light = end.light?;
-        let (contribution, weight, root_visibility) =
-            match (end.diffuse, self.camera_sums.diffuse(y)) {
-                (Some(z), Some(y)) => {
-                    let cells = [z.cell(), y.cell()];
-                    let count = self.context.count(s, t, cells) as f32;
-                    let (contribution, weight) = z.connect(y, count)?;
-                    let guide = &self.context.job.guide;
-                    (
-                        contribution,
-                        weight,
-                        guide.root_visibility(cells[0], cells[1]),
-                    )
-                }
-                _ => self.general(t, end)?,
-            };
-        let term = Term {
-            strategy: Strategy::new(s, t),
-            light,
-            contribution: contribution * end.share,
-            weight,
-        };
-        Some((term, root_visibility))
-    }
-
-    /// C of a connection of any two vertices, its weight, and the √V̂ of its shadow ray. None: C is zero. Media
-    /// are guessed.
-    fn general(&mut self, t: usize, end: &LightEnd<'_>) -> Option<(Spectrum, f32, f32)> {
-        let mut path = JoinedPath::connection(end.vertices, &self.camera.vertices[..t]);
-        let contribution = path.contribution(&self.context);
-        if contribution == Spectrum::ZERO {
-            return None;
-        }
-        let sums = PathSums {
-            light: end.sums,
-            camera: self.camera_sums.at(self.camera.first + t - 1),
-            next_event: end.next_event,
-        };
-        let (z, y) = (path.z(), path.y());
-        let mut arrives = self.context.root_visibility(z, y);
-        let scene = self.context.job.scene;
-        if !scene.is_clear(&z.locus, &y.locus) {
-            let guess = scene.guessed_edge(&z.locus, &y.locus, &self.context.wavelengths);
-            path.pass(&guess);
-            arrives *= scene.color().mean(guess.transmittance);
-        }
-        let weight = self.weights.weight(&self.context, &path, &sums);
-        Some((contribution, weight, arrives))
     }
 }

@@ -2,8 +2,8 @@
 
 mod connect;
 mod direct;
-mod draw;
 mod hits;
+mod light_ends;
 mod light_image;
 mod media;
 mod next_event;
@@ -11,10 +11,10 @@ mod pairs;
 mod trace;
 mod walk;
 
-pub(super) use connect::{Source, connect};
+pub(super) use connect::connect;
 pub(super) use direct::direct;
-pub(super) use draw::draw_cached;
 pub(super) use hits::hits;
+pub(super) use light_ends::{draw_cached, own_light};
 pub(super) use light_image::{Weighting, lens_vertex, light_image};
 pub(super) use media::ShadowPassage;
 pub(super) use next_event::next_events;

@@ -1,6 +1,6 @@
 //! s = 1: light points for camera vertices, where these have their own.
 
-use super::super::batch::NextEvent;
+use super::super::batch::{LightEnd, NextEvent};
 use super::super::{Batch, CandidateCount, Sample};
 use crate::math::ONE_MINUS_EPSILON;
 use crate::path::{Job, LightPointChoice, PathContext, Vertex, sample_next_event};
@@ -32,14 +32,15 @@ pub(in super::super) fn next_events(job: &Job<'_>, batch: &mut Batch, counts: Ca
             }
             let count = counts.at(t);
             for k in 0..count {
-                if let Some((x0, pdf)) = light_point(&context, sample, y, t, [k, count]) {
-                    next_events.push(NextEvent {
-                        sample: number as u32,
-                        t: t as u32,
-                        z: light.add_point(&x0),
-                        pdf,
-                    });
-                }
+                let Some((x0, pdf)) = light_point(&context, sample, y, t, [k, count]) else {
+                    continue;
+                };
+                next_events.extend(x0.light.map(|number_of_light| NextEvent {
+                    sample: number as u32,
+                    t: t as u32,
+                    end: LightEnd::point(light.add_point(&x0), number_of_light),
+                    pdf,
+                }));
             }
         }
     }

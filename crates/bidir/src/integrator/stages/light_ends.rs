@@ -1,0 +1,99 @@
+//! The vertices of light subpaths that camera vertices are connected with.
+
+use super::super::batch::LightEnd;
+use super::super::cache::Place;
+use super::super::{Batch, CandidateCount};
+use super::pairs::Pairs;
+use crate::path::Job;
+use crate::sampler::{Dimension, Purpose};
+use crate::stats::Stage;
+
+/// Lists for each camera vertex the vertices of the sample's own light subpath.
+#[inline(never)]
+pub(in super::super) fn own_light(job: &Job<'_>, batch: &mut Batch) {
+    let first = batch.first_light();
+    let Batch {
+        samples,
+        camera,
+        light,
+        light_sums,
+        light_ends,
+        light_ends_end,
+        ..
+    } = batch;
+    let settings = job.settings;
+    for (number, sample) in samples.iter().enumerate() {
+        let context = sample.context(job);
+        let subpath = light.get(first + number);
+        let mut pairs = Pairs::new(&context, &sample.camera);
+        for (t, y) in (2..).zip(camera.get(number).vertices.iter().skip(1)) {
+            let longest = subpath.vertices.len().min(settings.max_vertices() - t);
+            let longest = if y.is_delta() { 0 } else { longest };
+            for s in settings.light_point.first_walked()..=longest {
+                let share = pairs.take(s + t);
+                let place = Place::new(&subpath, s - 1, light_sums);
+                let (Some(share), Some(place)) = (share, place) else {
+                    continue;
+                };
+                if !subpath.vertices[s - 1].is_delta() && context.takes(s, t) {
+                    light_ends.push(LightEnd {
+                        place,
+                        number: s as u32 - 1,
+                        share,
+                    });
+                }
+            }
+            light_ends_end.push(light_ends.len());
+        }
+    }
+    batch.stopwatch.end(Stage::Candidates);
+}
+
+/// Draws for each camera vertex as many vertices of the cache as `counts` says, one of each of as many parts of it.
+/// They lie anywhere in the memory of a group, and are loaded while others are drawn.
+#[inline(never)]
+pub(in super::super) fn draw_cached(job: &Job<'_>, batch: &mut Batch, counts: CandidateCount) {
+    let Batch {
+        samples,
+        camera,
+        light,
+        light_sums,
+        cache,
+        light_ends,
+        light_ends_end,
+        ..
+    } = batch;
+    let max_vertices = job.settings.max_vertices();
+    for (number, sample) in samples.iter().enumerate() {
+        let context = sample.context(job);
+        for (t, y) in (2..).zip(camera.get(number).vertices.iter().skip(1)) {
+            let count = if y.is_delta() { 0 } else { counts.at(t) };
+            let part = 1.0 / f64::from(count);
+            let row = job.guide.row(y.cell);
+            let at = Dimension::at(t - 1, Purpose::CachedVertex);
+            let u = f64::from(sample.camera.get_1d(at));
+            for m in 0..count {
+                let Some(draw) = cache.draw(row, (f64::from(m) + u) * part) else {
+                    continue;
+                };
+                let place = cache.place(draw.entry);
+                let s = usize::from(place.s);
+                if s + t > max_vertices || !context.takes(s, t) {
+                    continue;
+                }
+                if place.is_diffuse {
+                    light_sums.load_ahead(place.z as usize);
+                } else {
+                    light.load_ahead(place.z as usize);
+                }
+                light_ends.push(LightEnd {
+                    place,
+                    number: draw.entry as u32 + 1,
+                    share: (draw.share * part) as f32,
+                });
+            }
+            light_ends_end.push(light_ends.len());
+        }
+    }
+    batch.stopwatch.end(Stage::Candidates);
+}
