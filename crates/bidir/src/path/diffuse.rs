@@ -1,4 +1,4 @@
-//! Connections of two diffuse vertices, from what each of them knows beforehand.
+//! Connections of diffuse vertices, from what each of them knows beforehand, four at a time.
 //!
 //! With d² the squared distance of z and y, w the direction from z to y, n_g and n_s the normals on the side
 //! that the walk came from, and f = ρ/π,
@@ -12,7 +12,7 @@
 //! w = n / (n + r_z k_z + r_y k_y).
 //!
 //! [`JoinedPath`](super::JoinedPath) and [`PathSums`](super::PathSums) are the specification, for every kind of
-//! vertex; the two agree but for rounding.
+//! vertex; the two agree but for rounding. No lane depends on the other lanes.
 
 use super::densities::factor;
 use super::running::EndSums;
