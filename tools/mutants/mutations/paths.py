@@ -226,9 +226,9 @@ PATHS = [
     ),
     (
         "candidates of a light cache not shared among each other",
-        "crates/bidir/src/integrator/stages/light_ends.rs",
-        "(draw.share * part) as f32,",
-        "draw.share as f32,",
+        "crates/bidir/src/integrator/cache.rs",
+        "(draw.share * part) as f32",
+        "draw.share as f32",
         analytic("a_closed_sphere"),
     ),
     (
@@ -241,9 +241,23 @@ PATHS = [
     (
         "proposals that forget their uniform part",
         "crates/bidir/src/guide/proposals.rs",
-        "(part * of_cell + unit * self.units(light) * all)",
-        "(unit * self.units(light) * all)",
+        "(part * of_cell + learned * all)",
+        "(learned * all)",
         unit("cache::tests"),
+    ),
+    (
+        "weights that forget the uniform part of proposals",
+        "crates/bidir/src/guide/proposals.rs",
+        "f64::from(UNIFORM_PART) + learned",
+        "learned",
+        unit("counts_of_weights_are_those_of_draws"),
+    ),
+    (
+        "connections of a strategy that takes no part",
+        "crates/bidir/src/integrator/stages/light_ends.rs",
+        "!subpath.vertices[s - 1].is_delta() && context.takes(s, t)",
+        "!subpath.vertices[s - 1].is_delta()",
+        estimators("shared_light_points_and_missing_strategies"),
     ),
     (
         "vertices of a cell proposed by the count of all",
@@ -255,8 +269,8 @@ PATHS = [
     (
         "weights that know the proposal the other way round",
         "crates/bidir/src/path/count.rs",
-        "self.job.guide.count_factor(z, y)",
-        "self.job.guide.count_factor(if s > t { z } else { y }, y)",
+        "self.count_walked(t, [z, y])",
+        "self.count_walked(t, [if s > t { z } else { y }, y])",
         RUNNING,
     ),
     (

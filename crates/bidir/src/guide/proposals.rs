@@ -184,8 +184,8 @@ impl ProposalRow {
     pub(crate) fn inverse_prob(&self, light: Cell, counts: [usize; 2]) -> f64 {
         let [all, of_cell] = counts.map(|count| count as f64);
         let part = f64::from(UNIFORM_PART);
-        let unit = (1.0 - part) / f64::from(UNITS);
-        all * of_cell / (part * of_cell + unit * self.units(light) * all)
+        let learned = (1.0 - part) / f64::from(UNITS) * self.units(light);
+        all * of_cell / (part * of_cell + learned * all)
     }
 
     /// Γ(c | r) of the cell c = `light`, in units.
@@ -196,11 +196,11 @@ impl ProposalRow {
     }
 }
 
-/// The first of the cells with these ends, without the 0 at the front, that holds a number of this part or ends
-/// behind it.
-fn first_end_beyond(ends: &[u16; Cells::COUNT + 1], part: usize) -> u8 {
+/// The first cell that ends behind the begin of this part.
+fn first_end_beyond(cumulative: &[u16; Cells::COUNT + 1], part: usize) -> u8 {
     let begin = part as u16 * UNITS_OF_PART;
-    ends[1..Cells::COUNT].partition_point(|&end| end <= begin) as u8
+    let ends = &cumulative[1..Cells::COUNT];
+    ends.partition_point(|&end| end <= begin) as u8
 }
 
 /// √V̂ in units if so many connections were traced and arrived. Pairs of cells that training did not see count as
@@ -277,6 +277,31 @@ mod tests {
         assert_eq!(after.count_factors, before.count_factors);
     }
 
+    /// Where each cell has its usual part K_c / K = κ_c / κ of the vertices, n κ / M is K P.
+    #[test]
+    fn counts_of_weights_are_those_of_draws() {
+        let kappa = |cell: usize| (1 + cell % 5) as f64;
+        let mut sums = PairSums::uniform((0..Cells::COUNT).map(kappa).collect());
+        let y = Cells::cell(5);
+        (0..Cells::COUNT)
+            .step_by(3)
+            .for_each(|z| sums.add(Cells::pair(Cells::cell(z), y), (z % 11) as f64));
+        let all: f64 = sums.light_vertices.iter().sum();
+        let proposals = LightProposals::new(Cells::new(&mut []), &sums);
+        for cell in 0..Cells::COUNT {
+            let (z, counts) = (
+                Cells::cell(cell),
+                [all, kappa(cell)].map(|k| 2 * k as usize),
+            );
+            let drawn = 2.0 * all / proposals.row(y).inverse_prob(z, counts);
+            let counted = proposals.count_factor(z, y);
+            assert!(
+                (drawn - counted).abs() < 1e-12 * counted,
+                "{drawn}, {counted}"
+            );
+        }
+    }
+
     #[test]
     fn every_number_leads_to_the_cell_that_holds_it() {
         let cells = Cells::new(&mut []);
@@ -287,18 +312,22 @@ mod tests {
             let square = (light % 7 * light % 11) as f64;
             sums.add(Cells::pair(Cells::cell(light), y), square);
         }
-        let proposals = LightProposals::new(cells, &sums);
+        let proposals = LightProposals::new(cells.clone(), &sums);
         let row = proposals.row(y);
         let ends = &row.cumulative;
         let uniform = f64::from(UNIFORM_PART);
-        for i in 0..4096 {
-            let u = (f64::from(i) + 0.5) / 4096.0;
+        let last = 1.0 - f64::EPSILON / 2.0;
+        let within = (0..4096).map(|i| (f64::from(i) + 0.5) / 4096.0);
+        for u in within.chain([0.0, last]) {
             let units = u * f64::from(UNITS);
-            let CellDraw::One(cell, _) = row.draw(uniform + (1.0 - uniform) * u) else {
+            let CellDraw::One(cell, _) = row.draw((uniform + (1.0 - uniform) * u).min(last)) else {
                 panic!("the part of all vertices ends at {uniform}");
             };
             let [from, to] = [ends[cell.index()], ends[cell.index() + 1]].map(f64::from);
-            assert!(from <= units && units < to, "{units} leads to {from} .. {to}");
+            assert!(
+                from <= units && units < to,
+                "{units} leads to {from} .. {to}"
+            );
         }
     }
 }

@@ -56,11 +56,11 @@ impl Place {
 
 /// A draw from the cache.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Draw {
-    /// Its number.
-    pub(super) entry: usize,
+struct Draw {
+    /// The number of the vertex.
+    entry: usize,
     /// 1 / (N P), with N subpaths and P the probability of drawing it.
-    pub(super) share: f64,
+    share: f64,
 }
 
 impl LightCache {
@@ -115,10 +115,27 @@ impl LightCache {
         }
     }
 
+    /// Draws `count` vertices for a camera vertex with the proposals `row`, one of each of as many parts of the
+    /// proposals, at the part `u` of each: their numbers, and how much each counts, 1 / (`count` N P). A part in which
+    /// there is no vertex counts as a draw that finds nothing.
+    #[inline]
+    pub(super) fn draw_all(
+        &self,
+        row: Option<&ProposalRow>,
+        count: u16,
+        u: f64,
+    ) -> impl Iterator<Item = (usize, f32)> {
+        let part = 1.0 / f64::from(count);
+        (0..count).filter_map(move |m| {
+            let draw = self.draw(row, (f64::from(m) + u) * part)?;
+            Some((draw.entry, (draw.share * part) as f32))
+        })
+    }
+
     /// Draws a vertex by the number `u` for a camera vertex with the proposals `row`. None: there is none, and the
     /// draw counts as one that finds nothing.
     #[inline]
-    pub(super) fn draw(&self, row: Option<&ProposalRow>, u: f64) -> Option<Draw> {
+    fn draw(&self, row: Option<&ProposalRow>, u: f64) -> Option<Draw> {
         let all = 0..self.entries.len();
         let of_subpath = 1.0 / self.subpaths as f64;
         let Some(row) = row else {
@@ -151,6 +168,7 @@ impl LightCache {
 /// The number at the part `u` of a range. None: it is empty.
 #[inline]
 fn pick(range: &Range<usize>, u: f64) -> Option<usize> {
+    // Numbers of 32 bits are converted much faster than those of 64.
     let i = range.start + (u * range.len() as f64) as u32 as usize;
     // Rounding may lead to the end.
     (!range.is_empty()).then(|| i.min(range.end - 1))

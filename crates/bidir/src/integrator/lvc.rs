@@ -70,7 +70,7 @@ pub struct CandidateCount {
 }
 
 impl CandidateCount {
-    /// The most: candidates of a sample are in memory together, M for each of its camera vertices.
+    /// The most: candidates of a batch are in memory together, M for each camera vertex.
     pub const MAX: u16 = 4096;
     /// The number that suits most scenes.
     pub const DEFAULT: Self = Self::new(12, 1);

@@ -6,6 +6,7 @@
 mod distribution;
 pub mod fixed;
 mod frame;
+pub(crate) mod lanes;
 mod octahedral;
 pub mod warp;
 

@@ -53,7 +53,7 @@ impl PathContext<'_> {
         }
     }
 
-    /// The same of a strategy that links a vertex of a light subpath with camera vertex number `t` ≥ 2 and takes part.
+    /// n_j of a strategy that takes part and links a vertex of a light subpath with camera vertex number `t` ≥ 2.
     #[inline]
     pub(crate) fn count_walked(&self, t: usize, [z, y]: [Cell; 2]) -> f64 {
         self.job.counts.connections[usize::from(t > 2)] * self.job.guide.count_factor(z, y)

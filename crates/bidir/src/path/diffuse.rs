@@ -19,10 +19,10 @@ use super::running::EndSums;
 use super::{MisHeuristic, PathContext, Scattering, Vertex};
 use crate::bsdf::{Bsdf, TransportMode};
 use crate::guide::Cell;
+use crate::math::lanes::{Vec3x4, dot, dot_each, gather, offset};
 use crate::math::{INV_PI, Vec3};
 use crate::spectrum::Spectrum;
-use glam::{Mat4, Vec4};
-use std::ops::{Mul, Sub};
+use glam::Vec4;
 
 /// A diffuse vertex of a walk, with all that its connections with other ones need: a line of memory.
 #[derive(Clone, Copy, Debug)]
@@ -46,8 +46,8 @@ pub struct DiffuseEnd {
 const _: () = assert!(size_of::<DiffuseEnd>() == 64);
 
 impl DiffuseEnd {
-    /// Any other vertex.
-    pub(crate) const NONE: Self = Self {
+    /// Any other vertex, whose connections are zero.
+    pub const NONE: Self = Self {
         point: Vec3::ZERO,
         others: 0.0,
         n_g: Vec3::ZERO,
@@ -115,11 +115,11 @@ impl DiffuseEnd {
     #[inline]
     pub fn connect<'a>(&'a self, z: [&'a Self; 4], counts: [f32; 4]) -> DiffuseConnections<'a> {
         let (y, lanes, counts) = (self, DiffuseLanes::of(z), Vec4::from(counts));
-        let across = Lanes3::splat(y.point) - lanes.point;
-        let inverse2 = inverse(across.dot(&across));
-        let w = across * inverse2.sqrt();
-        let [g_z, s_z] = [lanes.n_g.dot(&w), lanes.n_s.dot(&w)];
-        let [g_y, s_y] = [y.n_g, y.n_s].map(|n| -Lanes3::splat(n).dot(&w));
+        let across = offset(y.point, &lanes.point);
+        let inverse2 = inverse(dot(&across, &across));
+        let w = across.map(|lanes| lanes * inverse2.sqrt());
+        let [g_z, s_z] = [dot(&lanes.n_g, &w), dot(&lanes.n_s, &w)];
+        let [g_y, s_y] = [-dot_each(y.n_g, &w), -dot_each(y.n_s, &w)];
         // Not true of a NaN.
         let [a, b, c, d] = [g_z, s_z, g_y, s_y].map(|cos| cos.cmpgt(Vec4::ZERO));
         let factors = g_z * s_y * inverse2;
@@ -157,21 +157,21 @@ impl DiffuseConnections<'_> {
     }
 }
 
-/// Four vertices, a number of each in a lane.
+/// Four vertices.
 struct DiffuseLanes {
-    point: Lanes3,
+    point: Vec3x4,
     others: Vec4,
-    n_g: Lanes3,
+    n_g: Vec3x4,
     density: Vec4,
-    n_s: Lanes3,
+    n_s: Vec3x4,
 }
 
 impl DiffuseLanes {
     #[inline]
     fn of(ends: [&DiffuseEnd; 4]) -> Self {
-        let (point, others) = transposed(ends.map(|end| end.point.extend(end.others)));
-        let (n_g, density) = transposed(ends.map(|end| end.n_g.extend(end.density)));
-        let (n_s, _) = transposed(ends.map(|end| end.n_s.extend(0.0)));
+        let (point, others) = gather(ends.map(|end| (end.point, end.others)));
+        let (n_g, density) = gather(ends.map(|end| (end.n_g, end.density)));
+        let (n_s, _) = gather(ends.map(|end| (end.n_s, 0.0)));
         Self {
             point,
             others,
@@ -182,63 +182,7 @@ impl DiffuseLanes {
     }
 }
 
-/// Four vectors, a coordinate of each in a lane.
-struct Lanes3 {
-    x: Vec4,
-    y: Vec4,
-    z: Vec4,
-}
-
-impl Lanes3 {
-    #[inline]
-    fn splat(v: Vec3) -> Self {
-        let [x, y, z] = v.to_array().map(Vec4::splat);
-        Self { x, y, z }
-    }
-
-    #[inline]
-    fn dot(&self, other: &Self) -> Vec4 {
-        self.x * other.x + self.y * other.y + self.z * other.z
-    }
-}
-
-impl Sub for Lanes3 {
-    type Output = Self;
-    #[inline]
-    fn sub(self, other: Self) -> Self {
-        Self {
-            x: self.x - other.x,
-            y: self.y - other.y,
-            z: self.z - other.z,
-        }
-    }
-}
-
-impl Mul<Vec4> for Lanes3 {
-    type Output = Self;
-    #[inline]
-    fn mul(self, scale: Vec4) -> Self {
-        Self {
-            x: self.x * scale,
-            y: self.y * scale,
-            z: self.z * scale,
-        }
-    }
-}
-
-/// The first three columns of a matrix with these rows, and the last one.
-#[inline]
-fn transposed([a, b, c, d]: [Vec4; 4]) -> (Lanes3, Vec4) {
-    let columns = Mat4::from_cols(a, b, c, d).transpose();
-    let lanes = Lanes3 {
-        x: columns.x_axis,
-        y: columns.y_axis,
-        z: columns.z_axis,
-    };
-    (lanes, columns.w_axis)
-}
-
-/// 1 / `x` lane by lane; 0 where that is no number.
+/// 1 / `x` lane by lane; 0 where that is infinite or no number.
 #[inline]
 fn inverse(x: Vec4) -> Vec4 {
     let inverse = Vec4::ONE / x;

@@ -9,9 +9,9 @@ use bidir::guide::Guide;
 use bidir::light::{DistantLight, InfiniteLight, Light, PointLight};
 use bidir::math::{Affine3A, Vec2, Vec3};
 use bidir::path::{
-    Arrival, Job, JoinedPath, Junction, LightChoiceKind, LightPointChoice, MisHeuristic,
-    PathContext, PathDensities, PathRoulette, PathSettings, PathSums, RunningSums, SampleCounts,
-    Strategies, Subpath, Vertex, Weights, sample_next_event,
+    Arrival, DiffuseEnd, Job, JoinedPath, Junction, LightChoiceKind, LightPointChoice,
+    MisHeuristic, PathContext, PathDensities, PathRoulette, PathSettings, PathSums, RunningSums,
+    SampleCounts, Strategies, Subpath, Vertex, Weights, sample_next_event,
 };
 use bidir::shape::Shape;
 use std::array::from_fn;
@@ -120,8 +120,8 @@ impl Comparison {
         // Other vertices, with counts of their own, are in the other lanes.
         let own = (s + t) % 4;
         let ends = from_fn(|lane| match of_light.diffuse((s + lane) % 8) {
-            Some(other) if lane != own => other,
-            _ => z,
+            _ if lane == own => z,
+            other => other.unwrap_or(&DiffuseEnd::NONE),
         });
         let counts = from_fn(|lane| count as f32 * if lane == own { 1.0 } else { 3.0 });
         let connections = y.connect(ends, counts);

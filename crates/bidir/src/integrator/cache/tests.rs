@@ -62,7 +62,10 @@ fn check(proposals: Option<&LightProposals>, cells: &Cells) {
     for (i, (count, share)) in found.into_iter().enumerate() {
         let prob = f64::from(count) / f64::from(DRAWS);
         let told = 1.0 / (share * SUBPATHS as f64);
-        assert!((prob - told).abs() < 1e-5, "{i}: {prob} instead of {told}");
+        assert!(
+            (prob - told).abs() < 3.0 / f64::from(DRAWS),
+            "{i}: {prob} instead of {told}"
+        );
     }
 }
 

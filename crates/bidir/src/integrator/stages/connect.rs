@@ -17,8 +17,8 @@ use std::array::from_fn;
 #[inline(never)]
 pub(in super::super) fn connect(job: &Job<'_>, batch: &mut Batch) {
     let mut next_events = batch.next_events.iter().peekable();
-    let (mut light_ends, mut ends) = (&batch.light_ends[..], batch.light_ends_end.iter());
-    let mut begin = 0;
+    let mut light_ends = &batch.light_ends[..];
+    let (mut begin, mut ends_of_lists) = (0, batch.light_ends_end.iter());
     for (number, sample) in batch.samples.iter().enumerate() {
         let mut connector = Connector {
             context: sample.context(job),
@@ -37,14 +37,14 @@ pub(in super::super) fn connect(job: &Job<'_>, batch: &mut Batch) {
             while let Some(event) = next_events.next_if(|it| is_due([it.sample, it.t])) {
                 connector.offer_general(t, &event.end, Some(event.pdf));
             }
-            let end = ends.next().copied().unwrap_or(begin);
+            let end = *ends_of_lists.next().expect("each vertex has a list");
             let (of_vertex, others) = light_ends.split_at(end - begin);
             connector.offer_all(t, of_vertex);
             (light_ends, begin) = (others, end);
         }
         batch.candidates_end.push(batch.candidates.len());
     }
-    debug_assert!(next_events.next().is_none() && light_ends.is_empty());
+    debug_assert!(next_events.next().is_none() && ends_of_lists.next().is_none());
     batch.stopwatch.end(Stage::Candidates);
 }
 
@@ -83,22 +83,24 @@ impl Connector<'_> {
             return;
         };
         for four in ends.chunks(4) {
-            let z = from_fn(|lane| {
-                let end = four.get(lane);
-                let z = end.and_then(|end| self.light_sums.diffuse(end.place.z as usize));
-                z.unwrap_or(&DiffuseEnd::NONE)
+            let z = from_fn(|lane| match four.get(lane).map(|end| end.place) {
+                Some(place) if place.is_diffuse => self.light_sums.diffuse(place.z as usize),
+                _ => None,
             });
             let count = |z: &DiffuseEnd| self.context.count_walked(t, [z.cell(), y.cell()]) as f32;
-            let connections = y.connect(z, z.map(count));
+            let counts = z.map(|z| z.map_or(1.0, count));
+            let connections = y.connect(z.map(|z| z.unwrap_or(&DiffuseEnd::NONE)), counts);
             for (lane, end) in four.iter().enumerate() {
-                if !end.place.is_diffuse {
+                let Some(z) = z[lane] else {
                     self.offer_general(t, end, None);
-                } else if let Some((contribution, weight)) = connections.get(lane) {
+                    continue;
+                };
+                if let Some((contribution, weight)) = connections.get(lane) {
                     let guide = &self.context.job.guide;
                     let connection = Connection {
                         contribution,
                         weight,
-                        root_visibility: guide.root_visibility(z[lane].cell(), y.cell()),
+                        root_visibility: guide.root_visibility(z.cell(), y.cell()),
                     };
                     self.offer(t, end, connection);
                 }
@@ -115,12 +117,7 @@ impl Connector<'_> {
     }
 
     /// The connection of any two vertices. None: it is zero. Media are guessed.
-    fn general(
-        &mut self,
-        t: usize,
-        end: &LightEnd,
-        next_event: Option<f32>,
-    ) -> Option<Connection> {
+    fn general(&mut self, t: usize, end: &LightEnd, next_event: Option<f32>) -> Option<Connection> {
         let (z, s) = (end.place.z as usize, usize::from(end.place.s));
         let light = &self.light.vertices()[z + 1 - s..=z];
         let mut path = JoinedPath::connection(light, &self.camera.vertices[..t]);

@@ -30,6 +30,7 @@ pub(in super::super) fn own_light(job: &Job<'_>, batch: &mut Batch) {
             let longest = subpath.vertices.len().min(settings.max_vertices() - t);
             let longest = if y.is_delta() { 0 } else { longest };
             for s in settings.light_point.first_walked()..=longest {
+                // Every pair in turn, whatever becomes of it: each moves the pointer.
                 let share = pairs.take(s + t);
                 let place = Place::new(&subpath, s - 1, light_sums);
                 let (Some(share), Some(place)) = (share, place) else {
@@ -63,34 +64,29 @@ pub(in super::super) fn draw_cached(job: &Job<'_>, batch: &mut Batch, counts: Ca
         light_ends_end,
         ..
     } = batch;
-    let max_vertices = job.settings.max_vertices();
     for (number, sample) in samples.iter().enumerate() {
         let context = sample.context(job);
         for (t, y) in (2..).zip(camera.get(number).vertices.iter().skip(1)) {
-            let count = if y.is_delta() { 0 } else { counts.at(t) };
-            let part = 1.0 / f64::from(count);
-            let row = job.guide.row(y.cell);
-            let at = Dimension::at(t - 1, Purpose::CachedVertex);
-            let u = f64::from(sample.camera.get_1d(at));
-            for m in 0..count {
-                let Some(draw) = cache.draw(row, (f64::from(m) + u) * part) else {
-                    continue;
-                };
-                let place = cache.place(draw.entry);
-                let s = usize::from(place.s);
-                if s + t > max_vertices || !context.takes(s, t) {
-                    continue;
+            if !y.is_delta() {
+                let at = Dimension::at(t - 1, Purpose::CachedVertex);
+                let u = f64::from(sample.camera.get_1d(at));
+                for (entry, share) in cache.draw_all(job.guide.row(y.cell), counts.at(t), u) {
+                    let place = cache.place(entry);
+                    let s = usize::from(place.s);
+                    if s + t > job.settings.max_vertices() || !context.takes(s, t) {
+                        continue;
+                    }
+                    if place.is_diffuse {
+                        light_sums.load_ahead(place.z as usize);
+                    } else {
+                        light.load_ahead(place.z as usize);
+                    }
+                    light_ends.push(LightEnd {
+                        place,
+                        number: entry as u32 + 1,
+                        share,
+                    });
                 }
-                if place.is_diffuse {
-                    light_sums.load_ahead(place.z as usize);
-                } else {
-                    light.load_ahead(place.z as usize);
-                }
-                light_ends.push(LightEnd {
-                    place,
-                    number: draw.entry as u32 + 1,
-                    share: (draw.share * part) as f32,
-                });
             }
             light_ends_end.push(light_ends.len());
         }

@@ -21,9 +21,9 @@ pub(in super::super) fn next_events(job: &Job<'_>, batch: &mut Batch, counts: Ca
         next_events,
         ..
     } = batch;
-    for (number, sample) in samples.iter().enumerate() {
+    for (index, sample) in samples.iter().enumerate() {
         let context = sample.context(job);
-        let walk = camera.get(number);
+        let walk = camera.get(index);
         let longest = walk.vertices.len().min(job.settings.max_vertices() - 1);
         for t in 2..=longest {
             let y = &walk.vertices[t - 1];
@@ -32,28 +32,27 @@ pub(in super::super) fn next_events(job: &Job<'_>, batch: &mut Batch, counts: Ca
             }
             let count = counts.at(t);
             for k in 0..count {
-                let Some((x0, pdf)) = light_point(&context, sample, y, t, [k, count]) else {
-                    continue;
-                };
-                next_events.extend(x0.light.map(|number_of_light| NextEvent {
-                    sample: number as u32,
-                    t: t as u32,
-                    end: LightEnd::point(light.add_point(&x0), number_of_light),
-                    pdf,
-                }));
+                if let Some((x0, number, pdf)) = light_point(&context, sample, y, t, [k, count]) {
+                    next_events.push(NextEvent {
+                        sample: index as u32,
+                        t: t as u32,
+                        end: LightEnd::point(light.add_point(&x0), number),
+                        pdf,
+                    });
+                }
             }
         }
     }
 }
 
-/// Light point number `k` of `count` for `y`, camera vertex number `t`, and its density. Each counts 1 / `count`.
+/// Light point number `k` of `count` for `y`, camera vertex number `t`, the number of its light, and its density. Each counts 1 / `count`.
 fn light_point(
     context: &PathContext<'_>,
     sample: &Sample,
     y: &Vertex,
     t: usize,
     [k, count]: [u16; 2],
-) -> Option<(Vertex, f32)> {
+) -> Option<(Vertex, u32, f32)> {
     let at = |purpose| Dimension::at(t - 1, purpose);
     let part = |u: f32| ((f32::from(k) + u) / f32::from(count)).min(ONE_MINUS_EPSILON);
     let u_light = || part(sample.camera.get_1d(at(Purpose::NextEventLight)));
@@ -63,5 +62,5 @@ fn light_point(
     let (light, drawn) = sample_next_event(context, y, u_light, point, u_depth)?;
     let mut x0 = Vertex::light(context, light, &drawn.at);
     x0.beta = Spectrum::splat(drawn.coverage / (drawn.pdf * f32::from(count)));
-    Some((x0, drawn.pdf))
+    Some((x0, light, drawn.pdf))
 }

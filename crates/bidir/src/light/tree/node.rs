@@ -5,7 +5,7 @@
 mod tests;
 
 use super::{Cone, EmitterBounds, Facing, Receiver};
-use crate::math::Vec3;
+use crate::math::lanes::{Vec3x4, dot, offset};
 use accel::Aabb;
 use glam::Vec4;
 
@@ -40,9 +40,9 @@ const OPEN: f32 = 1.0;
 /// Four children, each with a ball around its emitters and a cone around their normals.
 #[derive(Clone, Debug)]
 pub(super) struct Node {
-    centre: [Vec4; 3],
+    centre: Vec3x4,
     radius2: Vec4,
-    axis: [Vec4; 3],
+    axis: Vec3x4,
     /// Cosine and sine of θ_o.
     spread: Angle,
     /// cosθ_e.
@@ -153,7 +153,7 @@ impl Node {
 
     /// I of each child; 0 where there is none, positive elsewhere. Unit: W/m², luminance.
     #[inline]
-    fn importances(&self, receiver: &Receiver, across: &[Vec4; 3]) -> Vec4 {
+    fn importances(&self, receiver: &Receiver, across: &Vec3x4) -> Vec4 {
         let distance2 = dot(across, across);
         let is_outside = distance2.cmpgt(self.radius2);
         // Seen from outside, the ball is in a cone around its centre.
@@ -205,14 +205,4 @@ pub(super) fn is_narrow(cone: &Cone) -> bool {
 /// The square of the radius of a ball around the box. Unit: m².
 pub(super) fn radius2(bounds: &Aabb) -> f32 {
     bounds.max.distance_squared(bounds.center())
-}
-
-#[inline]
-fn offset(p: Vec3, from: &[Vec4; 3]) -> [Vec4; 3] {
-    [p.x - from[0], p.y - from[1], p.z - from[2]]
-}
-
-#[inline]
-fn dot(a: &[Vec4; 3], b: &[Vec4; 3]) -> Vec4 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }

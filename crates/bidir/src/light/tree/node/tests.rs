@@ -1,4 +1,5 @@
 use super::*;
+use crate::math::Vec3;
 use crate::math::{Vec2, warp};
 use crate::testing::check_property;
 use proptest::prelude::*;
