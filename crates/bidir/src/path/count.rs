@@ -59,7 +59,7 @@ impl PathContext<'_> {
         self.job.counts.connections[usize::from(t > 2)] * self.job.guide.count_factor(z, y)
     }
 
-    /// The same for s = 0, which links nothing.
+    /// n_j of s = 0, which links nothing.
     #[inline]
     pub fn count_hits(&self, t: usize) -> f64 {
         f64::from(self.takes(0, t))
