@@ -253,13 +253,6 @@ PATHS = [
         unit("counts_of_weights_are_those_of_draws"),
     ),
     (
-        "connections of a strategy that takes no part",
-        "crates/bidir/src/integrator/stages/light_ends.rs",
-        "!subpath.vertices[s - 1].is_delta() && context.takes(s, t)",
-        "!subpath.vertices[s - 1].is_delta()",
-        estimators("shared_light_points_and_missing_strategies"),
-    ),
-    (
         "vertices of a cell proposed by the count of all",
         "crates/bidir/src/integrator/cache.rs",
         "let counts = [all.len(), self.of_cell(cell).len()];",
@@ -342,6 +335,13 @@ PATHS = [
         "square / counts.share(&term.shares)",
         "square / counts.share(&term.shares).max(1.0)",
         unit("all_strategies_tell"),
+    ),
+    (
+        "candidates of diffuse vertices at the price of others",
+        "crates/bidir/src/driver/training/moments.rs",
+        "+ DIFFUSE_CANDIDATE * diffuse",
+        "+ CANDIDATE * diffuse",
+        unit("candidates_cost_least"),
     ),
     (
         "a plan's walks that end where those of the survey do",

@@ -23,6 +23,22 @@ fn indirect_light_has_shared_subpaths() {
     check("narrow-spot.pbrt", IntegratorKind::Lvc);
 }
 
+/// They cost least between diffuse vertices.
+#[test]
+fn diffuse_rooms_have_more_candidates_than_metal_ones() {
+    for (name, candidates) in [
+        ("narrow-spot.pbrt", CandidateCount::new(24, 1)),
+        ("conductor.pbrt", CandidateCount::DEFAULT),
+    ] {
+        let loaded = open(name);
+        let session = session(&loaded, IntegratorKind::Auto, &Request::default());
+        let plan = session.training().and_then(|training| training.plan);
+        let plan = plan.expect("auto finds one");
+        assert_eq!(plan.integrator, IntegratorKind::Lvc, "{name}: {plan}");
+        assert_eq!(plan.candidates, candidates, "{name}: {plan}");
+    }
+}
+
 /// Default candidates are those of the plan or of the estimator, and explicit ones stay.
 #[test]
 fn default_candidates_depend_on_the_estimator() {

@@ -28,12 +28,14 @@ pub(super) const BLOCKS_PER_SIDE: usize = 16;
 pub(super) const DARK: f64 = 0.01;
 
 /// `path` may cost so many times as much as `lvc`, whose pixels share noise, and whose terms vary together with the
-/// camera vertex that they have in common. With 1.1 `auto` takes `lvc` in eight more of 46 scenes, in which `path`
-/// needs 0.94 of its time by pixels and 0.76 by blocks (docs/data/plan-products.csv).
-pub(super) const PATH_ALLOWANCE: f64 = 1.35;
+/// camera vertex that they have in common. In eight of 46 scenes its product is above that of `lvc` by 1.1 to 1.45,
+/// and it needs 0.94 of the time of `lvc` by pixels and 0.76 by blocks (docs/data/plan-products.csv).
+pub(super) const PATH_ALLOWANCE: f64 = 1.45;
 /// `bdpt` may cost so many times as much as `lvc`, whose second moment lacks the gain by learned proposals: 0.8
 /// to 0.9 are equally good in 39 scenes.
 pub(super) const BDPT_ALLOWANCE: f64 = 0.85;
+/// `lvc` of more candidates may cost so many times as much as of fewer: candidates of one camera vertex vary together.
+pub(super) const MANY_ALLOWANCE: f64 = 0.95;
 /// The least albedo that a second moment is divided by: bounds rare dark paths.
 pub(super) const LEAST_ALBEDO: f32 = 1e-3;
 /// The least share of a path that a second moment is divided by: a missed path makes a plan very bad, not
@@ -41,14 +43,16 @@ pub(super) const LEAST_ALBEDO: f32 = 1e-3;
 pub(super) const LEAST_SHARE: f64 = 1e-9;
 
 /// The cost of a ray of a camera walk whose vertices are connected with shared light subpaths. Unit of this
-/// and the next four, which fit the times of 41 scenes to 7 %: a ray of path tracing's walk.
-pub(super) const CONNECTED_CAMERA_RAY: f64 = 1.8;
+/// and the next five, which fit the times of 29 scenes to 16 %: a ray of path tracing's walk.
+pub(super) const CONNECTED_CAMERA_RAY: f64 = 2.2;
 /// The cost of a ray of a light walk, with the light that it begins on.
 pub(super) const LIGHT_RAY: f64 = 1.75;
 /// The cost of a connection ray.
 pub(super) const CONNECTION_RAY: f64 = 0.55;
 /// The cost of a candidate.
-pub(super) const CANDIDATE: f64 = 0.4;
+pub(super) const CANDIDATE: f64 = 0.45;
+/// The cost of a candidate that is a connection of diffuse vertices, which are evaluated four at a time.
+pub(super) const DIFFUSE_CANDIDATE: f64 = 0.11;
 /// The cost of a light image, with its ray.
 pub(super) const LIGHT_IMAGE: f64 = 1.0;
 

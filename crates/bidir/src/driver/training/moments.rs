@@ -13,8 +13,8 @@
 use super::Settings;
 use super::blocks::{BLOCKS, Blocks};
 use super::constants::{
-    CANDIDATE, CONNECTED_CAMERA_RAY, CONNECTION_RAY, DARK, LEAST_ALBEDO, LEAST_SHARE, LIGHT_IMAGE,
-    LIGHT_RAY,
+    CANDIDATE, CONNECTED_CAMERA_RAY, CONNECTION_RAY, DARK, DIFFUSE_CANDIDATE, LEAST_ALBEDO,
+    LEAST_SHARE, LIGHT_IMAGE, LIGHT_RAY,
 };
 use super::survey::Survey;
 use crate::contribution::Contribution;
@@ -139,11 +139,23 @@ fn longer(albedos: [f32; 2]) -> [f64; STARTS] {
     [1.0, 1.0 / a, 1.0 / (a * b)]
 }
 
-/// Counts of the survey's samples, with walks whose roulette begins at surface 0, 1 and 2: camera rays, light
-/// points for the first camera vertex and for others, connections with light walks likewise, and samples that
-/// have any of these.
+/// Counts of the survey's samples, with walks whose roulette begins at surface 0, 1 and 2.
 #[derive(Clone, Copy, Default)]
-pub(super) struct Work([[f64; 6]; STARTS]);
+pub(super) struct Work([WorkOf; STARTS]);
+
+/// Counts of samples; pairs are of t = 2 and of t > 2.
+#[derive(Clone, Copy, Default)]
+struct WorkOf {
+    camera_rays: f64,
+    /// Connections with light points.
+    next_events: [f64; 2],
+    /// Connections with light walks.
+    connections: [f64; 2],
+    /// Those of diffuse vertices among them.
+    diffuse: [f64; 2],
+    /// Samples that have any connection.
+    connected: f64,
+}
 
 impl Work {
     /// Adds the one sample of `batch`.
@@ -152,29 +164,38 @@ impl Work {
         let rays = walk.vertices.len() - 1 + usize::from(walk.escape.is_some());
         let albedo = |i: usize| walk.vertices.get(i).map_or(1.0, |vertex| vertex.albedo_fwd);
         let longer = longer([albedo(1), albedo(2)]);
-        for (start, sums) in self.0.iter_mut().enumerate() {
+        for (start, work) in self.0.iter_mut().enumerate() {
             let rays = (0..rays).map(|before| longer[before.min(start)]);
-            sums[0] += rays.sum::<f64>();
+            work.camera_rays += rays.sum::<f64>();
             for candidate in &batch.candidates {
                 let Strategy { s, t } = candidate.term.strategy;
                 let (s, t) = (usize::from(s), usize::from(t));
                 let deeper = usize::from(t > 2);
                 if s < job.settings.light_point.first_walked() {
-                    sums[1 + deeper] += longer[(t - 2).min(start)];
+                    work.next_events[deeper] += longer[(t - 2).min(start)];
                 } else {
-                    sums[3 + deeper] += 1.0;
+                    work.connections[deeper] += 1.0;
+                    let [z, y] = candidate.vertices.map(|number| number as usize);
+                    let ends = [&batch.light.vertices()[z], &walk.vertices[y]];
+                    let is_diffuse = ends.iter().all(|end| end.scattering.is_diffuse());
+                    work.diffuse[deeper] += f64::from(is_diffuse);
                 }
             }
-            sums[5] += f64::from(u8::from(!batch.candidates.is_empty()));
+            work.connected += f64::from(!batch.candidates.is_empty());
         }
     }
 }
 
 impl AddAssign for Work {
     fn add_assign(&mut self, more: Self) {
-        let sums = self.0.as_flattened_mut().iter_mut();
-        for (sum, more) in sums.zip(more.0.as_flattened()) {
-            *sum += more;
+        for (work, more) in self.0.iter_mut().zip(&more.0) {
+            work.camera_rays += more.camera_rays;
+            work.connected += more.connected;
+            for deeper in 0..2 {
+                work.next_events[deeper] += more.next_events[deeper];
+                work.connections[deeper] += more.connections[deeper];
+                work.diffuse[deeper] += more.diffuse[deeper];
+            }
         }
     }
 }
@@ -187,11 +208,12 @@ fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
 impl Survey {
     /// The cost of a sample by `settings`, with `counts` of these. Unit: rays of path tracing's walks.
     pub(super) fn cost(&self, settings: &Settings, counts: &Counts) -> f64 {
-        let [rays, first, deeper, with_first, with_deeper, connected] = self.work.0[counts.start];
-        let candidates = dot([first, deeper], counts.next_events)
-            + dot([with_first, with_deeper], counts.connections);
+        let work = &self.work.0[counts.start];
+        let candidates =
+            dot(work.next_events, counts.next_events) + dot(work.connections, counts.connections);
+        let diffuse = dot(work.diffuse, counts.connections);
         let traced = match settings.shadow_rays {
-            ShadowRays::Budget(most) => candidates.min(f64::from(most) * connected),
+            ShadowRays::Budget(most) => candidates.min(f64::from(most) * work.connected),
             _ => candidates,
         };
         let camera_ray = match settings.integrator {
@@ -200,10 +222,11 @@ impl Survey {
         };
         let of_light = LIGHT_RAY * self.stats.rays.light as f64
             + LIGHT_IMAGE * self.stats.rays.light_image as f64;
-        let all = camera_ray * rays
+        let all = camera_ray * work.camera_rays
             + counts.light_images * of_light
             + CONNECTION_RAY * traced
-            + CANDIDATE * candidates;
+            + CANDIDATE * (candidates - diffuse)
+            + DIFFUSE_CANDIDATE * diffuse;
         all / self.samples()
     }
 
@@ -257,6 +280,7 @@ mod tests {
         Effort, Task,
         tests::{WHOLE, room, view},
     };
+    use crate::integrator::CandidateCount;
 
     impl Term {
         /// True where connections with light walks can make the path.
@@ -297,6 +321,32 @@ mod tests {
             let difference = (cost / own_cost - 1.0).abs();
             assert!(difference < 0.02, "{start}: {cost} for {own_cost}");
         }
+    }
+
+    /// In a room of diffuse surfaces all connections with light walks are diffuse.
+    #[test]
+    fn candidates_cost_least_between_diffuse_vertices() {
+        let (scene, view) = (room(), view(WHOLE));
+        let mut settings = Settings::new(IntegratorKind::Lvc);
+        let task = Task {
+            scene: &scene,
+            view: &view,
+            settings: &settings.clone(),
+        };
+        let survey = Survey::run(task, Effort::at_most(1024));
+        let mut cost = |count| {
+            settings.lvc.candidates = CandidateCount::new(count, 1);
+            let counts = Counts::new(&settings, settings.path.roulette, survey.light_vertices());
+            survey.cost(&settings, &counts)
+        };
+        let [few, many] = [12, 24].map(&mut cost);
+        let drawn = 12.0 / survey.light_vertices();
+        let made = survey.work.0[0].connections[0] * drawn / survey.samples();
+        let difference = (many - few) / (DIFFUSE_CANDIDATE * made);
+        assert!(
+            made > 1.0 && (difference - 1.0).abs() < 1e-9,
+            "{difference}"
+        );
     }
 
     const SHARES: Shares = Shares {

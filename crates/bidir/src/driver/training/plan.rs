@@ -1,7 +1,7 @@
 //! The plans of `auto`, and the choice among them: the least product of second moment and cost, both by what the
 //! survey found (docs/derivations/choosing-a-plan.md).
 
-use super::constants::{BDPT_ALLOWANCE, PATH_ALLOWANCE};
+use super::constants::{BDPT_ALLOWANCE, MANY_ALLOWANCE, PATH_ALLOWANCE};
 use super::moments::Counts;
 use super::survey::Survey;
 use super::{Settings, Task};
@@ -51,8 +51,19 @@ pub(super) const LVC: Plan = Plan {
     ..BDPT
 };
 
+/// More candidates pay where vertices are diffuse, where they cost least.
+const LVC_OF_MANY: Plan = Plan {
+    candidates: CandidateCount::new(24, 1),
+    ..LVC
+};
+
 /// The plans, with the allowances that their products of second moment and cost are divided by.
-const PLANS: [(Plan, f64); 3] = [(PATH, PATH_ALLOWANCE), (BDPT, BDPT_ALLOWANCE), (LVC, 1.0)];
+const PLANS: [(Plan, f64); 4] = [
+    (PATH, PATH_ALLOWANCE),
+    (BDPT, BDPT_ALLOWANCE),
+    (LVC, 1.0),
+    (LVC_OF_MANY, MANY_ALLOWANCE),
+];
 
 impl Plan {
     /// The plan with the least product of second moment and cost. If the survey found no light: `lvc`, which
