@@ -175,8 +175,8 @@ impl Work {
                     work.next_events[deeper] += longer[(t - 2).min(start)];
                 } else {
                     work.connections[deeper] += 1.0;
-                    let [z, y] = candidate.vertices.map(|number| number as usize);
-                    let ends = [&batch.light.vertices()[z], &walk.vertices[y]];
+                    let z = candidate.vertices[0] as usize;
+                    let ends = [&batch.light.vertices()[z], &walk.vertices[t - 1]];
                     let is_diffuse = ends.iter().all(|end| end.scattering.is_diffuse());
                     work.diffuse[deeper] += f64::from(is_diffuse);
                 }
