@@ -184,6 +184,12 @@ impl Batch {
         self.light.count() - self.samples.len()
     }
 
+    /// True of a connection that is evaluated together with others: both of its vertices are diffuse.
+    pub(crate) fn is_diffuse(&self, connection: &Candidate) -> bool {
+        let [z, y] = connection.vertices.map(|number| number as usize);
+        self.light_sums.diffuse(z).is_some() && self.camera_sums.diffuse(y).is_some()
+    }
+
     /// The candidates, each with its entry if it was chosen.
     pub(crate) fn connections(&self) -> impl Iterator<Item = (&Candidate, Option<&Entry>)> {
         let mut entries = vec![None; self.candidates.len()];

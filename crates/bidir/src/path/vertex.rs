@@ -31,14 +31,6 @@ pub enum Scattering {
     Medium(MediumScattering),
 }
 
-impl Scattering {
-    /// True of a diffuse surface.
-    #[inline]
-    pub fn is_diffuse(&self) -> bool {
-        matches!(self, Self::Surface(Bsdf::Diffuse(_)))
-    }
-}
-
 /// A vertex of a subpath.
 #[derive(Clone, Copy, Debug)]
 pub struct Vertex {

@@ -18,9 +18,9 @@ const RULES: [&str; 5] = [
 /// Paired comparisons take this fraction of the passes, as the correlated noise of the estimators cancels.
 const PART_OF_PAIRS: u64 = 4;
 
-/// Plans of `auto` that are not the default of an integrator: candidates of a camera vertex, shadow rays per
+/// Settings of `lvc`, of which the first are those of a plan of `auto`: candidates of a camera vertex, shadow rays per
 /// sample, and the binary logarithm of the samples per light subpath.
-const PLANS: [([u16; 2], u32, u32); 2] = [([20, 3], 8, 1), ([24, 4], 10, 0)];
+const PLANS: [([u16; 2], u32, u32); 2] = [([24, 1], 6, 1), ([24, 4], 10, 0)];
 
 /// A scene of `scenes/torture`.
 struct World {

@@ -20,7 +20,7 @@ use super::survey::Survey;
 use crate::contribution::Contribution;
 use crate::film::FilmSettings;
 use crate::integrator::{Batch, IntegratorKind};
-use crate::path::{Job, PathContext, PathRoulette, Shares};
+use crate::path::{Job, MisHeuristic, PathContext, PathRoulette, Shares};
 use crate::select::ShadowRays;
 use crate::strategy::Strategy;
 use std::ops::AddAssign;
@@ -146,12 +146,13 @@ pub(super) struct Work([WorkOf; STARTS]);
 /// Counts of samples; pairs are of t = 2 and of t > 2.
 #[derive(Clone, Copy, Default)]
 struct WorkOf {
+    /// Rays of camera walks.
     camera_rays: f64,
     /// Connections with light points.
     next_events: [f64; 2],
     /// Connections with light walks.
     connections: [f64; 2],
-    /// Those of diffuse vertices among them.
+    /// Connections with light walks whose two vertices are diffuse, by the balance heuristic.
     diffuse: [f64; 2],
     /// Samples that have any connection.
     connected: f64,
@@ -175,10 +176,7 @@ impl Work {
                     work.next_events[deeper] += longer[(t - 2).min(start)];
                 } else {
                     work.connections[deeper] += 1.0;
-                    let z = candidate.vertices[0] as usize;
-                    let ends = [&batch.light.vertices()[z], &walk.vertices[t - 1]];
-                    let is_diffuse = ends.iter().all(|end| end.scattering.is_diffuse());
-                    work.diffuse[deeper] += f64::from(is_diffuse);
+                    work.diffuse[deeper] += f64::from(batch.is_diffuse(candidate));
                 }
             }
             work.connected += f64::from(!batch.candidates.is_empty());
@@ -211,7 +209,10 @@ impl Survey {
         let work = &self.work.0[counts.start];
         let candidates =
             dot(work.next_events, counts.next_events) + dot(work.connections, counts.connections);
-        let diffuse = dot(work.diffuse, counts.connections);
+        let diffuse = match settings.path.mis {
+            MisHeuristic::Balance => dot(work.diffuse, counts.connections),
+            _ => 0.0,
+        };
         let traced = match settings.shadow_rays {
             ShadowRays::Budget(most) => candidates.min(f64::from(most) * work.connected),
             _ => candidates,
@@ -278,9 +279,11 @@ mod tests {
     use super::*;
     use crate::driver::training::{
         Effort, Task,
-        tests::{WHOLE, room, view},
+        tests::{WHOLE, grey, room, room_with, view},
     };
     use crate::integrator::CandidateCount;
+    use crate::material::{ConductorIndex, Material, Roughness};
+    use crate::texture::{ColorTexture, FloatTexture};
 
     impl Term {
         /// True where connections with light walks can make the path.
@@ -323,11 +326,12 @@ mod tests {
         }
     }
 
-    /// In a room of diffuse surfaces all connections with light walks are diffuse.
-    #[test]
-    fn candidates_cost_least_between_diffuse_vertices() {
-        let (scene, view) = (room(), view(WHOLE));
+    /// The part of first connections with light walks that are diffuse, and the mean price of twelve candidates more,
+    /// in a room with this ball.
+    fn diffuse_part_and_price(ball: Material, mis: MisHeuristic) -> [f64; 2] {
+        let (scene, view) = (room_with(ball), view(WHOLE));
         let mut settings = Settings::new(IntegratorKind::Lvc);
+        settings.path.mis = mis;
         let task = Task {
             scene: &scene,
             view: &view,
@@ -341,12 +345,33 @@ mod tests {
         };
         let [few, many] = [12, 24].map(&mut cost);
         let drawn = 12.0 / survey.light_vertices();
-        let made = survey.work.0[0].connections[0] * drawn / survey.samples();
-        let difference = (many - few) / (DIFFUSE_CANDIDATE * made);
-        assert!(
-            made > 1.0 && (difference - 1.0).abs() < 1e-9,
-            "{difference}"
-        );
+        let work = &survey.work.0[0];
+        let made = work.connections[0] * drawn / survey.samples();
+        [work.diffuse[0] / work.connections[0], (many - few) / made]
+    }
+
+    #[test]
+    fn candidates_cost_least_between_diffuse_vertices() {
+        let metal = || Material::Conductor {
+            index: ConductorIndex::Reflectance(ColorTexture::Constant([0.9; 3])),
+            roughness: Roughness {
+                u: FloatTexture::Constant(0.5),
+                v: FloatTexture::Constant(0.5),
+                ..Roughness::SMOOTH
+            },
+        };
+        for (ball, mis, expected) in [
+            (grey(0.4), MisHeuristic::Balance, 1.0..=1.0),
+            (metal(), MisHeuristic::Balance, 0.5..=0.95),
+        ] {
+            let [part, price] = diffuse_part_and_price(ball, mis);
+            assert!(expected.contains(&part), "{part}");
+            let of_all = CANDIDATE + part * (DIFFUSE_CANDIDATE - CANDIDATE);
+            assert!((price - of_all).abs() < 1e-9, "{price} for {of_all}");
+        }
+        // Other heuristics evaluate each connection alone.
+        let [_, price] = diffuse_part_and_price(grey(0.4), MisHeuristic::Power);
+        assert!((price - CANDIDATE).abs() < 1e-9, "{price}");
     }
 
     const SHARES: Shares = Shares {

@@ -51,7 +51,7 @@ pub(super) const LVC: Plan = Plan {
     ..BDPT
 };
 
-/// More candidates pay where vertices are diffuse, where they cost least.
+/// `lvc` with twice the candidates, which cost least between diffuse vertices.
 const LVC_OF_MANY: Plan = Plan {
     candidates: CandidateCount::new(24, 1),
     ..LVC

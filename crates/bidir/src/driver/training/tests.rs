@@ -34,14 +34,20 @@ pub(super) fn view(crop: PixelRect) -> View {
     View::new(camera, film).expect("the film is not empty")
 }
 
+/// A diffuse surface.
+pub(super) fn grey(reflectance: f32) -> Material {
+    Material::Diffuse {
+        reflectance: ColorTexture::Constant([reflectance; 3]),
+    }
+}
+
 fn add_sphere(
     builder: &mut SceneBuilder,
-    [z, radius, reflectance]: [f32; 3],
+    [z, radius]: [f32; 2],
+    material: Material,
     radiance: Option<[f32; 3]>,
 ) {
-    let material = builder.material(Material::Diffuse {
-        reflectance: ColorTexture::Constant([reflectance; 3]),
-    });
+    let material = builder.material(material);
     let place = Affine3A::from_translation(Vec3::new(0.0, 0.0, z));
     let sphere = Shape::Sphere(Sphere::new(place, radius, Orientation::Natural));
     let light = radiance.map(|radiance| Emission {
@@ -55,7 +61,7 @@ fn add_sphere(
 /// A black sphere of this radiance, at this place before the camera.
 fn sphere(z: f32, radiance: Option<[f32; 3]>) -> Scene {
     let mut builder = SceneBuilder::new();
-    add_sphere(&mut builder, [z, 1.5, 0.0], radiance);
+    add_sphere(&mut builder, [z, 1.5], grey(0.0), radiance);
     builder.build().expect("the scene is valid")
 }
 
@@ -66,10 +72,15 @@ pub(super) fn lamp() -> Scene {
 
 /// A lamp and a grey ball in a grey sphere.
 pub(super) fn room() -> Scene {
+    room_with(grey(0.4))
+}
+
+/// A lamp and a ball of this material in a grey sphere.
+pub(super) fn room_with(ball: Material) -> Scene {
     let mut builder = SceneBuilder::new();
-    add_sphere(&mut builder, [0.0, 6.0, 0.6], None);
-    add_sphere(&mut builder, [3.5, 1.0, 0.4], None);
-    add_sphere(&mut builder, [-3.0, 1.0, 0.0], Some([5.0; 3]));
+    add_sphere(&mut builder, [0.0, 6.0], grey(0.6), None);
+    add_sphere(&mut builder, [3.5, 1.0], ball, None);
+    add_sphere(&mut builder, [-3.0, 1.0], grey(0.0), Some([5.0; 3]));
     builder.build().expect("the scene is valid")
 }
 
