@@ -214,7 +214,7 @@ impl World {
     }
 }
 
-/// Returns `auto`, and its plans that are not the default of an integrator.
+/// Returns `auto`, and `lvc` with the settings of [`PLANS`].
 fn planned() -> Vec<Entrant> {
     let plans = PLANS.map(|([first, deeper], rays, exponent)| Entrant {
         name: format!("{first},{deeper} candidates, budget:{rays}"),

@@ -23,7 +23,8 @@ fn indirect_light_has_shared_subpaths() {
     check("narrow-spot.pbrt", IntegratorKind::Lvc);
 }
 
-/// Where light comes through glass, candidates gain little. Between diffuse vertices they gain most, and cost least.
+/// Where light comes through glass, candidates gain little. Between diffuse vertices they gain most, and cost
+/// least. The other number has a predicted cost that is 9 % higher or more.
 #[test]
 fn indirect_light_of_diffuse_walls_has_more_candidates() {
     for (name, candidates) in [
