@@ -12,7 +12,7 @@ check *STAGES:
 
 # All tests, or those whose names contain FILTER.
 test FILTER="":
-    cargo test --release --workspace -- {{FILTER}}
+    cargo test --release -- {{FILTER}}
 
 # The statistical tests, with other random numbers where SEED is given.
 stat SEED="1":
@@ -114,7 +114,7 @@ fuzz SECONDS *TARGETS:
 # Kills the program, lets system calls fail, damages its inputs and strains it; or some parts of that.
 attack *FLAGS:
     cargo build --release
-    cargo build --release --workspace --example mutations
+    cargo build --release --example mutations
     python3 tools/attack {{FLAGS}}
 
 # Fresh random numbers, long property tests, attacks and mutants, with a summary; or some stages of it.

@@ -7,6 +7,7 @@
 //!
 //! Boxes and leaves are visited in another order than by single rays; whether there is a hit does not depend on it.
 
+use std::array::from_fn;
 use std::mem::MaybeUninit;
 use std::ops::ControlFlow;
 
@@ -57,11 +58,11 @@ impl Kernel for AreBlocked<'_> {
         }
         let mut waiting = Waiting { rays, next: 0 };
         let mut active = [const { None }; RAYS];
-        let mut stacks = [const { NodeStack::EMPTY }; RAYS];
+        let mut stacks: [_; RAYS] = from_fn(|_| NodeStack::new());
         for (ray, stack) in active.iter_mut().zip(&mut stacks) {
             *ray = waiting.start(tree, stack);
         }
-        let mut leaves = LeafQueue::EMPTY;
+        let mut leaves = LeafQueue::new();
         while active.iter().any(Option::is_some) {
             for _ in 0..ROUNDS {
                 for (number, (ray, stack)) in active.iter().zip(&mut stacks).enumerate() {
@@ -191,10 +192,14 @@ impl NodeStack {
     /// words that are written behind those that count.
     const SIZE: usize = 1 + MAX_DEPTH * (WIDTH - 1) + 1 + WIDTH;
 
-    const EMPTY: Self = Self {
-        nodes: [MaybeUninit::uninit(); Self::SIZE],
-        len: 0,
-    };
+    // No constant: one would be copied, all of its uninitialised words included.
+    #[inline(always)]
+    fn new() -> Self {
+        Self {
+            nodes: [const { MaybeUninit::uninit() }; Self::SIZE],
+            len: 0,
+        }
+    }
 
     #[inline(always)]
     fn clear(&mut self) {
@@ -253,11 +258,14 @@ impl LeafQueue {
     /// All children of the nodes that are opened before it is worked off, and the words written behind them.
     const SIZE: usize = RAYS * ROUNDS * WIDTH + WIDTH;
 
-    const EMPTY: Self = Self {
-        leaves: [MaybeUninit::uninit(); Self::SIZE],
-        places: [MaybeUninit::uninit(); Self::SIZE],
-        len: 0,
-    };
+    #[inline(always)]
+    fn new() -> Self {
+        Self {
+            leaves: [const { MaybeUninit::uninit() }; Self::SIZE],
+            places: [const { MaybeUninit::uninit() }; Self::SIZE],
+            len: 0,
+        }
+    }
 
     /// Adds those of `leaves` whose bit is set.
     #[inline(always)]

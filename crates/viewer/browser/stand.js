@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { spawn } from "node:child_process";
 import { existsSync, mkdirSync, mkdtempSync, rmSync } from "node:fs";
-import { tmpdir } from "node:os";
+import { constants, setPriority, tmpdir } from "node:os";
 import path from "node:path";
 import { createInterface } from "node:readline";
 import { fileURLToPath } from "node:url";
@@ -67,6 +67,8 @@ export class Renderer {
   static start(args) {
     const folder = mkdtempSync(path.join(tmpdir(), "bidir-page-"));
     const child = spawn(BIDIR, args, { cwd: folder, stdio: ["ignore", "pipe", "pipe"] });
+    // It would take every core, and the browser is what tests wait for.
+    if (child.pid) setPriority(child.pid, constants.priority.PRIORITY_LOW);
     return new Promise((resolve, reject) => {
       let said = "";
       const hear = (/** @type {string} */ line) => {

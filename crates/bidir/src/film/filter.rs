@@ -149,8 +149,8 @@ impl Axis {
     fn pick(&self, x: f32, u: f32) -> Option<(i64, f32)> {
         // A pixel's centre lies at q + 1/2. The interval is half open, so that a box of one pixel
         // always reaches exactly one.
-        let first = (x - 0.5 - self.radius).floor() as i64 + 1;
-        let last = (x - 0.5 + self.radius).floor() as i64;
+        let first = floor(x - 0.5 - self.radius) + 1;
+        let last = floor(x - 0.5 + self.radius);
         if first == last {
             let value = self.eval(x - 0.5 - first as f32);
             return (value != 0.0).then_some((first, value));
@@ -177,6 +177,13 @@ impl Axis {
         }
         picked
     }
+}
+
+/// ⌊x⌋, without the call that [`f32::floor`] is where SSE4.1 is not assumed.
+#[inline]
+fn floor(x: f32) -> i64 {
+    let towards_zero = x as i64;
+    towards_zero - i64::from(x < towards_zero as f32)
 }
 
 /// The inverse of the cumulative tent over [-1, 1].

@@ -102,11 +102,12 @@ fn divide(points: &mut [Vec3], i: usize, planes: &mut [Plane]) {
     }
     let axis = longest(points);
     // By all coordinates, so that the order is one whatever sorts.
-    let by = |p: &Vec3| [axis, (axis + 1) % 3, (axis + 2) % 3].map(|axis| p[axis]);
     points.sort_unstable_by(|a, b| {
-        let pairs = by(a).into_iter().zip(by(b));
-        let orders = pairs.map(|(a, b)| a.total_cmp(&b));
-        orders.fold(Ordering::Equal, Ordering::then)
+        let axes = [axis, (axis + 1) % 3, (axis + 2) % 3].into_iter();
+        let mut orders = axes.map(|axis| a[axis].total_cmp(&b[axis]));
+        orders
+            .find(|order| order.is_ne())
+            .unwrap_or(Ordering::Equal)
     });
     let middle = widest_gap(points, axis);
     let at = 0.5 * (points[middle.saturating_sub(1)][axis] + points[middle][axis]);

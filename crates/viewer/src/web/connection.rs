@@ -90,7 +90,7 @@ async fn converse(stream: TcpStream, router: axum::Router, place: Place) {
         .timer(TokioTimer::new())
         .header_read_timeout(HEAD_TIME)
         .max_buf_size(LARGEST_HEAD)
-        .serve_connection(TokioIo::new(Patient::new(stream, place)), service)
+        .serve_connection(TokioIo::new(Patient::new(stream, PATIENCE, place)), service)
         .with_upgrades();
     tokio::select! {
         // An error here closes the peer's connection, and that alone.
@@ -102,6 +102,8 @@ async fn converse(stream: TcpStream, router: axum::Router, place: Place) {
 /// A stream whose writes fail when the peer takes nothing for a while.
 struct Patient {
     stream: TcpStream,
+    /// The time that the peer may take nothing.
+    patience: Duration,
     /// When the patience ends. None: the peer is not waited for.
     deadline: Option<Pin<Box<Sleep>>>,
     /// It is free again when the stream is gone, which may be long after an upgrade.
@@ -109,9 +111,10 @@ struct Patient {
 }
 
 impl Patient {
-    fn new(stream: TcpStream, place: Arc<Place>) -> Self {
+    fn new(stream: TcpStream, patience: Duration, place: Arc<Place>) -> Self {
         Self {
             stream,
+            patience,
             deadline: None,
             place,
         }
@@ -131,7 +134,7 @@ impl Patient {
         }
         let deadline = self.deadline.get_or_insert_with(|| {
             self.place.set_sending(true);
-            Box::pin(sleep(PATIENCE))
+            Box::pin(sleep(self.patience))
         });
         let late = || Err(io::ErrorKind::TimedOut.into());
         deadline.as_mut().poll(context).map(|()| late())
@@ -183,35 +186,34 @@ impl AsyncWrite for Patient {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::time::Instant;
     use tokio::io::AsyncWriteExt;
 
-    #[tokio::test(flavor = "current_thread", start_paused = true)]
-    async fn a_peer_that_takes_nothing_is_given_up() {
+    /// A stream with this patience, and the peer at its other end.
+    async fn pair(patience: Duration) -> (Patient, TcpStream) {
         let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
         let peer = TcpStream::connect(listener.local_addr().unwrap())
             .await
             .unwrap();
         let (stream, _) = listener.accept().await.unwrap();
         let place = Arc::new(Places::default()).take(peer.peer_addr().unwrap().ip());
-        let mut stream = Patient::new(stream, place.unwrap().into());
-        let start = tokio::time::Instant::now();
-        let lot = vec![0; 1 << 26];
-        let error = stream.write_all(&lot).await.unwrap_err();
+        (Patient::new(stream, patience, place.unwrap().into()), peer)
+    }
+
+    #[tokio::test(flavor = "current_thread")]
+    async fn a_peer_that_takes_nothing_is_given_up() {
+        let patience = Duration::from_millis(50);
+        let (mut stream, peer) = pair(patience).await;
+        let start = Instant::now();
+        let error = stream.write_all(&vec![0; 1 << 26]).await.unwrap_err();
         assert_eq!(error.kind(), io::ErrorKind::TimedOut);
-        // By the clock of the test, which does not run while anything else does.
-        assert!(start.elapsed() >= PATIENCE);
+        assert!(start.elapsed() >= patience);
         drop(peer);
     }
 
     #[tokio::test(flavor = "current_thread")]
     async fn a_peer_that_takes_little_is_waited_for() {
-        let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
-        let mut peer = TcpStream::connect(listener.local_addr().unwrap())
-            .await
-            .unwrap();
-        let (stream, _) = listener.accept().await.unwrap();
-        let place = Arc::new(Places::default()).take(peer.peer_addr().unwrap().ip());
-        let mut stream = Patient::new(stream, place.unwrap().into());
+        let (mut stream, mut peer) = pair(PATIENCE).await;
         let writing = tokio::spawn(async move { stream.write_all(&vec![7; 1 << 24]).await });
         let mut taken = Vec::new();
         tokio::io::AsyncReadExt::read_to_end(&mut peer, &mut taken)
