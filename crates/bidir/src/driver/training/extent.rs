@@ -4,14 +4,15 @@
 //!
 //! 2¹⁴ (w₀ / w)²,
 //!
-//! and not below 2⁶: the longer subpaths are, the less time training takes, which is then the least of it.
+//! and not below the first samples, which that work is known from: the longer subpaths are, the less time training
+//! takes, which is then the least of it.
 //! Films of fewer than 2¹⁰ pixels get no more than 16 samples for each pixel, but no fewer than 2¹⁰ for that
 //! reason: training does not take much longer than their render, and a crop of four pixels is spread evenly.
 //!
 //! Training only estimates what estimators choose by, so fewer samples add no bias. Work is counted and
 //! not timed: a scene is trained alike on every machine.
 
-use super::constants::{ENOUGH_SAMPLES, LEAST_SAMPLES, MOST_OF_PIXEL, MOST_SAMPLES, USUAL_WORK};
+use super::constants::{ENOUGH_SAMPLES, FIRST_SAMPLES, MOST_OF_PIXEL, MOST_SAMPLES, USUAL_WORK};
 use crate::stats::Stats;
 
 /// The number of samples for so many pixels where a sample makes so much work: a power of two. Unit of work: as
@@ -20,7 +21,7 @@ pub(super) fn samples(pixels: u64, work: f64) -> u64 {
     let ratio = USUAL_WORK / work.max(USUAL_WORK);
     let affordable = MOST_SAMPLES as f64 * ratio * ratio;
     let most = pixels.saturating_mul(MOST_OF_PIXEL).max(ENOUGH_SAMPLES);
-    1 << (affordable as u64).min(most).max(LEAST_SAMPLES).ilog2()
+    1 << (affordable as u64).min(most).max(FIRST_SAMPLES).ilog2()
 }
 
 /// The mean cost of a sample. Unit: rays and connections.
@@ -40,8 +41,8 @@ mod tests {
             (260.0, MOST_SAMPLES / 2),
             (512.0, MOST_SAMPLES / 4),
             (2048.0, 256),
-            (1e9, LEAST_SAMPLES),
-            (f64::INFINITY, LEAST_SAMPLES),
+            (1e9, FIRST_SAMPLES),
+            (f64::INFINITY, FIRST_SAMPLES),
         ] {
             assert_eq!(samples(u64::MAX, work), expected, "{work}");
         }

@@ -217,7 +217,10 @@ mod tests {
         // All pairs are half a million.
         let of_sample = extent::work(&survey.stats);
         assert!((20_000.0..40_000.0).contains(&of_sample), "{of_sample}");
-        assert_eq!((survey.stats.samples, survey.is_short), (64, false));
+        assert_eq!(
+            (survey.stats.samples, survey.is_short),
+            (FIRST_SAMPLES, false)
+        );
     }
 
     /// Compares the mean of training with that of the image by these strategies.
