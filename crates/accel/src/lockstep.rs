@@ -192,7 +192,7 @@ impl NodeStack {
     /// words that are written behind those that count.
     const SIZE: usize = 1 + MAX_DEPTH * (WIDTH - 1) + 1 + WIDTH;
 
-    // No constant: one would be copied, all of its uninitialised words included.
+    // A function, because every use of a constant would copy all words, the uninitialised ones too.
     #[inline(always)]
     fn new() -> Self {
         Self {

@@ -67,7 +67,7 @@ export class Renderer {
   static start(args) {
     const folder = mkdtempSync(path.join(tmpdir(), "bidir-page-"));
     const child = spawn(BIDIR, args, { cwd: folder, stdio: ["ignore", "pipe", "pipe"] });
-    // It would take every core, and the browser is what tests wait for.
+    // Tests wait for the browser, which would have to share all cores with the renderer.
     if (child.pid) setPriority(child.pid, constants.priority.PRIORITY_LOW);
     return new Promise((resolve, reject) => {
       let said = "";

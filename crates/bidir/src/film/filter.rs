@@ -179,11 +179,11 @@ impl Axis {
     }
 }
 
-/// ⌊x⌋, without the call that [`f32::floor`] is where SSE4.1 is not assumed.
+/// ⌊x⌋ as [`f32::floor`] finds it, which is a call to a library without SSE4.1.
 #[inline]
 fn floor(x: f32) -> i64 {
     let towards_zero = x as i64;
-    towards_zero - i64::from(x < towards_zero as f32)
+    towards_zero.saturating_sub(i64::from(x < towards_zero as f32))
 }
 
 /// The inverse of the cumulative tent over [-1, 1].

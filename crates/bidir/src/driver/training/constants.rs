@@ -9,7 +9,7 @@ pub(super) const MOST_OF_PIXEL: u64 = 16;
 /// Small films have at least as many, if work allows it. Unit: samples, a power of two.
 pub(super) const ENOUGH_SAMPLES: u64 = 1 << 10;
 /// Nothing is learned about connections from fewer. Unit: samples, a power of two.
-pub(super) const LEAST_SAMPLES: u64 = 1 << 6;
+pub(super) const LEARNING_SAMPLES: u64 = 1 << 6;
 /// The first samples, whose work decides how many follow. Unit: samples, a power of two.
 pub(super) const FIRST_SAMPLES: u64 = 1 << 4;
 /// Groups of samples for the threads to share. Unit: groups in a round of the survey.

@@ -4,8 +4,7 @@
 //!
 //! 2¹⁴ (w₀ / w)²,
 //!
-//! and not below the first samples, which that work is known from: the longer subpaths are, the less time training
-//! takes, which is then the least of it.
+//! and at least the first samples, which measure that work. So training takes less time where subpaths are longer.
 //! Films of fewer than 2¹⁰ pixels get no more than 16 samples for each pixel, but no fewer than 2¹⁰ for that
 //! reason: training does not take much longer than their render, and a crop of four pixels is spread evenly.
 //!

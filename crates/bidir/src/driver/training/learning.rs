@@ -1,7 +1,7 @@
 //! Learns from the connections of the survey, before the first pass: which light vertices to propose to camera
 //! vertices, which of them are visible, and where light subpaths begin.
 
-use super::constants::{LEAST_SAMPLES, MOST_PARTS};
+use super::constants::{LEARNING_SAMPLES, MOST_PARTS};
 use super::emission::{self, Connection, Evidence};
 use super::moments::Counts;
 use super::survey::Survey;
@@ -219,7 +219,7 @@ impl Survey {
 impl Training {
     /// Learns for the estimator of `settings`, where that learns and `survey` has enough samples.
     pub(super) fn learn(&mut self, task: Task<'_>, settings: &Settings, survey: &Survey) {
-        let is_enough = survey.stats.samples >= LEAST_SAMPLES && self.light_vertices > 0.0;
+        let is_enough = survey.stats.samples >= LEARNING_SAMPLES && self.light_vertices > 0.0;
         if !settings.learns() || !is_enough {
             return;
         }

@@ -102,3 +102,14 @@ fn the_box_of_one_pixel_picks_the_pixel_under_the_point() {
         assert!((weight - 1.0).abs() < 1e-6);
     }
 }
+
+#[test]
+fn floor_is_that_of_the_standard_library() {
+    let numbers = [0.0, 0.5, 1.0, 3.999, 8_388_607.5, 1e10, 1e30];
+    for x in numbers.into_iter().flat_map(|x: f32| [x, -x]) {
+        assert_eq!(floor(x), x.floor() as i64, "{x}");
+    }
+    for x in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
+        assert_eq!(floor(x), x.floor() as i64, "{x}");
+    }
+}
