@@ -31,7 +31,7 @@ docs:
 
 # The libraries' documentation.
 doc:
-    cargo doc --workspace --no-deps --document-private-items
+    cargo doc --release --workspace --no-deps --document-private-items
 
 # Formats all sources.
 fmt:

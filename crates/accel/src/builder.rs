@@ -2,8 +2,8 @@
 //!
 //! A [`Group`] of references is split in two until there are eight groups, each time the one
 //! with the largest surface that is no leaf yet; these become the children of a node.
-//! Nothing depends on the number of threads: large groups are built into a [`Tree`] of their own
-//! and appended in order, which gives the layout that building in order would give.
+//! Nothing depends on the number of threads: groups of some thousand are built into trees of their own, which
+//! are appended in order. That gives the layout that building in order would give.
 //!
 //! A ray's stack is of fixed size, so depth is limited: a group of `n` that has just
 //! [`balanced_height`] levels left is halved by count instead, which needs no more.
@@ -12,16 +12,17 @@ use rayon::prelude::{IntoParallelIterator, ParallelIterator};
 
 use crate::aabb::Aabb;
 use crate::child::{Child, Target};
-use crate::memory::{self, settled};
+use crate::error::BuildError;
+use crate::memory;
 use crate::node::{Node, WIDTH};
-use crate::primitive::Primitive;
+use crate::primitive::{Primitive, Primitives};
 use crate::quadric::Quadric;
 use crate::triangle::{LANES, TriangleBlock};
 
 mod bins;
 mod group;
 
-use group::{Group, Kind, Reference};
+use group::{Group, Kind, Reference, Totals};
 
 /// Nodes on the longest way from the root to a leaf.
 pub(crate) const MAX_DEPTH: usize = 32;
@@ -34,55 +35,67 @@ pub(crate) const MAX_PRIMITIVES: usize = Child::MAX_ELEMENTS;
 const PARALLEL_MIN: usize = 16384;
 
 /// The arrays that [`Child`] points into.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone)]
 pub(crate) struct Tree {
     /// The root comes first.
     pub(crate) nodes: Vec<Node>,
     pub(crate) blocks: Vec<TriangleBlock>,
     pub(crate) quadrics: Vec<Quadric>,
+    /// A box around everything; [`Aabb::EMPTY`] if there is nothing.
+    pub(crate) bounds: Aabb,
     /// The largest magnitude of a coordinate of a box.
     pub(crate) reach: f32,
 }
 
 impl Tree {
-    /// The tree over primitives with these bounds, which are all valid, and over the instances of
-    /// which the bounds are valid.
-    pub(crate) fn build(primitives: &[Primitive], bounds: &[Aabb], instances: &[Aabb]) -> Self {
-        let mut tree = Self::with_room(primitives.len());
+    /// The tree over primitives, and over instances with these bounds where they are valid.
+    pub(crate) fn build<P: Primitives + ?Sized>(
+        primitives: &P,
+        instances: &[Aabb],
+    ) -> Result<Self, BuildError> {
         let of_primitive =
-            |index: usize| Reference::new(index as u32, &primitives[index], bounds[index]);
+            |index: usize| Reference::new(index as u32, &primitives.primitive(index));
+        let indices = (0..primitives.count()).into_par_iter();
+        let mut references: Vec<Reference> = indices.map(of_primitive).collect();
+        if let Some(primitive) = references.iter().position(|one| !one.is_valid()) {
+            return Err(BuildError::NotFinite { primitive });
+        }
         let of_instances = (0..)
             .zip(instances)
-            .filter(|(_, bounds)| bounds.is_valid())
             .map(|(index, bounds)| Reference::instance(index, *bounds));
-        let indices = (0..primitives.len()).into_par_iter();
-        let mut references: Vec<Reference> = indices.map(of_primitive).collect();
-        references.extend(of_instances);
+        references.extend(of_instances.filter(Reference::is_valid));
         if references.is_empty() {
-            return tree;
+            return Ok(Self::with_room(0));
         }
-        let total = references
-            .iter()
-            .fold(Aabb::EMPTY, |sum, reference| sum.union(reference.bounds));
+        Ok(Self::over(primitives, references))
+    }
+
+    /// The tree over primitives by at least one reference.
+    fn over<P: Primitives + ?Sized>(primitives: &P, mut references: Vec<Reference>) -> Self {
+        let totals = Totals::of(&references);
+        let bounds = totals.bounds();
+        let reach = bounds.min.abs().max(bounds.max.abs()).max_element();
         let builder = Builder {
             primitives,
-            unit: group::unit_of(&total),
+            scale: group::scale_of(reach),
         };
-        let root = Group::new(&mut references, builder.unit);
-        if root.is_leaf() {
-            tree.nodes.push(Node::EMPTY);
-            let bounds = root.bounds;
-            let leaf = builder.leaf(&root, &mut tree);
-            tree.nodes[0].set(0, &bounds, leaf);
+        let root = Group::new(&mut references, totals, builder.scale);
+        let part = if root.is_leaf() {
+            Part::Node(vec![(bounds, builder.part(root, 1))])
         } else {
-            builder.node(root, 0, &mut tree);
-        }
-        Self {
-            nodes: settled(tree.nodes),
-            blocks: settled(tree.blocks),
-            quadrics: settled(tree.quadrics),
-            reach: total.min.abs().max(total.max.abs()).max_element(),
-        }
+            builder.part(root, 0)
+        };
+        drop(references);
+        let [nodes, blocks, quadrics] = part.counts();
+        let mut tree = Self {
+            nodes: memory::with_room(nodes),
+            blocks: memory::with_room(blocks),
+            quadrics: memory::with_room(quadrics),
+            bounds,
+            reach,
+        };
+        tree.append(part);
+        tree
     }
 
     /// The node of a child that is one.
@@ -120,12 +133,30 @@ impl Tree {
         Self {
             nodes: Vec::with_capacity(triangles / 12),
             blocks: Vec::with_capacity(triangles / 3),
-            ..Self::default()
+            quadrics: Vec::new(),
+            bounds: Aabb::EMPTY,
+            reach: 0.0,
+        }
+    }
+
+    /// Appends a part, and returns the child that leads to it.
+    fn append(&mut self, part: Part) -> Child {
+        match part {
+            Part::Tree(tree, child) => self.append_tree(tree, child),
+            Part::Node(parts) => {
+                let index = self.nodes.len();
+                self.nodes.push(Node::EMPTY);
+                for (slot, (bounds, part)) in parts.into_iter().enumerate() {
+                    let child = self.append(part);
+                    self.nodes[index].set(slot, &bounds, child);
+                }
+                Child::node(index)
+            }
         }
     }
 
     /// Appends `other` and returns where its child `child` is now.
-    fn append(&mut self, mut other: Self, child: Child) -> Child {
+    fn append_tree(&mut self, mut other: Self, child: Child) -> Child {
         let (nodes, blocks) = (self.nodes.len(), self.blocks.len());
         let quadrics = self.quadrics.len();
         let moved = |child: Child| match child.target() {
@@ -148,6 +179,27 @@ impl Tree {
     }
 }
 
+/// Part of a tree.
+enum Part {
+    /// A tree of its own, and the child that leads to all of it.
+    Tree(Tree, Child),
+    /// A node: its children and their bounds.
+    Node(Vec<(Aabb, Part)>),
+}
+
+impl Part {
+    /// Counts nodes, blocks and quadrics.
+    fn counts(&self) -> [usize; 3] {
+        match self {
+            Self::Tree(tree, _) => [tree.nodes.len(), tree.blocks.len(), tree.quadrics.len()],
+            Self::Node(parts) => parts.iter().fold([1, 0, 0], |sum, (_, part)| {
+                let counts = part.counts();
+                [0, 1, 2].map(|i| sum[i] + counts[i])
+            }),
+        }
+    }
+}
+
 /// Levels of nodes that suffice for `count` primitives if groups are halved by count: three
 /// halvings a level, down to at most eight primitives, which a node has room for.
 fn balanced_height(count: usize) -> usize {
@@ -158,13 +210,13 @@ fn balanced_height(count: usize) -> usize {
     }
 }
 
-struct Builder<'a> {
-    primitives: &'a [Primitive],
-    /// The length that areas are measured in.
-    unit: f32,
+struct Builder<'a, P: ?Sized> {
+    primitives: &'a P,
+    /// The factor that areas are measured with, once for each dimension.
+    scale: f32,
 }
 
-impl Builder<'_> {
+impl<P: Primitives + ?Sized> Builder<'_, P> {
     /// Appends what leads to `group`, and returns the reference to it.
     fn child(&self, group: Group, depth: usize, tree: &mut Tree) -> Child {
         if group.is_leaf() {
@@ -175,29 +227,27 @@ impl Builder<'_> {
     }
 
     fn node(&self, group: Group, depth: usize, tree: &mut Tree) -> Child {
-        let count = group.len();
         let groups = self.collapse(group, depth);
         let index = tree.nodes.len();
         tree.nodes.push(Node::EMPTY);
-        if count < PARALLEL_MIN {
-            for (slot, group) in groups.into_iter().enumerate() {
-                let bounds = group.bounds;
-                let child = self.child(group, depth + 1, tree);
-                tree.nodes[index].set(slot, &bounds, child);
-            }
-        } else {
-            let build = |group: Group| {
-                let (bounds, mut subtree) = (group.bounds, Tree::with_room(group.len()));
-                let child = self.child(group, depth + 1, &mut subtree);
-                (bounds, child, subtree)
-            };
-            let subtrees: Vec<_> = groups.into_par_iter().map(build).collect();
-            for (slot, (bounds, child, subtree)) in subtrees.into_iter().enumerate() {
-                let child = tree.append(subtree, child);
-                tree.nodes[index].set(slot, &bounds, child);
-            }
+        for (slot, group) in groups.into_iter().enumerate() {
+            let bounds = group.bounds();
+            let child = self.child(group, depth + 1, tree);
+            tree.nodes[index].set(slot, &bounds, child);
         }
         Child::node(index)
+    }
+
+    /// Builds what leads to `group`, on several threads if it is large.
+    fn part(&self, group: Group, depth: usize) -> Part {
+        if group.len() < PARALLEL_MIN {
+            let mut tree = Tree::with_room(group.len());
+            let child = self.child(group, depth, &mut tree);
+            return Part::Tree(tree, child);
+        }
+        let groups = self.collapse(group, depth).into_par_iter();
+        let parts = groups.map(|group| (group.bounds(), self.part(group, depth + 1)));
+        Part::Node(parts.collect())
     }
 
     /// Splits until there are eight groups, or none that it would help. Larger boxes come last: an any-hit ray
@@ -221,9 +271,9 @@ impl Builder<'_> {
             };
             let group = groups.swap_remove(next);
             let halves = if by_count {
-                group.halve(self.unit)
+                group.halve(self.scale)
             } else {
-                group.split(self.unit)
+                group.split(self.scale)
             };
             groups.extend(halves);
         }
@@ -232,17 +282,14 @@ impl Builder<'_> {
     }
 
     fn leaf(&self, group: &Group, tree: &mut Tree) -> Child {
-        let triangle = |reference: &Reference| match &self.primitives[reference.primitive as usize]
-        {
-            Primitive::Triangle(vertices) => Some((reference.primitive, *vertices)),
+        let primitive_of =
+            |reference: &Reference| self.primitives.primitive(reference.primitive as usize);
+        let triangle = |reference: &Reference| match primitive_of(reference) {
+            Primitive::Triangle(vertices) => Some((reference.primitive, vertices)),
             _ => None,
         };
-        let quadric = |reference: &Reference| {
-            Quadric::new(
-                reference.primitive,
-                &self.primitives[reference.primitive as usize],
-            )
-        };
+        let quadric =
+            |reference: &Reference| Quadric::new(reference.primitive, &primitive_of(reference));
         match group.kind {
             Some(Kind::Triangle) => {
                 let first = tree.blocks.len();
@@ -280,16 +327,15 @@ mod tests {
             let hash = |k: u32| (i * 3 + k).wrapping_mul(2_654_435_769) as f32 * 1e-9;
             Vec3::new(hash(0), hash(1), hash(2))
         };
-        let primitives: Vec<_> = (0..20_000)
+        let primitives: Vec<_> = (0..40_000)
             .map(|i| Primitive::Triangle([at(i), at(i) + Vec3::X * 0.01, at(i) + Vec3::Y * 0.01]))
             .collect();
-        let bounds: Vec<_> = primitives.iter().map(Primitive::bounds).collect();
         let trees = [1, 4].map(|threads| {
             let pool = rayon::ThreadPoolBuilder::new()
                 .num_threads(threads)
                 .build()
                 .unwrap();
-            pool.install(|| format!("{:?}", Tree::build(&primitives, &bounds, &[])))
+            pool.install(|| format!("{:?}", Tree::build(&primitives[..], &[])))
         });
         assert!(trees[0] == trees[1]);
     }

@@ -4,7 +4,6 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use glam::{DAffine3, Vec3};
-use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
 
 use crate::aabb::Aabb;
 use crate::builder::{MAX_PRIMITIVES, Tree};
@@ -13,7 +12,7 @@ use crate::instance::{Instance, Placement};
 use crate::isa::Isa;
 use crate::lockstep::AreBlocked;
 use crate::node::Node;
-use crate::primitive::Primitive;
+use crate::primitive::{Primitive, Primitives};
 use crate::query::{AnyHit, Anything, ClosestHit, EachHit, Query};
 use crate::ray::{Hit, Ray};
 use crate::traverse::Ask;
@@ -49,7 +48,6 @@ impl Default for BuildOptions {
 #[derive(Debug, Clone)]
 pub struct Bvh {
     pub(crate) tree: Tree,
-    pub(crate) bounds: Aabb,
     pub(crate) primitive_count: usize,
     pub(crate) objects: Vec<Arc<Bvh>>,
     pub(crate) placements: Vec<Placement>,
@@ -78,38 +76,30 @@ impl Bvh {
     ///     object: 0,
     ///     world_from_object: DAffine3::from_translation(DVec3::Z * z),
     /// };
-    /// let bvh = Bvh::with_instances(&[], vec![Arc::new(leaf)], &[at(0.0), at(1.0)], &options)?;
+    /// let bvh = Bvh::with_instances(&[][..], vec![Arc::new(leaf)], &[at(0.0), at(1.0)], &options)?;
     /// let ray = Ray::new(Vec3::new(0.2, 0.3, 3.0), -Vec3::Z);
     /// let hit = bvh.closest(&ray, accept_all).expect("the upper leaf is in the way");
     /// assert_eq!((hit.t, hit.instance, hit.primitive), (2.0, 2, 0));
     /// # Ok::<(), bidir_accel::BuildError>(())
     /// ```
-    pub fn with_instances(
-        primitives: &[Primitive],
+    pub fn with_instances<P: Primitives + ?Sized>(
+        primitives: &P,
         objects: Vec<Arc<Self>>,
         instances: &[Instance],
         options: &BuildOptions,
     ) -> Result<Self, BuildError> {
         let isa = supported(options.isa)?;
-        let count = primitives.len() + instances.len();
+        let count = primitives.count() + instances.len();
         if count > MAX_PRIMITIVES {
             return Err(BuildError::TooManyPrimitives {
                 count,
                 limit: MAX_PRIMITIVES,
             });
         }
-        let all_bounds: Vec<Aabb> = primitives.par_iter().map(Primitive::bounds).collect();
-        if let Some(primitive) = all_bounds.iter().position(|bounds| !bounds.is_valid()) {
-            return Err(BuildError::NotFinite { primitive });
-        }
         let (placements, places) = place(&objects, instances)?;
         Ok(Self {
-            tree: Tree::build(primitives, &all_bounds, &places),
-            bounds: all_bounds
-                .iter()
-                .chain(&places)
-                .fold(Aabb::EMPTY, |sum, bounds| sum.union(*bounds)),
-            primitive_count: primitives.len(),
+            tree: Tree::build(primitives, &places)?,
+            primitive_count: primitives.count(),
             objects,
             placements,
             isa,
@@ -186,7 +176,7 @@ impl Bvh {
 
     /// A box around all primitives and instances; [`Aabb::EMPTY`] if there are none.
     pub fn bounds(&self) -> Aabb {
-        self.bounds
+        self.tree.bounds
     }
 
     /// The number of primitives it was built from, those of objects not counted.
@@ -253,7 +243,7 @@ fn place(
         let bounds = if is_empty {
             Aabb::around(&[Vec3::ZERO])
         } else {
-            object.bounds
+            object.tree.bounds
         };
         let placed = Placement::new(instance, &bounds);
         let (placement, bounds) = placed.ok_or(InstanceError::NotInvertible)?;

@@ -82,6 +82,6 @@ pub use error::{BuildError, InstanceError};
 pub use instance::Instance;
 pub use isa::{Isa, UnknownIsa};
 pub use memory::load_ahead;
-pub use primitive::Primitive;
+pub use primitive::{Primitive, Primitives};
 pub use ray::{Hit, Ray, accept_all};
 pub use sphere::Sphere;

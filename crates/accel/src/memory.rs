@@ -30,17 +30,14 @@ pub(crate) fn prefetch<const BYTES: usize>(place: *const u8) {
     let _ = place;
 }
 
-/// The same elements, in memory that fits and, where there is much of it and the system can, in large
-/// pages: rays jump about in it, and each jump to a small page costs a search for that page.
-pub(crate) fn settled<T: Copy>(mut elements: Vec<T>) -> Vec<T> {
-    if size_of_val(elements.as_slice()) < LARGE {
-        elements.shrink_to_fit();
-        return elements;
+/// An empty array with room for just so many elements. Where that is much, and the system can, it is in large pages:
+/// rays jump about in it, and each jump to a small page costs a search for that page.
+pub(crate) fn with_room<T>(count: usize) -> Vec<T> {
+    let mut empty = Vec::with_capacity(count);
+    if count * size_of::<T>() >= LARGE {
+        ask_for_large_pages(&mut empty);
     }
-    let mut settled = Vec::with_capacity(elements.len());
-    ask_for_large_pages(&mut settled);
-    settled.extend_from_slice(&elements);
-    settled
+    empty
 }
 
 /// Asks before the memory is touched. A refusal changes nothing.
@@ -70,13 +67,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn nothing_is_changed_or_wasted() {
+    fn room_is_as_asked() {
         for count in [0, 1, 1000, LARGE / 4, LARGE + 77] {
-            let mut elements: Vec<u32> = (0..count as u32).collect();
-            elements.reserve(count);
-            let settled = settled(elements.clone());
-            assert_eq!(settled, elements);
-            assert_eq!(settled.capacity(), count);
+            let mut elements: Vec<u32> = with_room(count);
+            elements.extend(0..count as u32);
+            assert_eq!(elements.capacity(), count);
+            assert!(elements.iter().copied().eq(0..count as u32));
         }
     }
 }

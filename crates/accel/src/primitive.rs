@@ -39,6 +39,26 @@ impl Primitive {
     }
 }
 
+/// Numbered primitives. A tree asks for each of them twice, and keeps triangles in a form of its own: they need not all
+/// be in memory at once.
+pub trait Primitives: Sync {
+    /// The number of primitives.
+    fn count(&self) -> usize;
+
+    /// Primitive `index`, the same each time.
+    fn primitive(&self, index: usize) -> Primitive;
+}
+
+impl Primitives for [Primitive] {
+    fn count(&self) -> usize {
+        self.len()
+    }
+
+    fn primitive(&self, index: usize) -> Primitive {
+        self[index]
+    }
+}
+
 /// Bounds in world space of the ellipsoid that `x² + y² + z² ≤ 1` becomes after scaling by `radii`
 /// and moving by `center` in the space of `local_from_world`.
 ///

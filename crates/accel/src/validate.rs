@@ -28,10 +28,10 @@ impl Bvh {
         }
         if !self.tree.nodes.is_empty() {
             let contents = walk.node(0, 0)?;
-            if contents != self.bounds {
+            if contents != self.bounds() {
                 return Err(format!(
                     "the tree has bounds {contents:?}, not {:?}",
-                    self.bounds
+                    self.bounds()
                 ));
             }
         }
@@ -108,7 +108,7 @@ impl Walk<'_> {
     fn instance(&mut self, index: usize, bounds: &Aabb) -> Result<(), String> {
         visit("instance", index, &mut self.instances)?;
         let world_from_object = self.bvh.placements[index].object_from_world().inverse();
-        let object = self.bvh.object_of(index).bounds;
+        let object = self.bvh.object_of(index).bounds();
         for corner in 0..8 {
             let pick = |axis: usize| [object.min, object.max][corner >> axis & 1][axis];
             let local = Vec3::new(pick(0), pick(1), pick(2)).as_dvec3();
@@ -192,7 +192,7 @@ mod tests {
 
     #[test]
     fn corrupted_trees_are_refused() {
-        check_refused(|bvh| bvh.bounds.max.x += 1.0, "the tree has bounds");
+        check_refused(|bvh| bvh.tree.bounds.max.x += 1.0, "the tree has bounds");
         check_refused(|bvh| bvh.primitive_count += 1, "primitive 70 is in no leaf");
         check_refused(
             |bvh| bvh.primitive_count -= 1,

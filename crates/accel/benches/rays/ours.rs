@@ -45,7 +45,7 @@ impl Ours {
             None => Bvh::build(&own, &options).expect("finite"),
             Some((object, instances)) => {
                 let object = Bvh::build(object, &options).expect("finite");
-                Bvh::with_instances(&own, vec![Arc::new(object)], instances, &options)
+                Bvh::with_instances(&own[..], vec![Arc::new(object)], instances, &options)
                     .expect("invertible")
             }
         };

@@ -5,10 +5,9 @@
 //!
 //! [Wald07]: https://doi.org/10.1109/RT.2007.4342588
 
-use glam::Vec3A;
+use glam::{Vec3A, Vec3Swizzles};
 
-use super::group::{Reference, area_in, summed};
-use crate::aabb::Aabb;
+use super::group::{Reference, sum};
 use crate::triangle::LANES;
 
 const MAX_BINS: usize = 32;
@@ -24,11 +23,15 @@ pub(super) struct Split {
 }
 
 impl Split {
-    /// Which references are on the left, of those with these centers.
-    pub(super) fn is_left<'a>(&'a self, centers: &'a Aabb) -> impl Fn(&Reference) -> bool + 'a {
-        let scale = bin_scale(centers, self.axis, self.bins);
+    /// Which references are on the left, of those whose centers have these bounds.
+    pub(super) fn is_left(&self, centers: [Vec3A; 2]) -> impl Fn(&Reference) -> bool {
+        let grid = Grid::new(centers, self.bins);
+        let (first, scale) = (grid.first[self.axis], grid.scale[self.axis]);
+        let (axis, first_right) = (self.axis, self.first_right as f32);
         move |reference| {
-            bin_of(reference, centers, self.axis, scale).min(self.bins - 1) < self.first_right
+            let place = (reference.center_on(axis) - first) * scale;
+            // A NaN is in the first bin.
+            place < first_right || place.is_nan()
         }
     }
 }
@@ -38,70 +41,96 @@ pub(super) fn blocks(lanes: u32) -> f32 {
     lanes.div_ceil(LANES as u32) as f32
 }
 
-/// Bounds of a bin, in vector registers, and the lanes of what is in it.
+/// Half of the surface area of a box, as multiple of 1 / `scale`².
+pub(super) fn scaled_area(scale: f32, [min, max]: [Vec3A; 2]) -> f32 {
+    // Scaled before subtracting, which could overflow.
+    let extent = (max * scale - min * scale).max(Vec3A::ZERO);
+    extent.dot(extent.yzx())
+}
+
+/// Bins of equal width along each axis, between the outermost centers.
+struct Grid {
+    first: Vec3A,
+    /// Bins per unit of length. Infinite for tiny extents, which [`Self::bins_of`] copes with.
+    scale: Vec3A,
+    last_bin: Vec3A,
+}
+
+impl Grid {
+    fn new([first, last]: [Vec3A; 2], bins: usize) -> Self {
+        Self {
+            first,
+            scale: Vec3A::splat(bins as f32) / (last - first),
+            last_bin: Vec3A::splat((bins - 1) as f32),
+        }
+    }
+
+    /// The bin of a center along each axis.
+    #[inline]
+    fn bins_of(&self, center: Vec3A) -> [usize; 3] {
+        // A NaN (nothing times infinity) belongs to the first bin: the cast sees to it where `max` does not.
+        let place = ((center - self.first) * self.scale).max(Vec3A::ZERO);
+        let [x, y, z] = place.min(self.last_bin).to_array();
+        // By way of 32 bits, to which conversions are quicker.
+        [x as i32 as usize, y as i32 as usize, z as i32 as usize]
+    }
+}
+
+/// Bounds of a bin, and the lanes of what is in it.
 #[derive(Clone, Copy)]
 struct Bin {
-    min: Vec3A,
-    max: Vec3A,
+    bounds: [Vec3A; 2],
     lanes: u32,
 }
 
 impl Bin {
     const EMPTY: Self = Self {
-        min: Vec3A::INFINITY,
-        max: Vec3A::NEG_INFINITY,
+        bounds: [Vec3A::INFINITY, Vec3A::NEG_INFINITY],
         lanes: 0,
     };
 
-    fn of(reference: &Reference) -> Self {
-        Self {
-            min: reference.bounds.min.into(),
-            max: reference.bounds.max.into(),
-            lanes: reference.lanes(),
-        }
-    }
-
     #[inline]
     fn add(&mut self, other: &Self) {
-        self.min = self.min.min(other.min);
-        self.max = self.max.max(other.max);
+        let [min, max] = other.bounds;
+        self.bounds = [self.bounds[0].min(min), self.bounds[1].max(max)];
         self.lanes += other.lanes;
     }
 
-    fn cost(&self, unit: f32) -> f32 {
-        let bounds = Aabb {
-            min: self.min.into(),
-            max: self.max.into(),
-        };
-        area_in(unit, &bounds) * blocks(self.lanes)
+    fn cost(&self, scale: f32) -> f32 {
+        scaled_area(scale, self.bounds) * blocks(self.lanes)
     }
 }
 
 /// `[axis][bin]`.
 type Table<const BINS: usize> = [[Bin; BINS]; 3];
 
-/// The split of least cost. None: all centers are in one place, or nearly.
-pub(super) fn best_split(references: &[Reference], centers: &Aabb, unit: f32) -> Option<Split> {
+/// The split of least cost; `centers` bound those of the references. None: all are in one place, or nearly.
+pub(super) fn best_split(
+    references: &[Reference],
+    centers: [Vec3A; 2],
+    scale: f32,
+) -> Option<Split> {
     // Small groups do not deserve many bins, nor a table with room for them.
     match references.len() {
-        ..=8 => best_of::<12>(references, centers, unit),
-        9..=16 => best_of::<16>(references, centers, unit),
-        _ => best_of::<MAX_BINS>(references, centers, unit),
+        ..=8 => best_of::<12>(references, centers, scale),
+        9..=16 => best_of::<16>(references, centers, scale),
+        _ => best_of::<MAX_BINS>(references, centers, scale),
     }
 }
 
 fn best_of<const BINS: usize>(
     references: &[Reference],
-    centers: &Aabb,
-    unit: f32,
+    centers: [Vec3A; 2],
+    scale: f32,
 ) -> Option<Split> {
     let bins = (8 + references.len() / 2).min(BINS);
-    let fill = |part: &[Reference]| filled::<BINS>(part, centers, bins);
-    let table = summed(references, fill, |mut sum, part| {
-        for (sum, part) in sum.as_flattened_mut().iter_mut().zip(part.as_flattened()) {
+    let grid = Grid::new(centers, bins);
+    let fill = |table: &mut Table<BINS>, part: &[Reference]| fill(table, part, &grid);
+    let mut table = [[Bin::EMPTY; BINS]; 3];
+    sum(references, &mut table, fill, |table, part| {
+        for (sum, part) in table.as_flattened_mut().iter_mut().zip(part.as_flattened()) {
             sum.add(part);
         }
-        sum
     });
     let mut best: Option<Split> = None;
     for (axis, table) in table.iter().enumerate() {
@@ -110,13 +139,13 @@ fn best_of<const BINS: usize>(
         for bin in (1..bins).rev() {
             right.add(&table[bin]);
             if right.lanes > 0 {
-                right_costs[bin] = right.cost(unit);
+                right_costs[bin] = right.cost(scale);
             }
         }
         let mut left = Bin::EMPTY;
         for first_right in 1..bins {
             left.add(&table[first_right - 1]);
-            let cost = left.cost(unit) + right_costs[first_right];
+            let cost = left.cost(scale) + right_costs[first_right];
             let least = best.as_ref().map_or(f32::INFINITY, |best| best.cost);
             if left.lanes > 0 && cost < least {
                 best = Some(Split {
@@ -132,27 +161,14 @@ fn best_of<const BINS: usize>(
 }
 
 /// Sorts references into bins along each axis.
-fn filled<const BINS: usize>(references: &[Reference], centers: &Aabb, bins: usize) -> Table<BINS> {
-    let mut table = [[Bin::EMPTY; BINS]; 3];
-    let scales = [0, 1, 2].map(|axis| bin_scale(centers, axis, bins));
+fn fill<const BINS: usize>(table: &mut Table<BINS>, references: &[Reference], grid: &Grid) {
     for reference in references {
-        let item = Bin::of(reference);
-        for axis in 0..3 {
-            let bin = bin_of(reference, centers, axis, scales[axis]).min(bins - 1);
-            table[axis][bin].add(&item);
+        let item = Bin {
+            bounds: reference.bounds(),
+            lanes: reference.lanes(),
+        };
+        for (table, bin) in table.iter_mut().zip(grid.bins_of(reference.center())) {
+            table[bin].add(&item);
         }
     }
-    table
-}
-
-/// Bins per unit of length. Infinite for tiny extents, which [`bin_of`] copes with.
-fn bin_scale(centers: &Aabb, axis: usize, bins: usize) -> f32 {
-    bins as f32 / (centers.max[axis] - centers.min[axis])
-}
-
-/// The bin of a reference; the far end is one beyond the last.
-fn bin_of(reference: &Reference, centers: &Aabb, axis: usize, scale: f32) -> usize {
-    let offset = reference.bounds.center()[axis] - centers.min[axis];
-    // The cast puts a NaN (nothing times infinity) into the first bin and too much into the last.
-    (offset * scale) as usize
 }

@@ -1,10 +1,10 @@
 //! Sets of primitives that become a leaf or are split.
 
-use glam::{Vec3, Vec3A};
+use glam::Vec3A;
 use rayon::prelude::{ParallelIterator, ParallelSlice};
 
 use super::bins::{self, Split};
-use crate::aabb::{Aabb, half_area};
+use crate::aabb::Aabb;
 use crate::child::Child;
 use crate::primitive::Primitive;
 use crate::triangle::LANES;
@@ -18,12 +18,16 @@ pub(super) enum Kind {
 }
 
 /// A primitive, as the builder sees it.
+///
+/// The bounds come last: a vector that is loaded with the word behind its three coordinates must not find an
+/// index there, with which arithmetic is slow, as with all subnormal numbers.
 #[derive(Debug, Clone, Copy)]
+#[repr(C)]
 pub(super) struct Reference {
-    pub(super) bounds: Aabb,
     /// Index of the primitive, or of the instance.
     pub(super) primitive: u32,
     kind: Kind,
+    bounds: Aabb,
 }
 
 impl Reference {
@@ -35,20 +39,46 @@ impl Reference {
         }
     }
 
-    pub(super) fn new(index: u32, primitive: &Primitive, bounds: Aabb) -> Self {
+    pub(super) fn new(index: u32, primitive: &Primitive) -> Self {
         let kind = match primitive {
             Primitive::Triangle(_) => Kind::Triangle,
             Primitive::Sphere(_) | Primitive::Disk(_) | Primitive::Cylinder(_) => Kind::Quadric,
         };
         Self {
-            bounds,
+            bounds: primitive.bounds(),
             primitive: index,
             kind,
         }
     }
 
+    /// True if it has a place in a tree.
+    pub(super) fn is_valid(&self) -> bool {
+        self.bounds.is_valid()
+    }
+
+    /// The corners of its box, in vector registers.
+    #[inline]
+    pub(super) fn bounds(&self) -> [Vec3A; 2] {
+        [self.bounds.min.into(), self.bounds.max.into()]
+    }
+
+    /// The middle of its box. None of its intermediate results overflows.
+    #[inline]
+    pub(super) fn center(&self) -> Vec3A {
+        let [min, max] = self.bounds();
+        0.5 * min + 0.5 * max
+    }
+
+    /// A coordinate of [`Self::center`].
+    #[inline]
+    pub(super) fn center_on(&self, axis: usize) -> f32 {
+        let [min, max]: [&[f32; 3]; 2] = [self.bounds.min.as_ref(), self.bounds.max.as_ref()];
+        0.5 * min[axis] + 0.5 * max[axis]
+    }
+
     /// The work of intersecting it, in lanes: a quadric costs what a block of triangles does, an
     /// instance so much that none shares a leaf.
+    #[inline]
     pub(super) fn lanes(&self) -> u32 {
         match self.kind {
             Kind::Triangle => 1,
@@ -58,21 +88,70 @@ impl Reference {
     }
 }
 
-/// The power of two near the size of `total`, as the unit of length: areas neither overflow nor
-/// vanish in it, whatever the scale of the scene.
-pub(super) fn unit_of(total: &Aabb) -> f32 {
-    let size = total.max.abs().max(total.min.abs()).max_element();
-    let exponent_only = f32::from_bits(size.to_bits() & f32::INFINITY.to_bits());
-    exponent_only.max(f32::MIN_POSITIVE)
+/// Sums over references.
+#[derive(Clone, Copy)]
+pub(super) struct Totals {
+    bounds: [Vec3A; 2],
+    centers: [Vec3A; 2],
+    lanes: u32,
+    /// A bit for each kind.
+    kinds: u8,
+}
+
+impl Totals {
+    const EMPTY: Self = Self {
+        bounds: [Vec3A::INFINITY, Vec3A::NEG_INFINITY],
+        centers: [Vec3A::INFINITY, Vec3A::NEG_INFINITY],
+        lanes: 0,
+        kinds: 0,
+    };
+
+    pub(super) fn of(references: &[Reference]) -> Self {
+        let mut totals = Self::EMPTY;
+        sum(references, &mut totals, Self::add_all, Self::add);
+        totals
+    }
+
+    fn add_all(&mut self, references: &[Reference]) {
+        for reference in references {
+            self.add(&Self {
+                bounds: reference.bounds(),
+                centers: [reference.center(); 2],
+                lanes: reference.lanes(),
+                kinds: 1 << reference.kind as u8,
+            });
+        }
+    }
+
+    #[inline]
+    fn add(&mut self, other: &Self) {
+        let union = |a: [Vec3A; 2], b: [Vec3A; 2]| [a[0].min(b[0]), a[1].max(b[1])];
+        self.bounds = union(self.bounds, other.bounds);
+        self.centers = union(self.centers, other.centers);
+        self.lanes += other.lanes;
+        self.kinds |= other.kinds;
+    }
+
+    /// The box around all.
+    pub(super) fn bounds(&self) -> Aabb {
+        let [min, max] = self.bounds.map(Into::into);
+        Aabb { min, max }
+    }
+}
+
+/// A power of two that scales coordinates of at most `reach` to about 1: areas then neither overflow nor
+/// vanish, whatever the size of the scene.
+pub(super) fn scale_of(reach: f32) -> f32 {
+    let exponent_only = f32::from_bits(reach.to_bits() & f32::INFINITY.to_bits());
+    exponent_only.max(f32::MIN_POSITIVE).recip()
 }
 
 /// References that are in no other group.
 pub(super) struct Group<'a> {
     pub(super) references: &'a mut [Reference],
-    pub(super) bounds: Aabb,
     /// None: several kinds occur.
     pub(super) kind: Option<Kind>,
-    centers: Aabb,
+    totals: Totals,
     area: f32,
     split: Option<Split>,
 }
@@ -81,23 +160,20 @@ pub(super) struct Group<'a> {
 const MAX_LEAF_LANES: u32 = ((Child::MAX_LEAF - 1) * LANES) as u32;
 
 impl<'a> Group<'a> {
-    /// Groups at least one reference.
-    pub(super) fn new(references: &'a mut [Reference], unit: f32) -> Self {
-        let [bounds, centers] = summed(references, bounds_of, |[a, b], [c, d]| {
-            [a.union(c), b.union(d)]
-        });
-        let first = references[0].kind;
-        let kind = references.iter().all(|r| r.kind == first).then_some(first);
-        let split = bins::best_split(references, &centers, unit);
-        let area = area_in(unit, &bounds);
-        Self {
+    /// Groups at least one reference; `totals` are theirs.
+    pub(super) fn new(references: &'a mut [Reference], totals: Totals, scale: f32) -> Self {
+        let is_one_kind = totals.kinds.is_power_of_two();
+        let mut group = Self {
+            kind: is_one_kind.then_some(references[0].kind),
+            area: bins::scaled_area(scale, totals.bounds),
+            totals,
+            split: None,
             references,
-            bounds,
-            kind,
-            centers,
-            area,
-            split,
+        };
+        if !group.is_one_test() {
+            group.split = bins::best_split(group.references, totals.centers, scale);
         }
+        group
     }
 
     pub(super) fn len(&self) -> usize {
@@ -108,30 +184,34 @@ impl<'a> Group<'a> {
         self.area
     }
 
+    pub(super) fn bounds(&self) -> Aabb {
+        self.totals.bounds()
+    }
+
     /// True if a leaf is to be made: always if it is one test, never if a leaf has no room for it, and
     /// otherwise if testing all is expected to cost no more than a node and its children.
     /// A node's test counts as much as a block's.
     pub(super) fn is_leaf(&self) -> bool {
-        self.leaf_lanes().is_some_and(|lanes| {
-            lanes <= LANES as u32
-                || self.area * bins::blocks(lanes) <= self.area + self.split_cost()
-        })
+        self.is_one_test() || self.has_room() && self.leaf_cost() <= self.area + self.split_cost()
     }
 
     /// True if a split pays where the node that will test the parts is paid for already.
     pub(super) fn deserves_split(&self) -> bool {
-        self.leaf_lanes().is_none_or(|lanes| {
-            lanes > LANES as u32 && self.area * bins::blocks(lanes) > self.split_cost()
-        })
+        !(self.is_one_test() || self.has_room() && self.leaf_cost() <= self.split_cost())
     }
 
-    /// The lanes of a leaf of all. None: there is no room for it.
-    fn leaf_lanes(&self) -> Option<u32> {
-        if self.kind.is_none() || self.len() > MAX_LEAF_LANES as usize {
-            return None;
-        }
-        let lanes = self.references.iter().map(Reference::lanes).sum();
-        (lanes <= MAX_LEAF_LANES || self.len() == 1).then_some(lanes)
+    /// True if its leaf is a block of triangles, or one quadric.
+    fn is_one_test(&self) -> bool {
+        self.has_room() && self.totals.lanes <= LANES as u32
+    }
+
+    /// True if a leaf has room for all.
+    fn has_room(&self) -> bool {
+        self.kind.is_some() && (self.totals.lanes <= MAX_LEAF_LANES || self.len() == 1)
+    }
+
+    fn leaf_cost(&self) -> f32 {
+        self.area * bins::blocks(self.totals.lanes)
     }
 
     fn split_cost(&self) -> f32 {
@@ -141,23 +221,26 @@ impl<'a> Group<'a> {
     }
 
     /// Divides by the heuristic, or in two halves if it knows no way.
-    pub(super) fn split(self, unit: f32) -> [Self; 2] {
+    pub(super) fn split(self, scale: f32) -> [Self; 2] {
         let Some(split) = &self.split else {
-            return self.halve(unit);
+            return self.halve(scale);
         };
-        let middle = partition(self.references, split.is_left(&self.centers));
-        self.cut(middle, unit)
+        let middle = partition(self.references, split.is_left(self.totals.centers));
+        self.cut(middle, scale)
     }
 
     /// Divides in two halves of equal count, or nearly.
-    pub(super) fn halve(self, unit: f32) -> [Self; 2] {
+    pub(super) fn halve(self, scale: f32) -> [Self; 2] {
         let middle = self.len() / 2;
-        self.cut(middle, unit)
+        self.cut(middle, scale)
     }
 
-    fn cut(self, middle: usize, unit: f32) -> [Self; 2] {
+    fn cut(self, middle: usize, scale: f32) -> [Self; 2] {
         let (left, right) = self.references.split_at_mut(middle);
-        [Self::new(left, unit), Self::new(right, unit)]
+        [left, right].map(|half| {
+            let totals = Totals::of(half);
+            Self::new(half, totals, scale)
+        })
     }
 }
 
@@ -165,59 +248,38 @@ impl<'a> Group<'a> {
 /// depend on how they are cut, in the sign of a zero.
 const PART: usize = 1 << 15;
 
-/// The result of `look` for the references: of all at once, or of parts that are merged in order.
-pub(super) fn summed<T: Send>(
+/// Adds what `look` finds at the references to `total`: at all of them at once, or at parts, whose totals are added in
+/// order.
+pub(super) fn sum<T: Clone + Send + Sync>(
     references: &[Reference],
-    look: impl Fn(&[Reference]) -> T + Sync + Send,
-    merge: impl Fn(T, T) -> T,
-) -> T {
-    let (first, others) = references.split_at(references.len().min(PART));
-    let (first, others): (T, Vec<T>) = if others.is_empty() {
-        (look(first), Vec::new())
-    } else {
-        rayon::join(
-            || look(first),
-            || others.par_chunks(PART).map(&look).collect(),
-        )
-    };
-    others.into_iter().fold(first, merge)
-}
-
-/// Bounds of references, and of their centers.
-fn bounds_of(references: &[Reference]) -> [Aabb; 2] {
-    let (inf, minus) = (Vec3A::INFINITY, Vec3A::NEG_INFINITY);
-    let (mut min, mut max, mut first, mut last) = (inf, minus, inf, minus);
-    for reference in references {
-        let bounds: [Vec3A; 2] = [reference.bounds.min.into(), reference.bounds.max.into()];
-        min = min.min(bounds[0]);
-        max = max.max(bounds[1]);
-        let center = 0.5 * bounds[0] + 0.5 * bounds[1];
-        first = first.min(center);
-        last = last.max(center);
+    total: &mut T,
+    look: impl Fn(&mut T, &[Reference]) + Sync + Send,
+    add: impl Fn(&mut T, &T),
+) {
+    if references.len() <= PART {
+        return look(total, references);
     }
-    let aabb = |min: Vec3A, max: Vec3A| Aabb {
-        min: min.into(),
-        max: max.into(),
+    let empty = total.clone();
+    let of_part = |part: &[Reference]| {
+        let mut total = empty.clone();
+        look(&mut total, part);
+        total
     };
-    [aabb(min, max), aabb(first, last)]
+    let parts: Vec<T> = references.par_chunks(PART).map(of_part).collect();
+    for part in &parts {
+        add(total, part);
+    }
 }
 
-/// Half of the surface area in squares of `unit`.
-pub(super) fn area_in(unit: f32, bounds: &Aabb) -> f32 {
-    // Divided before subtracting, which could overflow.
-    half_area((bounds.max / unit - bounds.min / unit).max(Vec3::ZERO))
-}
-
-/// Moves what is left to the front and returns how many these are.
+/// Moves what is left to the front and returns how many these are. Without branches: which side comes next is not to
+/// be foreseen.
 fn partition(references: &mut [Reference], is_left: impl Fn(&Reference) -> bool) -> usize {
-    let (mut begin, mut end) = (0, references.len());
-    while begin < end {
-        if is_left(&references[begin]) {
-            begin += 1;
-        } else {
-            end -= 1;
-            references.swap(begin, end);
-        }
+    let mut left = 0;
+    for next in 0..references.len() {
+        // Asked before the exchange, for which it need not wait.
+        let belongs_left = is_left(&references[next]);
+        references.swap(left, next);
+        left += usize::from(belongs_left);
     }
-    begin
+    left
 }

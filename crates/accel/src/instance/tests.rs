@@ -126,7 +126,7 @@ fn no_hit_is_culled_by_the_world_box() {
             object: 0,
             world_from_object,
         };
-        let bvh = Bvh::with_instances(&[], vec![object], &[instance], &options);
+        let bvh = Bvh::with_instances(&[][..], vec![object], &[instance], &options);
         // Nearly singular, by chance.
         let Ok(bvh) = bvh else { continue };
         assert_eq!(bvh.validate(), Ok(()));
@@ -168,7 +168,8 @@ fn corrupted_places_are_refused() {
         object: 0,
         world_from_object: DAffine3::IDENTITY,
     };
-    let mut bvh = Bvh::with_instances(&[], vec![object], &[instance; 2], &options).expect("valid");
+    let mut bvh =
+        Bvh::with_instances(&[][..], vec![object], &[instance; 2], &options).expect("valid");
     assert_eq!(bvh.validate(), Ok(()));
     bvh.placements[1].object_from_world.translation.x += 1.0;
     assert!(bvh.validate().expect_err("moved").contains("instance 1"));

@@ -236,7 +236,7 @@ fn bad_instances_are_refused() {
     };
     let good = at(0, DVec3::ONE);
     let check = |objects: Vec<Arc<Bvh>>, bad: Instance, reason| {
-        let error = Bvh::with_instances(&[], objects, &[good, bad], &options);
+        let error = Bvh::with_instances(&[][..], objects, &[good, bad], &options);
         let expected = BuildError::BadInstance {
             instance: 1,
             reason,
@@ -260,7 +260,7 @@ fn bad_instances_are_refused() {
         at(0, DVec3::splat(1e30)),
         InstanceError::NotInvertible,
     );
-    let group = Bvh::with_instances(&[], one(), &[good], &options).expect("valid");
+    let group = Bvh::with_instances(&[][..], one(), &[good], &options).expect("valid");
     let nested = vec![object.clone(), Arc::new(group)];
     check(nested, at(1, DVec3::ONE), InstanceError::Nested);
 }

@@ -3,29 +3,25 @@
 use super::{Presence, PrimitiveRef, SceneError, Surface};
 use crate::shape::{Mesh, Shape};
 
-/// Checks the shapes of these `numbers`: their primitives, for reference and for the intersector.
+/// Checks the shapes of these `numbers`, and appends their primitives.
 pub(super) fn gather_primitives(
     shapes: &[Shape],
     surfaces: &[Surface],
     numbers: &[usize],
     primitives: &mut Vec<PrimitiveRef>,
-) -> Result<Vec<accel::Primitive>, SceneError> {
-    let mut geometry = Vec::new();
+) -> Result<(), SceneError> {
     for &number in numbers {
         let shape = &shapes[number];
         check_shape(number, shape)?;
         if surfaces[number].presence == Presence::Absent {
             continue;
         }
-        for index in 0..shape.primitive_count() {
-            primitives.push(PrimitiveRef {
-                shape: number as u32,
-                index: index as u32,
-            });
-            geometry.push(shape.primitive(index));
-        }
+        primitives.extend((0..shape.primitive_count()).map(|index| PrimitiveRef {
+            shape: number as u32,
+            index: index as u32,
+        }));
     }
-    Ok(geometry)
+    Ok(())
 }
 
 pub(super) fn check_shape(number: usize, shape: &Shape) -> Result<(), SceneError> {

@@ -37,6 +37,23 @@ pub(super) struct Geometry {
     pub(super) instances: Vec<Placed>,
 }
 
+/// The shapes' primitives, for the intersector.
+struct Gathered<'a> {
+    shapes: &'a [Shape],
+    primitives: &'a [PrimitiveRef],
+}
+
+impl accel::Primitives for Gathered<'_> {
+    fn count(&self) -> usize {
+        self.primitives.len()
+    }
+
+    fn primitive(&self, index: usize) -> accel::Primitive {
+        let PrimitiveRef { shape, index } = self.primitives[index];
+        self.shapes[shape as usize].primitive(index as usize)
+    }
+}
+
 impl Objects {
     /// Checks all shapes and builds the trees. Shapes that are in no object are in the world.
     pub(super) fn build(
@@ -50,20 +67,26 @@ impl Objects {
             accel::BuildError::BadInstance { instance, .. } => SceneError::Instance { instance },
             error => SceneError::Intersector(error.to_string()),
         };
-        let mut in_world = vec![true; shapes.len()];
+        let mut is_free = vec![true; shapes.len()];
         self.shapes
             .iter()
             .flatten()
-            .for_each(|&shape| in_world[shape] = false);
-        let world: Vec<usize> = (0..shapes.len()).filter(|&shape| in_world[shape]).collect();
+            .for_each(|&shape| is_free[shape] = false);
+        let world: Vec<usize> = (0..shapes.len()).filter(|&shape| is_free[shape]).collect();
         let mut primitives = Vec::new();
-        let own = gather_primitives(shapes, surfaces, &world, &mut primitives)?;
+        gather_primitives(shapes, surfaces, &world, &mut primitives)?;
+        let in_world = primitives.len();
         let (mut trees, mut firsts) = (Vec::new(), Vec::new());
         for object in &self.shapes {
-            firsts.push(primitives.len() as u32);
-            let geometry = gather_primitives(shapes, surfaces, object, &mut primitives)?;
-            let tree = accel::Bvh::build(&geometry, &options).map_err(error)?;
-            trees.push(Arc::new(tree));
+            let first = primitives.len();
+            firsts.push(first as u32);
+            gather_primitives(shapes, surfaces, object, &mut primitives)?;
+            let own = Gathered {
+                shapes,
+                primitives: &primitives[first..],
+            };
+            let tree = accel::Bvh::with_instances(&own, Vec::new(), &[], &options);
+            trees.push(Arc::new(tree.map_err(error)?));
         }
         let instances = self
             .instances
@@ -73,6 +96,10 @@ impl Objects {
                 world_from_object: place.0,
             });
         let instances: Vec<_> = instances.collect();
+        let own = Gathered {
+            shapes,
+            primitives: &primitives[..in_world],
+        };
         let bvh = accel::Bvh::with_instances(&own, trees, &instances, &options).map_err(error)?;
         let placed = |&(object, place): &(ObjectId, Place)| Placed {
             place,
