@@ -18,7 +18,8 @@ test FILTER="":
 stat SEED="1":
     BIDIR_TEST_SEED={{SEED}} cargo test --release -p bidir --lib tests::
     BIDIR_TEST_SEED={{SEED}} cargo test --release -p bidir --test suite -- analytic:: layers::
-    BIDIR_TEST_SEED={{SEED}} cargo test --release -p bidir-formats --test estimators --test real_scenes
+    BIDIR_TEST_SEED={{SEED}} cargo test --release -p bidir-formats --test estimators
+    BIDIR_TEST_SEED={{SEED}} cargo test --release -p bidir-formats --test suite -- real_scenes::
 
 # Writes the pages that are generated.
 docs:

@@ -133,7 +133,7 @@ SCENES = [
         "crates/bidir/src/shape/mesh.rs",
         "winding_sign: self.winding_sign * place.sign(),",
         "winding_sign: self.winding_sign,",
-        ("bidir-formats", "--test objects", "geometry"),
+        ("bidir-formats", SUITE, "objects::shared_objects"),
     ),
     (
         "instances whose boxes know no rounding",

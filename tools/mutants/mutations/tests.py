@@ -61,7 +61,7 @@ def formats(filter_):
 
 def coverage(filter_):
     """Tests of surfaces that are not all there."""
-    return ("bidir-formats", "--test coverage", filter_)
+    return ("bidir-formats", SUITE, f"coverage::{filter_}")
 
 
 def gltf(filter_):

@@ -4,14 +4,11 @@
 
 #![allow(clippy::print_stderr, reason = "a skipped test says so")]
 
-#[path = "../../bidir/tests/common/statistics/mod.rs"]
-mod statistics;
-
+use crate::statistics::{Replicates, Shown, WHOLE, check_agree, check_means, replicates, suspects};
 use bidir::driver::Settings;
 use bidir::integrator::IntegratorKind;
 use bidir::path::PathSettings;
 use bidir_formats::scene::{Crop, LoadOptions, Loaded, load};
-use statistics::{Replicates, Shown, WHOLE, check_agree, check_means, replicates, suspects};
 use std::path::PathBuf;
 
 /// Loads a scene with a film of `size` × `size` pixels and a crop. None: the tests are skipped, which is

@@ -5,13 +5,11 @@
     reason = "the modules belong to a crate where they are reached"
 )]
 
-extern crate bidir_formats as formats;
-
-#[path = "../../../fuzz/src/check.rs"]
+#[path = "../../../../fuzz/src/check.rs"]
 mod check;
-#[path = "../../../fuzz/src/inputs.rs"]
+#[path = "../../../../fuzz/src/inputs.rs"]
 mod inputs;
-#[path = "../../../fuzz/src/mutation.rs"]
+#[path = "../../../../fuzz/src/mutation.rs"]
 mod mutation;
 
 use std::path::Path;

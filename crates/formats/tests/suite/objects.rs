@@ -1,8 +1,6 @@
 //! Shared objects look like copies under any rotation, stretch or reflection.
 
-#[path = "../../bidir/tests/common/statistics/mod.rs"]
-mod statistics;
-
+use crate::statistics::{Shown, WHOLE, check_agree, replicates};
 use bidir::driver::Settings;
 use bidir::integrator::IntegratorKind;
 use bidir::math::Vec3;
@@ -10,7 +8,6 @@ use bidir::path::PathSettings;
 use bidir::sampler::{Domain, Sampler, SamplerKind};
 use bidir::scene::{Chances, Scene, SurfaceHit};
 use bidir_formats::pbrt::{LoadOptions, Loaded, build, parse_text};
-use statistics::{Shown, WHOLE, check_agree, replicates};
 
 const HEAD: &str = r#"
 LookAt 0 1.2 -3.4  0 0.7 0  0 1 0

@@ -1,16 +1,13 @@
 //! Partially covered surfaces: walks decide randomly, shadow rays compute transmittance exactly, and all
 //! estimators agree.
 
-#[path = "../../bidir/tests/common/statistics/mod.rs"]
-mod statistics;
-
+use crate::statistics::{Replicates, Shown, WHOLE, check_agree, replicates};
 use bidir::driver::Settings;
 use bidir::integrator::IntegratorKind;
 use bidir::locus::Locus;
 use bidir::math::Vec3;
 use bidir::path::PathSettings;
 use bidir_formats::pbrt::{LoadOptions, Loaded, build, load, parse_text};
-use statistics::{Replicates, Shown, WHOLE, check_agree, replicates};
 
 const CAMERA: &str = r#"
 LookAt 0 1 -4  0 1 0  0 1 0
