@@ -60,14 +60,9 @@ impl Aabb {
 
     /// Half of the surface area; 0 for an empty box.
     pub fn half_area(&self) -> f32 {
-        half_area(self.extent().max(Vec3::ZERO))
+        let extent = self.extent().max(Vec3::ZERO);
+        extent.x * extent.y + extent.y * extent.z + extent.z * extent.x
     }
-}
-
-/// Half of the surface area of a box with these edge lengths.
-#[inline]
-pub(crate) fn half_area(extent: Vec3) -> f32 {
-    extent.x * extent.y + extent.y * extent.z + extent.z * extent.x
 }
 
 #[cfg(test)]

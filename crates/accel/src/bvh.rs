@@ -89,7 +89,8 @@ impl Bvh {
         options: &BuildOptions,
     ) -> Result<Self, BuildError> {
         let isa = supported(options.isa)?;
-        let count = primitives.count() + instances.len();
+        let primitive_count = primitives.count();
+        let count = primitive_count + instances.len();
         if count > MAX_PRIMITIVES {
             return Err(BuildError::TooManyPrimitives {
                 count,
@@ -98,8 +99,8 @@ impl Bvh {
         }
         let (placements, places) = place(&objects, instances)?;
         Ok(Self {
-            tree: Tree::build(primitives, &places)?,
-            primitive_count: primitives.count(),
+            tree: Tree::build(primitives, primitive_count, &places)?,
+            primitive_count,
             objects,
             placements,
             isa,

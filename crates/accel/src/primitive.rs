@@ -42,10 +42,12 @@ impl Primitive {
 /// Numbered primitives. A tree asks for each of them twice, and keeps triangles in a form of its own: they need not all
 /// be in memory at once.
 pub trait Primitives: Sync {
-    /// The number of primitives.
+    /// The number of primitives. It is asked once for a tree.
     fn count(&self) -> usize;
 
-    /// Primitive `index`, the same each time.
+    /// Primitive `index`, below [`count`](Self::count): the same each time.
+    ///
+    /// Panics: building may panic if it is another.
     fn primitive(&self, index: usize) -> Primitive;
 }
 

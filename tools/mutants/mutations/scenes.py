@@ -127,6 +127,20 @@ SCENES = [
         "let is_blocked = found >> number & 1 == 1 && !stack.is_empty();",
         ("bidir-accel", SUITE, "many::"),
     ),
+    (
+        "large groups without their first part",
+        "crates/accel/src/builder/group.rs",
+        "for part in &parts {",
+        "for part in &parts[1..] {",
+        ("bidir-accel", SUITE, "bits::threads_do_not_matter"),
+    ),
+    (
+        "subtrees with the blocks of the first",
+        "crates/accel/src/builder.rs",
+        "Child::triangles(&(leaf.start + blocks..leaf.end + blocks))",
+        "Child::triangles(&leaf)",
+        ("bidir-accel", SUITE, "bits::threads_do_not_matter"),
+    ),
     # --- instances ---------------------------------------------------------------------------
     (
         "mirrored instances inside out",

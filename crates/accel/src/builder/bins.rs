@@ -23,7 +23,7 @@ pub(super) struct Split {
 }
 
 impl Split {
-    /// Which references are on the left, of those whose centers have these bounds.
+    /// Returns whether a reference is on the left, of those whose centers have these bounds.
     pub(super) fn is_left(&self, centers: [Vec3A; 2]) -> impl Fn(&Reference) -> bool {
         let grid = Grid::new(centers, self.bins);
         let (first, scale) = (grid.first[self.axis], grid.scale[self.axis]);
@@ -68,7 +68,7 @@ impl Grid {
     /// The bin of a center along each axis.
     #[inline]
     fn bins_of(&self, center: Vec3A) -> [usize; 3] {
-        // A NaN (nothing times infinity) belongs to the first bin: the cast sees to it where `max` does not.
+        // A NaN (nothing times infinity) belongs to the first bin: the cast sees to it where `max` need not.
         let place = ((center - self.first) * self.scale).max(Vec3A::ZERO);
         let [x, y, z] = place.min(self.last_bin).to_array();
         // By way of 32 bits, to which conversions are quicker.
@@ -169,6 +169,41 @@ fn fill<const BINS: usize>(table: &mut Table<BINS>, references: &[Reference], gr
         };
         for (table, bin) in table.iter_mut().zip(grid.bins_of(reference.center())) {
             table[bin].add(&item);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::aabb::Aabb;
+    use crate::builder::group::Totals;
+    use glam::Vec3;
+
+    #[test]
+    fn both_sides_are_those_of_the_bins() {
+        let wave = |i: u32| libm::sinf((i * i) as f32);
+        for size in [1e-45, 1e-38, 1e-20, 1.0, 1e20, f32::MAX] {
+            for flat in [1.0, 0.0, f32::MIN_POSITIVE] {
+                let center = |i| Vec3::new(wave(i), flat * wave(i + 1), wave(i + 2)) * size;
+                let bounds = |i| Aabb::around(&[center(i), center(i) * 0.5]);
+                let references: Vec<_> = (0..100)
+                    .map(|i| Reference::instance(i, bounds(i)))
+                    .collect();
+                let centers = Totals::of(&references).centers();
+                let Some(split) = best_split(&references, centers, 1.0 / size) else {
+                    continue;
+                };
+                let grid = Grid::new(centers, split.bins);
+                let is_left = split.is_left(centers);
+                let mut counts = [0, 0];
+                for reference in &references {
+                    let bin = grid.bins_of(reference.center())[split.axis];
+                    assert_eq!(is_left(reference), bin < split.first_right, "{reference:?}");
+                    counts[usize::from(is_left(reference))] += 1;
+                }
+                assert!(counts.iter().all(|&count| count > 0), "{counts:?}");
+            }
         }
     }
 }

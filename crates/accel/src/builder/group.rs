@@ -69,7 +69,7 @@ impl Reference {
         0.5 * min + 0.5 * max
     }
 
-    /// A coordinate of [`Self::center`].
+    /// A coordinate of [`Self::center`], with the same rounding: both must put a reference into the same bin.
     #[inline]
     pub(super) fn center_on(&self, axis: usize) -> f32 {
         let [min, max]: [&[f32; 3]; 2] = [self.bounds.min.as_ref(), self.bounds.max.as_ref()];
@@ -132,6 +132,11 @@ impl Totals {
         self.kinds |= other.kinds;
     }
 
+    /// The corners of a box around all centers.
+    pub(super) fn centers(&self) -> [Vec3A; 2] {
+        self.centers
+    }
+
     /// The box around all.
     pub(super) fn bounds(&self) -> Aabb {
         let [min, max] = self.bounds.map(Into::into);
@@ -171,7 +176,7 @@ impl<'a> Group<'a> {
             references,
         };
         if !group.is_one_test() {
-            group.split = bins::best_split(group.references, totals.centers, scale);
+            group.split = bins::best_split(group.references, totals.centers(), scale);
         }
         group
     }
@@ -200,14 +205,14 @@ impl<'a> Group<'a> {
         !(self.is_one_test() || self.has_room() && self.leaf_cost() <= self.split_cost())
     }
 
-    /// True if its leaf is a block of triangles, or one quadric.
+    /// True if its leaf is a block of triangles, or one primitive.
     fn is_one_test(&self) -> bool {
-        self.has_room() && self.totals.lanes <= LANES as u32
+        self.len() == 1 || self.has_room() && self.totals.lanes <= LANES as u32
     }
 
     /// True if a leaf has room for all.
     fn has_room(&self) -> bool {
-        self.kind.is_some() && (self.totals.lanes <= MAX_LEAF_LANES || self.len() == 1)
+        self.kind.is_some() && self.totals.lanes <= MAX_LEAF_LANES
     }
 
     fn leaf_cost(&self) -> f32 {
@@ -225,7 +230,7 @@ impl<'a> Group<'a> {
         let Some(split) = &self.split else {
             return self.halve(scale);
         };
-        let middle = partition(self.references, split.is_left(self.totals.centers));
+        let middle = partition(self.references, split.is_left(self.totals.centers()));
         self.cut(middle, scale)
     }
 
@@ -248,8 +253,8 @@ impl<'a> Group<'a> {
 /// depend on how they are cut, in the sign of a zero.
 const PART: usize = 1 << 15;
 
-/// Adds what `look` finds at the references to `total`: at all of them at once, or at parts, whose totals are added in
-/// order.
+/// Adds what `look` finds at the references to `total`, which is empty: at all of them at once, or at parts, whose
+/// totals are added in order.
 pub(super) fn sum<T: Clone + Send + Sync>(
     references: &[Reference],
     total: &mut T,
@@ -271,8 +276,8 @@ pub(super) fn sum<T: Clone + Send + Sync>(
     }
 }
 
-/// Moves what is left to the front and returns how many these are. Without branches: which side comes next is not to
-/// be foreseen.
+/// Moves the left side to the front, and returns its length. It has no branch, since no processor could predict the
+/// side.
 fn partition(references: &mut [Reference], is_left: impl Fn(&Reference) -> bool) -> usize {
     let mut left = 0;
     for next in 0..references.len() {

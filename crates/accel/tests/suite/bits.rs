@@ -38,7 +38,8 @@ fn isas_agree_on_edges() {
 
 #[test]
 fn threads_do_not_matter() {
-    let primitives = mixed(&mut Random(22), 12_000);
+    // Enough for several parts, of which some threads build subtrees.
+    let primitives = mixed(&mut Random(22), 50_000);
     let trees = [1, 2, 5].map(|threads| {
         let pool = rayon::ThreadPoolBuilder::new()
             .num_threads(threads)
@@ -47,7 +48,8 @@ fn threads_do_not_matter() {
         pool.install(|| build_one(&primitives))
     });
     let mut random = Random(23);
-    for bvh in &trees[1..] {
+    for bvh in &trees {
+        assert_eq!(bvh.validate(), Ok(()));
         assert_eq!(bvh.memory_bytes(), trees[0].memory_bytes());
     }
     for _ in 0..20_000 {

@@ -51,7 +51,7 @@ fn builds_anything_finite() {
         .map(|[a, b]| Primitive::Triangle([a, b, a]))
         .collect();
     check_rays(&needles, &mut random);
-    for scale in [1e-38_f32, 1e-30, 1e-20, 1e10, 1e25] {
+    for scale in [1e-38_f32, 1e-30, 1e-20, 1e10, 1e25, 1.5e38] {
         let scaled = triangle_soup(&mut random, 1000, 0.2)
             .into_iter()
             .map(|primitive| {
