@@ -68,8 +68,14 @@ async function resumeUpTo(passes) {
   await pause();
 }
 
+/** Waits until the page has heard of so many passes. @param {number} passes */
+async function heardOf(passes) {
+  await page.waitForFunction((passes) => new RegExp(`Passes${passes}(?!\\d)`).test(document.getElementById("figures")?.textContent ?? ""), passes);
+}
+
 /** The pixels of the page, once the last frame is there. */
 async function settled() {
+  await heardOf((await renderer.status()).lanes[0].passes);
   await page.waitForTimeout(500);
   return decode(browser, await shown());
 }
@@ -99,7 +105,7 @@ test("exposure changes the picture, and pausing stops the samples", { skip }, as
   await page.locator("#exposure").fill("0");
   const again = (await renderer.status()).lanes[0].passes;
   assert.equal(again, passes);
-  await page.waitForFunction((passes) => new RegExp(`Passes${passes}(?!\\d)`).test(document.getElementById("figures")?.textContent ?? ""), passes);
+  await heardOf(passes);
 });
 
 test("the picture is what `bidir tonemap` makes of the saved EXR", { skip }, async () => {
