@@ -344,7 +344,7 @@ mod long_statistics {
         };
         // Few light subpaths reach the view of the lens, and few camera subpaths the lamp: hits after two
         // bounces are too rare to compare.
-        for (length, effort, others) in [(3, 1, [(0, 8), (2, 6)]), (4, 12, [(2, 12), (3, 24)])] {
+        for (length, effort, others) in [(3, 1, [(0, 8), (2, 6)]), (4, 24, [(2, 12), (3, 24)])] {
             let next_event = single(1, length, effort);
             for (s, effort) in others {
                 let name = format!("s{s}t{} against s1", length - s);
