@@ -1,6 +1,6 @@
 //! Axis-aligned boxes.
 
-use glam::Vec3;
+use glam::{Vec3, Vec3A, Vec3Swizzles};
 
 /// The points with `min ≤ p ≤ max` on every axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -60,9 +60,15 @@ impl Aabb {
 
     /// Half of the surface area; 0 for an empty box.
     pub fn half_area(&self) -> f32 {
-        let extent = self.extent().max(Vec3::ZERO);
-        extent.x * extent.y + extent.y * extent.z + extent.z * extent.x
+        half_area(self.extent().into())
     }
+}
+
+/// Half of the surface area of a box with these edge lengths, xy + yz + zx, in which negative ones are 0.
+#[inline]
+pub(crate) fn half_area(extent: Vec3A) -> f32 {
+    let extent = extent.max(Vec3A::ZERO);
+    extent.dot(extent.yzx())
 }
 
 #[cfg(test)]

@@ -5,9 +5,10 @@
 //!
 //! [Wald07]: https://doi.org/10.1109/RT.2007.4342588
 
-use glam::{Vec3A, Vec3Swizzles};
+use glam::Vec3A;
 
 use super::group::{Reference, sum};
+use crate::aabb::half_area;
 use crate::triangle::LANES;
 
 const MAX_BINS: usize = 32;
@@ -41,11 +42,10 @@ pub(super) fn blocks(lanes: u32) -> f32 {
     lanes.div_ceil(LANES as u32) as f32
 }
 
-/// Half of the surface area of a box, as multiple of 1 / `scale`².
+/// Half of the surface area of a box whose lengths are multiplied by `scale`.
 pub(super) fn scaled_area(scale: f32, [min, max]: [Vec3A; 2]) -> f32 {
-    // Scaled before subtracting, which could overflow.
-    let extent = (max * scale - min * scale).max(Vec3A::ZERO);
-    extent.dot(extent.yzx())
+    // The difference alone could overflow.
+    half_area(max * scale - min * scale)
 }
 
 /// Bins of equal width along each axis, between the outermost centers.
@@ -183,6 +183,7 @@ mod tests {
     #[test]
     fn both_sides_are_those_of_the_bins() {
         let wave = |i: u32| libm::sinf((i * i) as f32);
+        let mut splits = 0;
         for size in [1e-45, 1e-38, 1e-20, 1.0, 1e20, f32::MAX] {
             for flat in [1.0, 0.0, f32::MIN_POSITIVE] {
                 let center = |i| Vec3::new(wave(i), flat * wave(i + 1), wave(i + 2)) * size;
@@ -194,6 +195,7 @@ mod tests {
                 let Some(split) = best_split(&references, centers, 1.0 / size) else {
                     continue;
                 };
+                splits += 1;
                 let grid = Grid::new(centers, split.bins);
                 let is_left = split.is_left(centers);
                 let mut counts = [0, 0];
@@ -205,5 +207,6 @@ mod tests {
                 assert!(counts.iter().all(|&count| count > 0), "{counts:?}");
             }
         }
+        assert!(splits > 12, "{splits} splits");
     }
 }

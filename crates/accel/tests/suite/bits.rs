@@ -38,7 +38,7 @@ fn isas_agree_on_edges() {
 
 #[test]
 fn threads_do_not_matter() {
-    // Enough for several parts, of which some threads build subtrees.
+    // So many that sums have two parts, and that threads build subtrees.
     let primitives = mixed(&mut Random(22), 50_000);
     let trees = [1, 2, 5].map(|threads| {
         let pool = rayon::ThreadPoolBuilder::new()

@@ -1,6 +1,6 @@
 //! Tests of readers and of what they read, from outside.
 
-// By this name fuzz targets know it, whose checks tests use.
+// The sources of the fuzz targets, which some tests share, know the crate by this name.
 extern crate bidir_formats as formats;
 
 mod coverage;
