@@ -101,7 +101,7 @@ def test_auto_chooses_an_integrator(cornell: bidir.Scene) -> None:
 @pytest.mark.parametrize(
     ("settings", "words"),
     [
-        ({"mis": "balence"}, "mis: there is no `balence`: did you mean `balance`"),
+        ({"mis": "balence"}, "mis: unknown name `balence`: did you mean `balance`"),
         ({"shadow_rays": "budget:0"}, "shadow_rays: there is no rule `budget:0`"),
         ({"strategies": "s"}, "strategies"),
         ({"max_depth": -1}, "max_depth: expected a whole number"),
@@ -122,5 +122,5 @@ def test_estimators_are_values() -> None:
 
 
 def test_unknown_layers_are_refused(cornell: bidir.Scene) -> None:
-    with pytest.raises(bidir.SettingsError, match="layers: there is no `albeda`: did you mean `albedo`"):
+    with pytest.raises(bidir.SettingsError, match="layers: unknown name `albeda`: did you mean `albedo`"):
         bidir.render(cornell, spp=1, layers=["albeda"])

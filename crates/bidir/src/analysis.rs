@@ -72,23 +72,19 @@ impl BlindSpot {
         }
     }
 
-    /// The strategies that make these paths, and the estimators that have them, as a clause.
+    /// The estimators and strategies that find this light, as a clause.
     pub const fn remedy(self) -> &'static str {
         match self {
-            Self::Caustics => {
-                "strategy t1 makes these paths, which `light`, `bdpt`, `lvc` and `auto` have"
-            }
-            Self::CausticsSeenBySpecular => {
-                "no strategy makes these paths unless the lights have a size"
-            }
+            Self::Caustics => "`light`, `bdpt`, `lvc` and `auto` find it by strategy t1",
+            Self::CausticsSeenBySpecular => "no strategy finds it unless the lights have a size",
             Self::SeenBySpecular => {
-                "strategies s0 and s1 make these paths, which `path`, `bdpt`, `lvc` and `auto` have"
+                "`path`, `bdpt`, `lvc` and `auto` find it by strategies s0 and s1"
             }
             Self::Sky
             | Self::EndlessGlow
             | Self::ChanceCaustics
             | Self::ChanceCausticsSeenBySpecular => {
-                "strategy s0 makes these paths, which `path`, `bdpt`, `lvc` and `auto` have"
+                "`path`, `bdpt`, `lvc` and `auto` find it by strategy s0"
             }
         }
     }

@@ -5,7 +5,7 @@ use std::str::FromStr;
 
 /// A name that no value has.
 #[derive(Clone, Debug, thiserror::Error, PartialEq, Eq)]
-#[error("there is no `{given}`: {hint}")]
+#[error("unknown name `{given}`: {hint}")]
 pub struct UnknownName {
     given: String,
     hint: String,
@@ -159,8 +159,8 @@ mod tests {
         let unknown = |given| UnknownName::new(given, &["balance", "power"]).to_string();
         assert_eq!(
             unknown("balence"),
-            "there is no `balence`: did you mean `balance`?"
+            "unknown name `balence`: did you mean `balance`?"
         );
-        assert_eq!(unknown("x"), "there is no `x`: expected balance, power");
+        assert_eq!(unknown("x"), "unknown name `x`: expected balance, power");
     }
 }

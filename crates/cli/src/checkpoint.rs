@@ -93,7 +93,7 @@ impl Checkpoint {
         };
         let name = self.path.display();
         let message = format!("{name} is the film of another render: {difference}");
-        let hint = "use the settings of before, or start over with --restart";
+        let hint = "use the earlier settings, or start over with --restart";
         Err(Failure::new(Exit::FilmMismatch, message).with_hint(hint))
     }
 

@@ -204,7 +204,7 @@ impl Info {
         integrators.sort_by_key(|(name, _)| !own(name));
         for (name, spots) in integrators {
             if spots.is_empty() {
-                let _ = writeln!(text, "{name:<12} makes all light paths");
+                let _ = writeln!(text, "{name:<12} finds all light paths");
             }
             for spot in spots {
                 let how = if spot.missing {

@@ -233,7 +233,7 @@ impl Job<'_> {
             if let Some(bias) = agreement.smallest_bias {
                 let percent = 100.0 * bias;
                 self.say(format_args!(
-                    "a bias of {percent:.2} % of the film's mean would have been detected"
+                    "a bias of {percent:.2} % of the film's mean would be detected with even odds"
                 ));
             }
             return Exit::Done;

@@ -105,8 +105,11 @@ impl LoadedScene {
         }
         let count = self.warnings.len() + others;
         if args.strict && count > 0 {
-            let plural = if count == 1 { "" } else { "s" };
-            let message = format!("{count} warning{plural}, which --strict makes an error");
+            let message = if count == 1 {
+                "1 warning, an error under --strict".to_owned()
+            } else {
+                format!("{count} warnings, errors under --strict")
+            };
             return Err(Failure::new(Exit::Validation, message));
         }
         Ok(())

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum DenoiseError {
     /// The system has no Open Image Denoise library.
-    #[error("Open Image Denoise was not found by the names {}; the system says: {reason}", names.join(", "))]
+    #[error("Open Image Denoise was not found (tried {}): {reason}", names.join(", "))]
     NotFound {
         /// The tried names.
         names: Vec<&'static str>,

@@ -69,9 +69,9 @@ pub struct Request {
     /// integrator's].
     ///
     /// albedo, throughput: subpaths survive with the albedo that they meet, or with their throughput.
-    /// START is the first bounce that it applies to (0). off: subpaths end by --max-depth or by leaving
+    /// START (0 if left out) is the first bounce that it applies to. off: subpaths end by --max-depth or by leaving
     /// the scene. auto: the integrator's default. Defaults: albedo:1 for path, albedo:2 for light,
-    /// albedo:0 for bdpt, albedo:0 for lvc, auto for auto.
+    /// albedo:0 for bdpt, albedo:0 for lvc, chosen by a survey for auto.
     #[cfg_attr(feature = "clap", arg(long, value_name = "RULE"))]
     pub path_roulette: Option<Choice<PathRoulette>>,
     /// How next-event estimation picks a light: tree or power (path, bdpt, lvc, auto) [default: tree].
@@ -106,7 +106,8 @@ pub struct Request {
     /// vertex, camera vertex or pair of subpaths, drawn by unoccluded contribution (optimisations 1, 2
     /// and 3 of Lafortune and Willems, 1995). ray-roulette[:T]: Russian roulette below the fraction T
     /// (0.1) of the image's mean. budget:K: at most K per sample, the largest for certain. auto: the
-    /// integrator's default. No rule is biased. Defaults: all for bdpt, budget:6 for lvc, auto for auto.
+    /// integrator's default. No rule is biased. Defaults: all for bdpt, budget:6 for lvc, chosen by
+    /// a survey for auto.
     #[cfg_attr(
         feature = "clap",
         arg(
@@ -121,7 +122,7 @@ pub struct Request {
     /// [default: the integrator's].
     ///
     /// Each from 1 to 4096; one number is for all vertices; auto: the integrator's default. Defaults:
-    /// 12,1 for lvc, auto for auto.
+    /// 12,1 for lvc, chosen by a survey for auto.
     #[cfg_attr(
         feature = "clap",
         arg(long, value_name = "M[,N]", help_heading = "Shared light subpaths")

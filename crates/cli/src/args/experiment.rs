@@ -20,9 +20,9 @@ A description:
   pyramid = \"all\"                        # shows each strategy (s, t) of this method, once in each
   # pyramid-spp = 64                     # scene; it is in no figure of the comparison
 
-  [settings]                             # of all methods: names and values are those of the flags of
-  integrator = \"bdpt\"                    # `bidir render` under Integrator (but --seed), Shadow rays and
-  max-depth = 16                         # Shared light subpaths; the scene's settings are the defaults
+  [settings]                             # of all methods: flags of `bidir render` under Integrator
+  integrator = \"bdpt\"                    # (but --seed), Shadow rays, Shared light subpaths
+  max-depth = 16                         # defaults: the scene's settings
 
   [[scene]]
   file = \"room.pbrt\"                     # relative to the description; name and size are optional

@@ -12,7 +12,7 @@ use std::fmt::Display;
 use std::path::Path;
 
 /// Flags of other programs, the flag of this program, and a hint.
-const ELSEWHERE: [(&[&str], &str, &str); 7] = [
+const ELSEWHERE: [(&[&str], &str, &str); 9] = [
     (
         &[
             "--width",
@@ -31,6 +31,7 @@ const ELSEWHERE: [(&[&str], &str, &str); 7] = [
             "--sample-count",
             "--pixelsamples",
             "--nsamples",
+            "--quality",
         ],
         "--spp",
         "the number of samples per pixel is --spp N",
@@ -53,7 +54,17 @@ const ELSEWHERE: [(&[&str], &str, &str); 7] = [
     (
         &["--exposure", "--tonemap", "--gamma"],
         "--spp",
-        "images keep the light of the scene; `bidir tonemap IMAGE.exr --exposure STOPS` writes a PNG",
+        "`bidir tonemap IMAGE.exr --exposure STOPS` makes a brighter or darker PNG",
+    ),
+    (
+        &["--camera", "--cam"],
+        "--spp",
+        "the view is that of the first camera of the scene; `bidir view` moves it",
+    ),
+    (
+        &["--gpu", "--device", "--cuda"],
+        "--threads",
+        "bidir renders on processors only; the number of threads is --threads N",
     ),
     (
         &["--method", "--algorithm", "--renderer"],
@@ -294,8 +305,8 @@ fn expected(arg: &Arg) -> String {
     match all.into_iter().flatten().next() {
         Some((1, None)) => "a whole number above 0".to_owned(),
         Some((least, Some(most))) => format!("a whole number from {least} to {most}"),
-        Some((least, None)) => format!("a whole number of at least {least}"),
-        None => "a whole number of at least 0".to_owned(),
+        Some((least, None)) => format!("a whole number, {least} or more"),
+        None => "a whole number, 0 or more".to_owned(),
     }
 }
 

@@ -103,12 +103,12 @@ pub(crate) enum Command {
     /// A setting comes from the first of these that has it: the flag, the environment variable, the
     /// scene file, the default. A pbrt file that leaves a setting out gets pbrt-v4's default: 1280x720
     /// pixels, 16 samples per pixel of the sobol sampler, path with at most 5 bounces, a Gaussian
-    /// filter. A glTF file is rendered with auto, at most 12 bounces, 64 samples per pixel and 720 rows
-    /// of pixels.
+    /// filter. A glTF file is rendered with auto, at most 12 bounces, 64 samples per pixel and a height
+    /// of 720 pixels.
     ///
-    /// Ctrl-C finishes the current pass and writes the image; a second Ctrl-C stops at once, and so does
-    /// the first one before the first pass. With --checkpoint, Ctrl-C ends with exit code 75 once the film
-    /// file has a pass: the same command with --resume continues.
+    /// Ctrl-C finishes the current pass and writes the image; a second Ctrl-C, or one before the first
+    /// pass, stops at once. With --checkpoint, Ctrl-C ends with exit code 75 once the film file has a pass;
+    /// the same command with --resume continues.
     Render(Box<RenderArgs>),
     /// Render a scene in the browser: compare integrators, move the camera, inspect pixels.
     ///
@@ -225,7 +225,7 @@ pub(crate) struct SceneArgs {
     /// A file with any other ending is read as pbrt-v4.
     #[arg(value_hint = ValueHint::FilePath, help_heading = None::<&str>)]
     pub(crate) scene: PathBuf,
-    /// Replace unsupported features by similar ones, with a warning.
+    /// Substitute similar features for unsupported ones, with a warning.
     ///
     /// Without it, they are errors.
     #[arg(long, help_heading = "Scene and machine")]

@@ -114,9 +114,8 @@ pub(crate) struct OutputArgs {
     /// Output image: .exr with a .png beside it, or .png [default: the scene's name].
     ///
     /// The default is the file name that the scene gives its film, or else the name of the scene file,
-    /// with the ending .exr, in the current folder. No output of any command replaces a file that the
-    /// command reads or its scene names, by whatever path or link: exit code 4. pbrt's spelling
-    /// --outfile is accepted.
+    /// with the ending .exr, in the current folder. An output that would replace an input, or a file
+    /// that the scene names, is refused (exit code 4). pbrt's spelling --outfile is accepted.
     #[arg(short, long, alias = "outfile", value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub(crate) output: Option<PathBuf>,
     /// Write settings, ray counts and timings as JSON.
@@ -165,7 +164,7 @@ pub(crate) struct BudgetArgs {
     ///
     /// Counts training and checkpoints, not loading the scene and writing the image. A pass that would
     /// not finish in time is not started, but every run renders at least one. Training takes at most
-    /// a tenth of it: with less time, the image has more noise.
+    /// a tenth of it; shorter training means more noise.
     #[arg(long, env = "BIDIR_TIME", value_name = "DURATION")]
     pub(crate) time: Option<Duration>,
     /// Stop at this relative error, such as 0.05.
@@ -183,7 +182,8 @@ pub(crate) struct BudgetArgs {
 pub(crate) struct FilmArgs {
     /// Image size in pixels [default: the scene's].
     ///
-    /// The view stays; another aspect ratio makes pixels that are not square, with a warning.
+    /// In another aspect ratio, a pbrt scene keeps its view and is stretched, with a warning; a glTF scene
+    /// shows more.
     #[arg(long, value_name = "WxH")]
     pub(crate) size: Option<Size>,
     /// Render only this rectangle of pixels; X1 and Y1 are exclusive [default: the scene's].
@@ -247,7 +247,10 @@ mod tests {
             let help = help_of(name);
             for (integrator, kind) in IntegratorKind::NAMES {
                 let default = of(kind).remove(name);
-                let part = default.map(|default| format!("{default} for {integrator}"));
+                let part = default.map(|default| match &default[..] {
+                    "auto" => format!("chosen by a survey for {integrator}"),
+                    default => format!("{default} for {integrator}"),
+                });
                 assert!(part.is_none_or(|part| help.contains(&part)), "{help}");
             }
         }

@@ -9,9 +9,8 @@ use clap::Args;
 pub(crate) struct ThreadsArgs {
     /// Threads [default: one per processor].
     ///
-    /// 0 is the default. More than 4 per processor are not used; the command warns and goes on. Where the
-    /// system starts fewer, the command warns and goes on with those, or with the calling thread alone. The
-    /// number never changes the image. pbrt's spelling --nthreads is accepted.
+    /// 0 is the default. At most 4 per processor are used, or as many as the system starts, with a
+    /// warning. The number never changes the image. pbrt's spelling --nthreads is accepted.
     #[arg(
         id = "threads",
         long = "threads",

@@ -196,7 +196,7 @@ impl FromStr for Duration {
         }
         let time = std::time::Duration::try_from_secs_f64(seconds).map_err(|_| expected())?;
         if time.is_zero() {
-            Err("a time is above 0, such as 90s".to_owned())
+            Err("must be above 0, such as 90s".to_owned())
         } else {
             Ok(Self(time))
         }

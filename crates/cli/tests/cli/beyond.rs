@@ -97,7 +97,7 @@ fn an_extent_is_checked() {
     let run = |arguments: &str| -> Ran { place.run(&format!("experiment {arguments} -o out")) };
     run("beyond --scenes room-dirct")
         .expect(2)
-        .says("--scenes: there is no `room-dirct`: did you mean `room-direct`?");
+        .says("--scenes: unknown name `room-dirct`: did you mean `room-direct`?");
     run("beyond --seconds 0").expect(2).says("a number above 0");
     run("beyond --seeds 0").expect(2).says("--seeds");
     run("a.toml --ray local --seeds 3")

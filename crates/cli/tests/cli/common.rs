@@ -118,7 +118,7 @@ impl Workplace {
             command.env("BIDIR_OIDN", library);
         }
         let ran = Ran::of(&mut command);
-        if ran.stderr.contains("was not found by the names") {
+        if ran.stderr.contains("Open Image Denoise was not found") {
             eprintln!("skipped: Open Image Denoise is not installed");
             ran.expect(4).says("hint: `pip install pyoidn`");
             return None;

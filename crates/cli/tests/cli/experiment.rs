@@ -101,7 +101,7 @@ fn a_report_shows_strategies_and_flip_maps() {
     place
         .run("experiment test.toml -o out")
         .expect(3)
-        .says("test.toml:1:11: there is no `oen`")
+        .says("test.toml:1:11: unknown name `oen`")
         .says("did you mean `one`?");
 }
 

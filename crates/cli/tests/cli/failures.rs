@@ -52,7 +52,7 @@ fn strategies_that_make_no_path_are_refused_and_lost_light_is_a_warning() {
     check(&of("s4t3"), 2, long);
     let lost = "--strategies s2 loses light: no strategy makes paths of 2 vertices";
     check(&of("s2"), 0, &format!("warning: {lost}\n"));
-    check(&(of("s2") + " --strict"), 6, "1 warning, which --strict");
+    check(&(of("s2") + " --strict"), 6, "1 warning, an error under --strict");
     let ran = Workplace::new().run(&of("all,-s0")).expect(0);
     assert!(!ran.stderr.contains("warning"), "{}", ran.stderr);
 }
@@ -71,11 +71,11 @@ fn errors_of_numbers_out_of_range_name_the_range() {
         ),
         (
             "--max-depth -1",
-            "error: --max-depth: `-1` is not a whole number of at least 0",
+            "error: --max-depth: `-1` is not a whole number, 0 or more",
         ),
         (
             "--seed -1",
-            "error: --seed: `-1` is not a whole number of at least 0",
+            "error: --seed: `-1` is not a whole number, 0 or more",
         ),
         (
             "--noise -1",
@@ -92,7 +92,7 @@ fn errors_of_numbers_out_of_range_name_the_range() {
         ("--time -1", "error: --time: `-1`: expected a time such as"),
         (
             "--time 0",
-            "error: --time: `0`: a time is above 0, such as 90s\n",
+            "error: --time: `0`: must be above 0, such as 90s\n",
         ),
         (
             "--size 256x0",
@@ -223,6 +223,11 @@ fn flags_of_other_programs_are_recognised() {
             "hint: the number of samples per pixel is --spp N",
         ),
         (
+            "--camera Cam",
+            "hint: the view is that of the first camera of the scene",
+        ),
+        ("--gpu", "hint: bidir renders on processors only"),
+        (
             "--bounces 3",
             "hint: the maximum number of bounces is --max-depth N",
         ),
@@ -236,7 +241,7 @@ fn flags_of_other_programs_are_recognised() {
     check(
         "render room.pbrt --exposure 1",
         2,
-        "error: there is no flag `--exposure`\nhint: images keep the light of the scene; `bidir tonemap",
+        "error: there is no flag `--exposure`\nhint: `bidir tonemap IMAGE.exr --exposure STOPS`",
     );
     check(
         "render room.pbrt -spp 4",
@@ -401,7 +406,7 @@ fn a_scene_without_light_is_a_warning() {
     let message = "warning: the scene has no light: the image will be black";
     place.run("render dark.pbrt").expect(0).says(message);
     let strict = place.run("render dark.pbrt --strict").expect(6);
-    strict.says(message).says("1 warning, which --strict makes");
+    strict.says(message).says("1 warning, an error under --strict");
 }
 
 /// Checks that the error of a scene of `scenes/broken` has its place.

@@ -38,7 +38,7 @@ fn light_paths_that_no_strategy_makes_are_listed() {
     place
         .run("info room.pbrt")
         .expect(0)
-        .prints("bdpt         makes all light paths");
+        .prints("bdpt         finds all light paths");
     let info = place.run("info glass.pbrt --json").expect(0).json();
     assert_eq!(info["blind_spots"]["bdpt"][0]["missing"], true);
 }
@@ -74,7 +74,7 @@ fn oddities_of_a_scene_cause_warnings() {
     place
         .run("info odd.pbrt --strict")
         .expect(6)
-        .says("1 warning, which --strict makes an error");
+        .says("1 warning, an error under --strict");
 }
 
 /// A spot through glass: the image of `path` lacks the caustic.
@@ -96,8 +96,8 @@ fn a_render_warns_of_missing_light() {
     };
     let missed = format!(
         "warning: `path` misses caustics of point, spot, distant and hidden lights (L S+ D), here of the \
-         spot light at glass.pbrt:{line}:15 and 2 other lights; strategy t1 makes these paths, which `light`, \
-         `bdpt`, `lvc` and `auto` have\n"
+         spot light at glass.pbrt:{line}:15 and 2 other lights; `light`, `bdpt`, `lvc` and `auto` find it by \
+         strategy t1\n"
     );
     let dark = format!(
         "warning: glass.pbrt:{}:13: the point light has no power",
@@ -113,11 +113,8 @@ fn a_render_warns_of_missing_light() {
     let short = render("--integrator path --max-depth 1");
     assert!(!short.contains("misses"), "{short}");
     for (integrator, says) in [
-        (
-            "bdpt",
-            "no strategy makes these paths unless the lights have a size",
-        ),
-        ("light", "strategies s0 and s1 make these paths"),
+        ("bdpt", "no strategy finds it unless the lights have a size"),
+        ("light", "find it by strategies s0 and s1"),
     ] {
         let text = render(&format!("--integrator {integrator}"));
         assert!(
@@ -130,5 +127,5 @@ fn a_render_warns_of_missing_light() {
     place
         .run(strict)
         .expect(6)
-        .says("2 warnings, which --strict");
+        .says("2 warnings, errors under --strict");
 }

@@ -14,7 +14,7 @@ fn two_estimators_make_a_reference_that_images_are_compared_with() {
         .expect(0)
         .says("bdpt, 112 samples per pixel; agrees with path, 112 samples per pixel (p = ")
         .says("level 0.001); wrote room.reference")
-        .says("of the film's mean would have been detected");
+        .says("of the film's mean would be detected with even odds");
     assert_eq!(place.names(), ["room.pbrt", "room.reference"]);
     let json = provenance(&place, "room.reference");
     assert_eq!(json["agreement"]["agree"], true);

@@ -34,6 +34,9 @@ pub(super) const EXTENSIONS: [&str; 17] = [
     "KHR_xmp_json_ld",
 ];
 
+/// Extensions with a warning at the material that has them.
+const WITHOUT_EFFECT: [&str; 2] = ["KHR_materials_dispersion", "KHR_materials_iridescence"];
+
 pub(super) type Context<'a> = import::Context<'a, Document>;
 pub(super) type Log = import::Log<Place>;
 
@@ -257,19 +260,16 @@ fn check_extensions(log: &mut Log, root: &Root) -> Result<(), GltfFault> {
         let hint = match name.as_str() {
             "KHR_draco_mesh_compression"
             | "EXT_meshopt_compression"
-            | "KHR_meshopt_compression" => "export it without compression of meshes",
+            | "KHR_meshopt_compression" => "export it without compressing meshes",
             "KHR_texture_basisu" | "EXT_texture_avif" | "MSFT_texture_dds" => IMAGES_TO_EXPORT,
             _ => return Err(fault.with_nearest(name, EXTENSIONS)),
         };
         return Err(fault.with_hint(hint));
     }
     for (i, name) in root.extensions_used.iter().enumerate() {
-        if !is_known(name) {
+        if !is_known(name) && !WITHOUT_EFFECT.contains(&name.as_str()) {
             let place = Place::TOP.key("extensionsUsed").index(i);
-            log.warn(
-                place,
-                format!("the unknown extension `{name}` has no effect"),
-            );
+            log.warn(place, format!("the extension `{name}` has no effect"));
         }
     }
     Ok(())

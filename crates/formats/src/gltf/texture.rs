@@ -2,12 +2,13 @@
 
 use super::container::Resource;
 use super::document::{Context, Document};
-use super::json::{ImageExtensions, Sampler, TextureInfo};
+use super::json::{self, ImageExtensions, Sampler, TextureInfo};
 use super::mesh::UvMap;
 use super::place::{GltfFault, Place};
 use crate::error::ErrorKind;
 use crate::image::{self, Encoding, Format, ImageData};
 use crate::import::Content;
+use crate::text::printable;
 use bidir::math::{Vec2, sin_cos};
 use bidir::texture::{
     self, Beyond, ColorTexture, FloatTexture, Image, ImageFilter, ImageMap, Mapping, Wrap,
@@ -143,7 +144,7 @@ impl Textures {
             if let Some(file) = file.filter(|_| self.logged.insert(source)) {
                 context.log.add(Content::Image, &bytes, [file]);
             }
-            let format = format_of(&bytes, &place)?;
+            let format = format_of(&bytes, &context.document.root.images[source], &place)?;
             let data = image::decode_stored(format, &bytes, encoding);
             let data = data.and_then(|data| context.log.image(data));
             let data = data.map_err(|error| GltfFault::from_error(place, &error))?;
@@ -229,7 +230,7 @@ fn resource(
 }
 
 /// Returns the format of an image by its first bytes.
-fn format_of(bytes: &[u8], place: &Place) -> Result<Format, GltfFault> {
+fn format_of(bytes: &[u8], image: &json::Image, place: &Place) -> Result<Format, GltfFault> {
     match bytes {
         [0x89, b'P', b'N', b'G', ..] => Ok(Format::Png),
         [0xff, 0xd8, 0xff, ..] => Ok(Format::Jpeg),
@@ -252,9 +253,11 @@ fn format_of(bytes: &[u8], place: &Place) -> Result<Format, GltfFault> {
             let has =
                 |at: usize, magic| bytes.get(at..).is_some_and(|rest| rest.starts_with(magic));
             let known = OTHER_FORMATS.iter().find(|(at, magic, _)| has(*at, magic));
+            let file = image.uri.as_ref().filter(|uri| !uri.starts_with("data:"));
+            let file = file.map_or("it".into(), |uri| format!("`{}`", printable(uri)));
             let found = match known {
-                Some((.., name)) => format!("it is {name}, which is not read"),
-                None => "it is neither png, jpg nor webp".into(),
+                Some((.., name)) => format!("{file} is {name}, which is not read"),
+                None => format!("{file} is neither png, jpg nor webp"),
             };
             let fault = place.fault(ErrorKind::Unsupported, found);
             Err(fault.with_hint(IMAGES_TO_EXPORT))
@@ -328,8 +331,8 @@ fn remaining(
     }
     let [[su, across, ou], [down, sv, ov]] = requested.rows;
     if across.abs().max(down.abs()) > 1e-6 {
-        let what = "a material with textures that are rotated by different angles";
-        context.unsupported(lookup.place.clone(), what, "they are not rotated")?;
+        let what = "a material whose textures are rotated by different angles";
+        context.unsupported(lookup.place.clone(), what, "its textures are not rotated")?;
     }
     // The v of the mesh points up, that of the file down.
     Ok((Vec2::new(su, sv), Vec2::new(ou, 1.0 - sv - ov)))

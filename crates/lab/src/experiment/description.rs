@@ -252,7 +252,7 @@ fn metrics(top: &mut Section<'_>) -> Result<Vec<Metric>> {
         return Ok(vec![Metric::Relmse, Metric::RelmseTrimmed]);
     };
     let mut metrics = Vec::new();
-    for entry in entry.list("a list of texts")? {
+    for entry in entry.list("a list of strings")? {
         let metric = entry.read(|name| value_of(&Metric::NAMES, name))?;
         if metric != Metric::Rmse && !metrics.contains(&metric) {
             metrics.push(metric);

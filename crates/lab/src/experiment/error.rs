@@ -40,7 +40,7 @@ pub enum ExperimentError {
     #[error("{}: the records are of another experiment", .0.display())]
     Mismatch(PathBuf),
     /// The folder has records of another machine, or of another program or number of threads.
-    #[error("{}: the records come from another machine or program, and their times cannot be \
+    #[error("{}: the records differ in machine, program or threads, and their times cannot be \
          compared: {difference}",
         folder.display())]
     Elsewhere {

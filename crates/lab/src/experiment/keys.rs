@@ -77,7 +77,7 @@ const KEYS: &[Key] = &[
     key("contributions", "spp", "whole number from 2", "16", "Samples per pixel that are measured."),
     key("claim", "id", "text", "required", "Name in results, in lower case with hyphens; unique."),
     key("claim", "claim", "text", "required", "The statement, in a sentence."),
-    key("claim", "source", "text", "`This description`", "Its origin."),
+    key("claim", "source", "text", "`Own claim`", "Its origin."),
     key("claim", "goal", "`true` or `false`", "`false`", "The verdict is `met` or `not met` instead of `reproduced` or `not reproduced`."),
     key("claim", "part", "text", "method and scene", "Name of a number in the result."),
     key("claim", "each", "as `for`", "one number", "The numbers of the claim; all must lie in the range."),

@@ -23,8 +23,8 @@ const FEWEST: usize = 10;
 
 /// The description of the method for reports.
 pub const RATIOS: &str = "Ratios are geometric means over seeds, paired by seed. Their intervals are \
-    Student's, of the logarithms, where there are fewer than ten seeds or a quantile is asked for that \
-    resamples do not reach, and expanded percentile bootstraps of the logarithms elsewhere.";
+    Student's, of the logarithms, where there are fewer than ten seeds or resamples do not reach the \
+    quantile, and expanded percentile bootstraps of the logarithms elsewhere.";
 
 /// Computes the geometric mean of `a[i] / b[i]` with its interval.
 ///

@@ -101,15 +101,15 @@ fn wrong_names_and_values_are_refused_in_words() {
     let error = |name, value| Request::default().set(name, value).unwrap_err().to_string();
     assert_eq!(
         error("mis", "balence"),
-        "there is no `balence`: did you mean `balance`?"
+        "unknown name `balence`: did you mean `balance`?"
     );
     assert_eq!(
         error("light-point", "x"),
-        "there is no `x`: expected fresh, shared"
+        "unknown name `x`: expected fresh, shared"
     );
     assert!(error("strategies", "s").contains("is not a strategy"));
     assert_eq!(error("max-depth", "-1"), "expected a whole number");
     assert!(error("candidates", "0").contains("from 1 to 4096"));
-    assert!(error("mis", "5").contains("there is no `5`"));
+    assert!(error("mis", "5").contains("unknown name `5`"));
     assert!(error("sharpness", "1").contains("sharpness"));
 }

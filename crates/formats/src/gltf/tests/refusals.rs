@@ -163,7 +163,41 @@ fn unknown_extensions_are_refused_where_they_are_required() {
         &["did you mean `KHR_mesh_quantization`?"],
     );
     draft.json["extensionsRequired"] = json!(["KHR_draco_mesh_compression"]);
-    check(&draft, ErrorKind::Unsupported, &["without compression"]);
+    check(&draft, ErrorKind::Unsupported, &["without compressing"]);
+}
+
+#[test]
+fn an_extension_without_effect_has_one_warning_at_its_material() {
+    let mut draft = Draft::triangle();
+    draft.primitive()["material"] = json!(0);
+    draft.json["extensionsUsed"] = json!(["KHR_materials_iridescence"]);
+    draft.json["materials"] = json!([{ "extensions": { "KHR_materials_iridescence": {} } }]);
+    let warnings = draft.load().unwrap().warnings;
+    let about: Vec<_> = warnings
+        .iter()
+        .filter(|warning| warning.contains("iridescence"))
+        .collect();
+    assert!(
+        matches!(&about[..], [one] if one.contains("materials[0]")),
+        "{warnings:?}"
+    );
+}
+
+#[test]
+fn a_file_that_is_no_image_is_named() {
+    let mut draft = Draft::triangle();
+    draft.primitive()["material"] = json!(0);
+    draft.json["images"] = json!([{ "uri": "base.png" }]);
+    draft.json["textures"] = json!([{ "source": 0 }]);
+    draft.json["materials"] =
+        json!([{ "pbrMetallicRoughness": { "baseColorTexture": { "index": 0 } } }]);
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.gltf");
+    std::fs::write(&path, draft.gltf()).unwrap();
+    std::fs::write(folder.path().join("base.png"), "text").unwrap();
+    let error = crate::scene::load(&path, &LoadOptions::default()).unwrap_err();
+    let expected = "images[0]: `base.png` is neither png, jpg nor webp";
+    assert!(error.to_string().contains(expected), "{error}");
 }
 
 #[test]

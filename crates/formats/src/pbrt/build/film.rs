@@ -97,8 +97,8 @@ fn warn_of_stretching(context: &mut Context<'_>, span: Span, own: [u32; 2], reso
     if !(0.98..1.02).contains(&stretch) {
         let [width, height] = own;
         let message = format!(
-            "the scene's film has another aspect ratio, {width} × {height}: pixels are \
-             {stretch:.3} times as wide as high"
+            "the scene's film has another aspect ratio, {width} × {height}: the image is stretched, \
+             as pixels are {stretch:.3} times as wide as high"
         );
         context.warn(span, message);
     }

@@ -139,7 +139,11 @@ impl<'a> Rows<'a> {
         };
         let costs = columns(&measures(&COSTS[..costs]), Over::Nothing);
         let means = [costs, columns(&metrics, Over::MeanInterval)].concat();
-        let caption = format!("{place}: means over {seeds} seeds, with 95 % intervals.");
+        let caption = if seeds < 2 {
+            format!("{place}: one seed, so without intervals.")
+        } else {
+            format!("{place}: means over {seeds} seeds, with 95 % intervals.")
+        };
         let mut tables = vec![self.table(caption, &means, &self.methods)];
         if !others.is_empty() {
             let caption = format!(

@@ -391,7 +391,7 @@ fn mistakes_are_reported_with_their_place() {
     let text = HEAD.replace("rays = 100", "rays = 100\nscenes = [\"C\"]");
     let error = Experiment::read(&text, Path::new("a.toml")).unwrap_err();
     assert!(
-        error.to_string().contains("a.toml:14:11: there is no `C`"),
+        error.to_string().contains("a.toml:14:11: unknown name `C`"),
         "{error}"
     );
     refused(

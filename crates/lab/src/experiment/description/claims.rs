@@ -144,7 +144,7 @@ fn claim(section: &mut Section<'_>, names: &Names) -> Result<ClaimSpec> {
     let parts = bindings.iter().map(|binding| part(section, binding, names));
     Ok(ClaimSpec {
         id: name,
-        source: source.unwrap_or_else(|| "This description".to_owned()),
+        source: source.unwrap_or_else(|| "Own claim".to_owned()),
         claim,
         kind,
         expected,

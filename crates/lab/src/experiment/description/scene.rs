@@ -235,7 +235,9 @@ fn reference(
         (Some(_), Some(spp)) => {
             Err(spp.fault("`reference` and `reference-spp` exclude each other"))
         }
-        (None, None) => Err(section.fault("`reference` or `reference-spp` is missing")),
+        (None, None) => {
+            Err(section.fault("`reference`, `reference-of` or `reference-spp` is missing"))
+        }
     }
 }
 

@@ -53,7 +53,7 @@ fn wrong_values_are_refused_with_their_place() {
     );
     check(
         &all.replace("shadow-rays = \"per-pair\"", "mis = \"powr\""),
-        ":11:7: there is no `powr`: did you mean `power`?",
+        ":11:7: unknown name `powr`: did you mean `power`?",
         None,
     );
     check(
@@ -115,7 +115,7 @@ fn wrong_values_are_refused_with_their_place() {
     );
     check(
         &all.replace("reference-spp = 16", ""),
-        ":4:1: `reference` or `reference-spp` is missing",
+        ":4:1: `reference`, `reference-of` or `reference-spp` is missing",
         None,
     );
 }
@@ -160,12 +160,12 @@ fn the_method_of_a_pyramid_is_bidirectional() {
     let with = |lines: &str| format!("{lines}\n{DESCRIPTION}[[budget]]\nsamples = 2\n");
     check(
         &with("pyramid = \"al\""),
-        ":1:11: there is no `al`: did you mean `all`?",
+        ":1:11: unknown name `al`: did you mean `all`?",
         None,
     );
     check(
         &with("pyramid = \"everything\""),
-        ":1:11: there is no `everything`: expected all, one",
+        ":1:11: unknown name `everything`: expected all, one",
         None,
     );
     check(
