@@ -52,7 +52,11 @@ fn strategies_that_make_no_path_are_refused_and_lost_light_is_a_warning() {
     check(&of("s4t3"), 2, long);
     let lost = "--strategies s2 loses light: no strategy makes paths of 2 vertices";
     check(&of("s2"), 0, &format!("warning: {lost}\n"));
-    check(&(of("s2") + " --strict"), 6, "1 warning, an error under --strict");
+    check(
+        &(of("s2") + " --strict"),
+        6,
+        "1 warning, an error under --strict",
+    );
     let ran = Workplace::new().run(&of("all,-s0")).expect(0);
     assert!(!ran.stderr.contains("warning"), "{}", ran.stderr);
 }
@@ -406,7 +410,9 @@ fn a_scene_without_light_is_a_warning() {
     let message = "warning: the scene has no light: the image will be black";
     place.run("render dark.pbrt").expect(0).says(message);
     let strict = place.run("render dark.pbrt --strict").expect(6);
-    strict.says(message).says("1 warning, an error under --strict");
+    strict
+        .says(message)
+        .says("1 warning, an error under --strict");
 }
 
 /// Checks that the error of a scene of `scenes/broken` has its place.

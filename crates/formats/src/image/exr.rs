@@ -202,10 +202,14 @@ pub(super) fn check_headers(bytes: &[u8]) -> Result<MetaData> {
         let check =
             |Vec2(width, height)| check_size([width as u64, height as u64], channels, bytes);
         check(header.layer_size)?;
-        // Tiles may be larger than the image, and memory is reserved for one.
-        if let BlockDescription::Tiles(tiles) = header.blocks {
-            check(tiles.tile_size)?;
-        }
+        // Blocks may be larger than the image, and memory is reserved for one.
+        check(match header.blocks {
+            BlockDescription::Tiles(tiles) => tiles.tile_size,
+            BlockDescription::ScanLines => {
+                let lines = header.compression.scan_lines_per_block();
+                Vec2(header.layer_size.width(), lines)
+            }
+        })?;
     }
     Ok(meta)
 }

@@ -7,6 +7,7 @@ use flate2::Compression;
 use flate2::write::{GzEncoder, ZlibEncoder};
 use std::fs;
 use std::io::Write;
+use std::path::Path;
 
 #[track_caller]
 fn check(error: &Error, kind: ErrorKind, words: &str) {
@@ -77,17 +78,17 @@ fn grey_webp([width, height]: [u32; 2]) -> Vec<u8> {
     webp
 }
 
-/// Returns an EXR whose windows are larger than its pixels.
-fn large_exr() -> Vec<u8> {
-    let seed = concat!(
-        env!("CARGO_MANIFEST_DIR"),
-        "/../../fuzz/seeds/image/zip.exr"
-    );
-    let mut exr = fs::read(seed).expect("the seed is there").split_off(1);
+/// Returns the EXR of a seed with windows that end at `corner`, outside its pixels.
+fn large_exr(seed: &str, corner: [u32; 2]) -> Vec<u8> {
+    let seeds = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fuzz/seeds/image");
+    let mut exr = fs::read(Path::new(seeds).join(seed))
+        .expect("the seed is there")
+        .split_off(1);
+    let last = corner.map(u32::to_le_bytes).concat();
     for window in [&b"dataWindow\0box2i\0"[..], b"displayWindow\0box2i\0"] {
         let at = exr.windows(window.len()).position(|bytes| bytes == window);
-        let corner = at.expect("it has windows") + window.len() + 4 + 8;
-        exr[corner..corner + 8].copy_from_slice(&[9999_u32.to_le_bytes(); 2].concat());
+        let at = at.expect("it has windows") + window.len() + 4 + 8;
+        exr[at..at + 8].copy_from_slice(&last);
     }
     exr
 }
@@ -95,7 +96,9 @@ fn large_exr() -> Vec<u8> {
 #[test]
 fn image_sizes_are_limited_by_the_size_of_the_file() {
     check_image(Format::Png, &black_png([12000, 12000], [8, 2], 1));
-    check_image(Format::Exr, &large_exr());
+    check_image(Format::Exr, &large_exr("zip.exr", [9999; 2]));
+    // A block of B44 has 32 lines, also in an image of 5.
+    check_image(Format::Exr, &large_exr("b44.exr", [3_997_704, 4]));
     check_image(Format::WebP, &grey_webp([8000; 2]));
     let small = image::decode(Format::WebP, &grey_webp([640, 480]), None).unwrap();
     assert_eq!([small.width, small.height], [640, 480]);

@@ -64,8 +64,8 @@ fn the_callers_size_and_crop_are_checked_with_and_without_a_film() {
     let [warning] = &load_text("WorldBegin", &size([20, 20])).warnings[..] else {
         panic!("the pixels are not square");
     };
-    let expected =
-        "s.pbrt:1:1: the scene's film has another aspect ratio, 1280 × 720: pixels are 1.778";
+    let expected = "s.pbrt:1:1: the scene's film has another aspect ratio, 1280 × 720: \
+                    the image is stretched, as pixels are 1.778";
     assert!(warning.starts_with(expected), "{warning}");
 }
 
