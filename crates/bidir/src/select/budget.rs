@@ -6,9 +6,10 @@ use super::{Candidate, Chosen, Draws, Selector};
 /// Traces at most `rays` candidates: π = min(1, g_c / δ) with Σ π = `rays`, and one systematic
 /// draw for all.
 ///
-/// With one ray this is one per pair. With more it has less variance than as many single choices:
-/// large candidates are certain, and one uniform number places evenly spaced pointers over the
-/// rest, so that neighbours are not chosen together. This is the threshold sampling of \[Cohen09\].
+/// With one ray this is one per pair. With more it mostly has less variance than as many single
+/// choices: large candidates are certain, and one uniform number places evenly spaced pointers over
+/// the rest, so that neighbours are not chosen together. It has more where visibility changes with
+/// the period of the pointers. This is the threshold sampling of \[Cohen09\].
 #[derive(Clone, Copy, Debug)]
 pub struct Budget {
     /// The expected number of rays.

@@ -69,8 +69,8 @@ pub struct Request {
     /// integrator's].
     ///
     /// albedo, throughput: subpaths survive with the albedo that they meet, or with their throughput.
-    /// START (0 if left out) is the first bounce that it applies to. off: subpaths end by --max-depth or by leaving
-    /// the scene. auto: the integrator's default. Defaults: albedo:1 for path, albedo:2 for light,
+    /// START (0 if left out) is the first bounce that it applies to. off: subpaths end by --max-depth or
+    /// by leaving the scene. auto: the integrator's default. Defaults: albedo:1 for path, albedo:2 for light,
     /// albedo:0 for bdpt, albedo:0 for lvc, chosen by a survey for auto.
     #[cfg_attr(feature = "clap", arg(long, value_name = "RULE"))]
     pub path_roulette: Option<Choice<PathRoulette>>,
