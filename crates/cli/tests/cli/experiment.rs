@@ -69,6 +69,15 @@ fn an_experiment_has_tables_records_and_a_report() {
 }
 
 #[test]
+fn tables_of_one_seed_promise_no_intervals() {
+    place()
+        .run("experiment test.toml -o out --seeds 1")
+        .expect(0)
+        .prints("room, 2 spp: means over 1 seed, without intervals.")
+        .prints("ratios to all, paired by seed, without intervals.");
+}
+
+#[test]
 fn a_report_shows_strategies_and_flip_maps() {
     let place = place();
     place.write(

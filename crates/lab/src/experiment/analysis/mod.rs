@@ -139,15 +139,16 @@ impl<'a> Rows<'a> {
         };
         let costs = columns(&measures(&COSTS[..costs]), Over::Nothing);
         let means = [costs, columns(&metrics, Over::MeanInterval)].concat();
-        let caption = if seeds < 2 {
-            format!("{place}: one seed, so without intervals.")
-        } else {
-            format!("{place}: means over {seeds} seeds, with 95 % intervals.")
+        let noun = if seeds == 1 { "seed" } else { "seeds" };
+        let intervals = match seeds {
+            0 | 1 => "without intervals",
+            _ => "with 95 % intervals",
         };
+        let caption = format!("{place}: means over {seeds} {noun}, {intervals}.");
         let mut tables = vec![self.table(caption, &means, &self.methods)];
         if !others.is_empty() {
             let caption = format!(
-                "{place}: ratios to {first}, paired by seed, with 95 % intervals. \
+                "{place}: ratios to {first}, paired by seed, {intervals}. \
                  Errors are better below 1, efficiencies above."
             );
             let compared = [metrics, measures(EFFICIENCIES)].concat();
