@@ -101,9 +101,23 @@ SCENES = [
     (
         "second dimension with a step of Pascal's triangle missing",
         "crates/bidir/src/sampler/sobol.rs",
-        "    x ^= (x >> 4) & 0x0f0f_0f0f;\n",
+        "    x ^= (x >> 4) & 0x0f0f_0f0f_0f0f_0f0f;\n",
         "",
         unit("sampler::sobol"),
+    ),
+    (
+        "second dimension of the digital shift without Pascal's triangle",
+        "crates/bidir/src/sampler/sobol.rs",
+        "        let [index, shift] = halves(pascal(self.indices));\n",
+        "        let ([index, _], [_, shift]) = (halves(pascal(self.indices)), halves(self.indices));\n",
+        unit("sampler::"),
+    ),
+    (
+        "pixel filter with the nearest value of its table",
+        "crates/bidir/src/film/filter.rs",
+        "        from + (to - from) * (place - i as f32)\n",
+        "        from + (to - from) * (place - i as f32).round()\n",
+        unit("film::filter"),
     ),
     # --- rays -----------------------------------------------------------------------------
     (

@@ -1,8 +1,7 @@
 //! h(x, y) = h_x(x) h_y(y) with ∫∫ h = 1: the pixel filter, 1/pixel².
 //!
 //! Offsets and pixels are drawn by |h|, and where h is negative their weight is too. The box and
-//! the triangle are inverted in closed form, all others through a table of |h|. The cubic is that
-//! of \[Mitchell88\].
+//! the triangle have closed forms, all others are tables. The cubic is that of \[Mitchell88\].
 
 use crate::math::{Distribution1d, ONE_MINUS_EPSILON, PI, Vec2, safe_sqrt, sqr};
 
@@ -86,61 +85,62 @@ impl Filter {
 /// A filter along one axis.
 #[derive(Clone, Debug)]
 struct Axis {
-    shape: Shape,
+    profile: Profile,
     radius: f32,
-    /// 1 / ∫ of the shape.
-    normalisation: f32,
-    /// |shape| in cells over [-radius, radius]; not used by kinds that are inverted in closed form.
-    table: Distribution1d,
 }
 
-const TABLE_CELLS: usize = 512;
+/// h along one axis.
+#[derive(Clone, Debug)]
+enum Profile {
+    Box,
+    Triangle,
+    Table(Table),
+}
+
 /// A filter wider than this is refused by readers; pixels are gathered into a buffer of this size.
 const MAX_PIXELS: usize = 66;
 
 impl Axis {
     fn new(kind: FilterKind, radius: f32) -> Self {
         let radius = radius.clamp(1e-3, 32.0);
-        let shape = Shape::new(kind, radius);
-        let position = |i: usize, n: usize| radius * (2.0 * i as f32 / n as f32 - 1.0);
-        // Every cell gets the largest of five values, so that no part of h has density zero.
-        let cell = |i: usize| {
-            (0..=4)
-                .map(|k| shape.eval(position(4 * i + k, 4 * TABLE_CELLS)).abs())
-                .fold(0.0, f32::max)
+        let table = |shape: &dyn Fn(f32) -> f32| Profile::Table(Table::new(radius, shape));
+        let profile = match kind {
+            FilterKind::Box => Profile::Box,
+            FilterKind::Triangle => Profile::Triangle,
+            FilterKind::Gaussian { sigma } => {
+                let rim = gaussian(radius, sigma);
+                table(&|x| (gaussian(x, sigma) - rim).max(0.0))
+            }
+            FilterKind::Mitchell { b, c } => table(&|x| mitchell(2.0 * x / radius, b, c)),
+            FilterKind::Sinc { tau } => table(&|x| sinc(x) * sinc(x / tau)),
         };
-        let n = 16_384;
-        let sum: f64 = (0..n)
-            .map(|i| f64::from(shape.eval(position(2 * i + 1, 2 * n))))
-            .sum();
-        let integral = match kind {
-            FilterKind::Box => 2.0 * radius,
-            FilterKind::Triangle => sqr(radius),
-            _ => (sum / n as f64) as f32 * 2.0 * radius,
-        };
-        let table = Distribution1d::new((0..TABLE_CELLS).map(cell));
-        Self {
-            shape,
-            radius,
-            normalisation: 1.0 / integral,
-            table,
-        }
+        Self { profile, radius }
     }
 
     #[inline]
     fn eval(&self, x: f32) -> f32 {
-        self.shape.eval(x) * self.normalisation
+        let x = x.abs();
+        // The box includes its rim: which pixel a rim belongs to is decided by the caller.
+        if x > self.radius {
+            return 0.0;
+        }
+        match &self.profile {
+            Profile::Box => 0.5 / self.radius,
+            Profile::Triangle => (self.radius - x) / sqr(self.radius),
+            Profile::Table(table) => table.eval(x / self.radius),
+        }
     }
 
     #[inline]
     fn sample(&self, u: f32) -> (f32, f32) {
-        match self.shape.kind {
-            FilterKind::Box => ((2.0 * u - 1.0) * self.radius, 1.0),
-            FilterKind::Triangle => (tent(u) * self.radius, 1.0),
-            _ => {
-                let (p, pdf, _) = self.table.sample_continuous(u);
-                let x = (2.0 * p - 1.0) * self.radius;
-                (x, self.eval(x) * 2.0 * self.radius / pdf)
+        match &self.profile {
+            Profile::Box => ((2.0 * u - 1.0) * self.radius, 1.0),
+            Profile::Triangle => (tent(u) * self.radius, 1.0),
+            Profile::Table(table) => {
+                let (p, pdf, _) = table.cells.sample_continuous(u);
+                let x = 2.0 * p - 1.0;
+                let h = table.eval(x.abs());
+                (x * self.radius, h * 2.0 * self.radius / pdf)
             }
         }
     }
@@ -196,40 +196,45 @@ fn tent(u: f32) -> f32 {
     }
 }
 
-/// A filter along one axis, not normalised.
-#[derive(Clone, Copy, Debug)]
-struct Shape {
-    kind: FilterKind,
-    radius: f32,
-    /// The value of a Gaussian at the radius, which it is lowered by.
-    rim: f32,
+/// h along one axis by its values at evenly spaced places from the centre to the radius, linear between them.
+#[derive(Clone, Debug)]
+struct Table {
+    values: Vec<f32>,
+    /// |h| in cells from -radius to radius.
+    cells: Distribution1d,
 }
 
-impl Shape {
-    fn new(kind: FilterKind, radius: f32) -> Self {
-        let rim = match kind {
-            FilterKind::Gaussian { sigma } => gaussian(radius, sigma),
-            _ => 0.0,
-        };
-        Self { kind, radius, rim }
+impl Table {
+    const INTERVALS: usize = 1024;
+    const INTERVALS_OF_CELL: usize = 4;
+
+    /// The table of a symmetrical shape, normalised.
+    fn new(radius: f32, shape: &dyn Fn(f32) -> f32) -> Self {
+        let n = Self::INTERVALS;
+        let mut values: Vec<_> = (0..=n)
+            .map(|i| shape(i as f32 / n as f32 * radius))
+            .collect();
+        let ends = (values[0] + values[n]) / 2.0;
+        let sum: f64 = values[1..n].iter().copied().map(f64::from).sum();
+        let integral = (sum + f64::from(ends)) * f64::from(2.0 * radius) / n as f64;
+        for value in &mut values {
+            *value = (f64::from(*value) / integral) as f32;
+        }
+        // The largest value of its ends and between, so that no part of h has density zero.
+        let largest = |cell: &[f32]| cell.iter().fold(0.0, |most: f32, h| most.max(h.abs()));
+        let of_cell = |i: usize| largest(&values[i..=i + Self::INTERVALS_OF_CELL]);
+        let half = (0..n).step_by(Self::INTERVALS_OF_CELL).map(of_cell);
+        let cells = Distribution1d::new(half.clone().rev().chain(half));
+        Self { values, cells }
     }
 
-    /// Never inlined: a loop around it would begin with the arithmetic on parameters of all kinds, and where
-    /// a kind has none their bits are anything, often subnormal numbers, which take a hundred cycles each.
-    #[inline(never)]
+    /// h at the part `x` of the radius, from 0 to 1.
+    #[inline]
     fn eval(&self, x: f32) -> f32 {
-        let x = x.abs();
-        // The box includes its rim: which pixel a rim belongs to is decided by the caller.
-        if x > self.radius {
-            return 0.0;
-        }
-        match self.kind {
-            FilterKind::Box => 1.0,
-            FilterKind::Triangle => self.radius - x,
-            FilterKind::Gaussian { sigma } => (gaussian(x, sigma) - self.rim).max(0.0),
-            FilterKind::Mitchell { b, c } => mitchell(2.0 * x / self.radius, b, c),
-            FilterKind::Sinc { tau } => sinc(x) * sinc(x / tau),
-        }
+        let place = x * Self::INTERVALS as f32;
+        let i = (place as usize).min(Self::INTERVALS - 1);
+        let [from, to] = [self.values[i], self.values[i + 1]];
+        from + (to - from) * (place - i as f32)
     }
 }
 

@@ -273,16 +273,19 @@ impl Batch {
     }
 }
 
-/// Counts a term of sample number `number` that is certain to take part; returns its entry, untraced.
+/// Counts a term of sample number `number` that is certain to take part, and adds its entry, untraced, to `entries`.
 #[inline]
-pub(super) fn enter(
+pub(super) fn enter<'e>(
+    entries: &'e mut Vec<Entry>,
     stats: &mut Stats,
     (number, sample): (usize, &Sample),
     term: Term,
     link: Link,
-) -> Entry {
+) -> &'e mut Entry {
     stats.count_candidate(term.strategy);
-    let mut entry = Entry::certain(number, term, link);
+    let last = entries.len();
+    entries.push(Entry::certain(number, term, link));
+    let entry = &mut entries[last];
     if !is_summable(term.value()) {
         drop_term(stats, sample, term.strategy);
         entry.fate = Fate::Dropped;

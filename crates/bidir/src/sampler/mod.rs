@@ -159,7 +159,7 @@ impl SampleStream {
         unit(match self.source {
             Source::Independent => key as u32,
             Source::Sequence(index) => Digits::new(index, key).x(),
-            Source::Product(index, member) => Digits::new(index, key).moved_by(member).x(),
+            Source::Product(index, member) => Digits::moved(index, member, key).x(),
         })
     }
 
@@ -188,9 +188,10 @@ impl SampleStream {
                 return Vec2::new(unit(key as u32), unit((key >> 32) as u32));
             }
             Source::Sequence(index) => Digits::new(index, key),
-            Source::Product(index, member) => Digits::new(index, key).moved_by(member),
+            Source::Product(index, member) => Digits::moved(index, member, key),
         };
-        Vec2::new(unit(digits.x()), unit(digits.y()))
+        let [x, y] = digits.xy();
+        Vec2::new(unit(x), unit(y))
     }
 }
 

@@ -8,11 +8,10 @@
 /// The digits of a point, before they become fractions.
 #[derive(Clone, Copy)]
 pub(super) struct Digits {
-    /// The index in the sequence, which is x.
-    index: u32,
+    /// The index in the sequence, which is x, in the lower half; in the upper the digital shift, the index
+    /// of an unscrambled point.
+    indices: u64,
     key: u64,
-    /// The digital shift: the index of an unscrambled point.
-    shift: u32,
 }
 
 impl Digits {
@@ -21,56 +20,76 @@ impl Digits {
     #[inline]
     pub(super) fn new(reversed_index: u32, key: u64) -> Self {
         Self {
-            index: shuffled(reversed_index, key),
+            indices: u64::from(shuffled(reversed_index, key).reverse_bits()),
             key,
-            shift: 0,
         }
     }
 
-    /// The point moved, digit by digit, by one of another sequence.
+    /// The point moved, digit by digit, by one of another sequence, whose number in reverse order is `other`.
     #[inline]
-    pub(super) fn moved_by(self, reversed_index: u32) -> Self {
+    pub(super) fn moved(reversed_index: u32, other: u32, key: u64) -> Self {
+        // The sum is as uniform as one of the two.
+        let shift = shuffled(other, key.rotate_left(32));
+        let halves = pair(shift, shuffled(reversed_index, key));
         Self {
-            // The sum is as uniform as one of the two.
-            shift: shuffled(reversed_index, self.key.rotate_left(32)),
-            ..self
+            indices: halves.reverse_bits(),
+            key,
         }
     }
 
     /// The first coordinate as a fraction of 2³².
     #[inline]
     pub(super) fn x(self) -> u32 {
-        let seed = self.key as u32 ^ 0x5bd1_e995;
-        (scramble(self.index, seed) ^ self.shift).reverse_bits()
+        self.scrambled_x().reverse_bits()
     }
 
-    /// The second coordinate as a fraction of 2³².
+    /// Both coordinates as fractions of 2³².
     #[inline]
-    pub(super) fn y(self) -> u32 {
+    pub(super) fn xy(self) -> [u32; 2] {
         let seed = (self.key >> 32) as u32 ^ 0x27d4_eb2f;
-        (scramble(pascal(self.index), seed) ^ pascal(self.shift)).reverse_bits()
+        let [index, shift] = halves(pascal(self.indices));
+        let y = scramble(index, seed) ^ shift;
+        halves(pair(y, self.scrambled_x()).reverse_bits())
+    }
+
+    #[inline]
+    fn scrambled_x(self) -> u32 {
+        let [index, shift] = halves(self.indices);
+        scramble(index, self.key as u32 ^ 0x5bd1_e995) ^ shift
     }
 }
 
-/// The index after a nested uniform scramble: aligned ranges of the sequence change places.
+/// A number by its lower and its upper half: the halves of its reversal are theirs, exchanged.
+#[inline]
+fn pair(lower: u32, upper: u32) -> u64 {
+    u64::from(upper) << 32 | u64::from(lower)
+}
+
+/// The lower and the upper half.
+#[inline]
+fn halves(x: u64) -> [u32; 2] {
+    [x as u32, (x >> 32) as u32]
+}
+
+/// The reversed index after a nested uniform scramble: aligned ranges of the sequence change places.
 #[inline]
 fn shuffled(reversed_index: u32, key: u64) -> u32 {
     let seed = (key as u32).rotate_left(16) ^ (key >> 32) as u32;
-    scramble(reversed_index, seed).reverse_bits()
+    scramble(reversed_index, seed)
 }
 
-/// The product of Pascal's matrix modulo 2 with the bits of `x`.
+/// The products of Pascal's matrix modulo 2 with the bits of both halves of `x`.
 ///
-/// Bit i of the result is the parity of the bits j of `x` with C(j, i) odd, which by Lucas' theorem
+/// Bit i of a result is the parity of the bits j of its half with C(j, i) odd, which by Lucas' theorem
 /// are those whose position j contains all the binary digits of i. That is a sum over supersets,
 /// and takes one step per digit of a position.
 #[inline]
-fn pascal(mut x: u32) -> u32 {
-    x ^= (x >> 1) & 0x5555_5555;
-    x ^= (x >> 2) & 0x3333_3333;
-    x ^= (x >> 4) & 0x0f0f_0f0f;
-    x ^= (x >> 8) & 0x00ff_00ff;
-    x ^ (x >> 16)
+fn pascal(mut x: u64) -> u64 {
+    x ^= (x >> 1) & 0x5555_5555_5555_5555;
+    x ^= (x >> 2) & 0x3333_3333_3333_3333;
+    x ^= (x >> 4) & 0x0f0f_0f0f_0f0f_0f0f;
+    x ^= (x >> 8) & 0x00ff_00ff_00ff_00ff;
+    x ^ ((x >> 16) & 0x0000_ffff_0000_ffff)
 }
 
 /// A permutation in which bit i of the result depends on bits 0..=i only: on reversed bits, a
@@ -103,8 +122,9 @@ mod tests {
     #[test]
     fn the_fast_matrix_product_is_the_definition() {
         for index in [0, 1, 2, 3, 77, 0xdead_beef, u32::MAX, 1 << 31, 0x1234_5678] {
-            let y = pascal(index).reverse_bits();
-            assert_eq!(y, second_by_definition(index), "{index:#x}");
+            let y = halves(pascal(pair(index, !index))).map(u32::reverse_bits);
+            let expected = [index, !index].map(second_by_definition);
+            assert_eq!(y, expected, "{index:#x}");
         }
     }
 }

@@ -179,7 +179,17 @@ pub struct DirectionMix<T: Value> {
 
 impl<T: Value> Texture<T> {
     /// The value at a point.
+    #[inline]
     pub fn eval(&self, at: &TexturePoint) -> T {
+        match self {
+            Self::Constant(value) => *value,
+            _ => self.eval_varying(at),
+        }
+    }
+
+    /// The same, outlined: most textures are constant.
+    #[inline(never)]
+    fn eval_varying(&self, at: &TexturePoint) -> T {
         match self {
             Self::Constant(value) => *value,
             Self::Image(map) => T::look_up(map, at),

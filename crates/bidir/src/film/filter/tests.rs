@@ -47,6 +47,21 @@ fn filters_are_normalised() {
 }
 
 #[test]
+fn a_table_follows_its_formula() {
+    let (sigma, radius) = (0.5, 1.5);
+    let axis = Axis::new(FilterKind::Gaussian { sigma }, radius);
+    let formula = |x: f32| gaussian(x, sigma) - gaussian(radius, sigma);
+    // ∫ exp(-x² / 2σ²) is √(2π) σ erf(r / √2 σ).
+    let integral = 2.506_628_3 * sigma * 0.997_300_2 - 2.0 * radius * gaussian(radius, sigma);
+    for i in 0..=10_000 {
+        let x = i as f32 / 10_000.0 * radius;
+        let error = (axis.eval(x) - formula(x) / integral).abs();
+        assert!(error < 3e-6, "{x}: {error}");
+    }
+    assert!(axis.eval(radius * 1.001) < f32::MIN_POSITIVE);
+}
+
+#[test]
 fn drawn_offsets_reproduce_the_filter() {
     for filter in examples() {
         // At sign changes of h, a grid of numbers errs by 1/n.
@@ -60,8 +75,7 @@ fn drawn_offsets_reproduce_the_filter() {
         let (mean, expected) = (sum / f64::from(n * n), integral(&filter, test_function));
         assert!(
             (mean - expected).abs() < 5e-3,
-            "{:?}: {mean} {expected}",
-            filter.x.shape.kind
+            "{filter:?}: {mean} {expected}"
         );
     }
 }
@@ -85,8 +99,7 @@ fn picked_pixels_reproduce_the_filter() {
         let expected: f64 = offsets.map(|x| f64::from(axis.eval(x)) * g(x)).sum();
         assert!(
             (mean - expected).abs() < 1e-3,
-            "{:?}: {mean} {expected}",
-            axis.shape.kind
+            "{axis:?}: {mean} {expected}"
         );
     }
 }

@@ -41,20 +41,20 @@ pub(in super::super) fn direct(job: &Job<'_>, batch: &mut Batch) {
             if let Some(arrival) = Arrival::at(vertex)
                 && let Some(term) = hit(&context, &walk.vertices[..i], &arrival)
             {
-                entries.push(enter(stats, (number, sample), term, Link::Walk));
+                enter(entries, stats, (number, sample), term, Link::Walk);
             }
             let connects = i + 2 <= context.job.settings.max_vertices() && !vertex.is_delta();
             if connects && let Some(found) = next_event(&context, sample, vertex, i) {
                 let (term, ends, passage) = found;
-                let mut entry = enter(stats, (number, sample), term, Link::Connection(ends));
-                passage.settle(&mut entry, stats);
-                entries.push(entry);
+                let link = Link::Connection(ends);
+                let entry = enter(entries, stats, (number, sample), term, link);
+                passage.settle(entry, stats);
             }
         }
         let escape = walk.escape.into_iter();
         for arrival in escape.flat_map(|escape| Arrival::of_escape(context.job.scene, escape)) {
             if let Some(term) = hit(&context, walk.vertices, &arrival) {
-                entries.push(enter(stats, (number, sample), term, Link::Walk));
+                enter(entries, stats, (number, sample), term, Link::Walk);
             }
         }
     }

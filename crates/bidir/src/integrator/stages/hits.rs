@@ -30,7 +30,7 @@ pub(in super::super) fn hits(job: &Job<'_>, batch: &mut Batch) {
                 next_event: None,
             };
             if let Some(term) = hit(&context, camera, arrival, weights, &sums) {
-                entries.push(enter(stats, (number, sample), term, Link::Walk));
+                enter(entries, stats, (number, sample), term, Link::Walk);
             }
         };
         for (i, vertex) in walk.vertices.iter().enumerate().skip(1) {

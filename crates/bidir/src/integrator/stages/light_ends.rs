@@ -36,7 +36,8 @@ pub(in super::super) fn own_light(job: &Job<'_>, batch: &mut Batch) {
                 let (Some(share), Some(place)) = (share, place) else {
                     continue;
                 };
-                if !subpath.vertices[s - 1].is_delta() && context.takes(s, t) {
+                let connects = place.is_diffuse || !subpath.vertices[s - 1].is_delta();
+                if connects && context.takes(s, t) {
                     light_ends.push(LightEnd {
                         place,
                         number: s as u32 - 1,

@@ -66,9 +66,8 @@ pub(in super::super) fn light_image(job: &Job<'_>, batch: &mut Batch, weighting:
                 }
             };
             let (term, link) = image.term(sample, weight);
-            let mut entry = enter(stats, (number, sample), term, link);
-            passage.settle(&mut entry, stats);
-            splats.push(entry);
+            let entry = enter(splats, stats, (number, sample), term, link);
+            passage.settle(entry, stats);
         }
     }
     trace(job.scene, splats, shadow_rays, stats);
