@@ -3,6 +3,7 @@
 An entry is (name, file, old text, new text, test). The old text occurs exactly once in the file.
 """
 
+from .diffuse import DIFFUSE_ENDS
 from .laboratory import LABORATORY
 from .materials import MATERIALS
 from .media import MEDIA
@@ -13,5 +14,5 @@ from .scenes import SCENES
 from .textures import TEXTURES
 from .views import VIEWS
 
-MUTATIONS = (PATHS + PICTURES + SCENES + MATERIALS + MEDIA + PRINCIPLED + TEXTURES + VIEWS
-             + LABORATORY)
+MUTATIONS = (PATHS + DIFFUSE_ENDS + PICTURES + SCENES + MATERIALS + MEDIA + PRINCIPLED + TEXTURES
+             + VIEWS + LABORATORY)

@@ -106,58 +106,6 @@ PATHS = [
         RUNNING,
     ),
     (
-        "connections of diffuse vertices without the camera's other strategies",
-        "crates/bidir/src/path/diffuse.rs",
-        "(r_z * lanes.others + r_y * y.others)",
-        "(r_z * lanes.others)",
-        RUNNING,
-    ),
-    (
-        "weights of diffuse vertices from the lane beside them",
-        "crates/bidir/src/path/diffuse.rs",
-        "weights: weights.to_array(),",
-        "weights: {\n"
-        "                let [a, b, c, d] = weights.to_array();\n"
-        "                [b, c, d, a]\n"
-        "            },",
-        RUNNING,
-    ),
-    (
-        "connections of diffuse vertices that face away from each other",
-        "crates/bidir/src/path/diffuse.rs",
-        "factors: Vec4::select(a & b & c & d, factors, Vec4::ZERO).to_array(),",
-        "factors: factors.to_array(),",
-        RUNNING,
-    ),
-    (
-        "light vertices lost behind the last four",
-        "crates/bidir/src/integrator/stages/connect.rs",
-        "ends.chunks(4)",
-        "ends.chunks_exact(4)",
-        analytic("a_closed_sphere"),
-    ),
-    (
-        "light vertices lost in the last lane",
-        "crates/bidir/src/integrator/stages/connect.rs",
-        "four.iter().enumerate()",
-        "four.iter().enumerate().take(3)",
-        analytic("a_closed_sphere"),
-    ),
-    (
-        "connections of diffuse vertices behind a shading normal",
-        "crates/bidir/src/path/diffuse.rs",
-        "[g_z, s_z, g_y, s_y].map",
-        "[g_z, s_z, g_y, g_y].map",
-        RUNNING,
-    ),
-    (
-        "connections of diffuse vertices without the adjoint of shading normals",
-        "crates/bidir/src/path/diffuse.rs",
-        "TransportMode::Importance => (cos_s / cos_g).abs(),",
-        "TransportMode::Importance => 1.0,",
-        RUNNING,
-    ),
-    (
         "running sums where roulette begins late",
         "crates/bidir/src/path/running.rs",
         "self.shortest <= s.min(t)",
@@ -451,8 +399,8 @@ PATHS = [
     (
         "light images of fewer subpaths not made up for",
         "crates/bidir/src/integrator/stages/light_image.rs",
-        "path.contribution(context) * share as f32;",
-        "path.contribution(context) * share.min(1.0) as f32;",
+        "let contribution = c * share as f32;",
+        "let contribution = c * share.min(1.0) as f32;",
         analytic("a_closed_sphere"),
     ),
     (

@@ -1,4 +1,5 @@
-//! Connections of diffuse vertices, from what each of them knows beforehand, four at a time.
+//! Connections of diffuse vertices, from what each of them knows beforehand: four at a time with each other, one by
+//! one with light points and lens points.
 //!
 //! With d² the squared distance of z and y, w the direction from z to y, n_g and n_s the normals on the side
 //! that the walk came from, and f = ρ/π,
@@ -11,12 +12,19 @@
 //!
 //! w = n / (n + r_z k_z + r_y k_y).
 //!
+//! With a light point x_0 that was drawn with density e, or a lens point x, half of that remains: with W its emission
+//! or importance, r the density of the vertex drawn from there, r_0 that of x_0 drawn from the vertex, and k' for a
+//! rest of one vertex,
+//!
+//! C = (β W)_x (β f)_y (n_s·w)_y cos_g(x) / d²,    w = n / (n + r_0 / e + (a_0 / e) r k),
+//! C = (β W)_x (β f …)_z (n_g·w)_z cos_g(x) / d²,    w = n / (n + r k').
+//!
 //! [`JoinedPath`](super::JoinedPath) and [`PathSums`](super::PathSums) are the specification, for every kind of
 //! vertex; the two agree but for rounding. No lane depends on the other lanes.
 
 use super::densities::factor;
-use super::running::EndSums;
-use super::{MisHeuristic, PathContext, Scattering, Vertex};
+use super::running::{EndSums, PathStart};
+use super::{MisHeuristic, PathContext, Scattering, Segment, Vertex};
 use crate::bsdf::{Bsdf, TransportMode};
 use crate::guide::Cell;
 use crate::math::lanes::{Vec3x4, dot, dot_each, gather, offset};
@@ -108,6 +116,64 @@ impl DiffuseEnd {
     #[inline]
     pub(crate) fn cell(&self) -> Cell {
         self.cell
+    }
+
+    /// C and the weight of next-event estimation at this vertex, number `t` of a camera subpath: `x0` was drawn for it
+    /// with density `e`, and `segment` leads there. None: C is zero.
+    #[inline]
+    pub fn next_event(
+        &self,
+        context: &PathContext<'_>,
+        t: usize,
+        (x0, e): (&Vertex, f32),
+        segment: &Segment,
+    ) -> Option<(Spectrum, f32)> {
+        let cos_s = self.n_s.dot(segment.w);
+        let contribution = self.contribution(context, x0, segment, cos_s)?;
+        let start = PathStart::new(context, x0, e);
+        // b_0 / e and, but for k, the share of the strategies with more light vertices.
+        let to_light = f64::from(self.density * cos_s * segment.to_b);
+        let hit = start.is_hit * to_light / start.next_event;
+        let drawn = start.up() * f64::from(x0.pdf_leaving(context, -segment.w) * segment.to_a);
+        let n = context.count(1, t, [x0.cell, self.cell]);
+        let others = hit + drawn * f64::from(self.others);
+        Some((contribution, (n / (n + others)) as f32))
+    }
+
+    /// C and the weight of the light image of this vertex, number `s` of a light subpath with these `sums`:
+    /// `segment` leads to the lens point. None: C is zero.
+    #[inline]
+    pub fn light_image(
+        &self,
+        context: &PathContext<'_>,
+        s: usize,
+        (lens, sums): (&Vertex, &EndSums),
+        segment: &Segment,
+    ) -> Option<(Spectrum, f32)> {
+        let cos_g = self.n_g.dot(segment.w);
+        let contribution = self.contribution(context, lens, segment, cos_g)?;
+        let drawn = f64::from(lens.pdf_leaving(context, -segment.w) * segment.to_a);
+        let n = context.count(s, 1, [self.cell, lens.cell]);
+        let others = drawn * (f64::from(self.others) + sums.per_density_more_for_one());
+        Some((contribution, (n / (n + others)) as f32))
+    }
+
+    /// C of a connection with the `end` of a path, to which `segment` leads. None: it is zero.
+    #[inline]
+    fn contribution(
+        &self,
+        context: &PathContext<'_>,
+        end: &Vertex,
+        segment: &Segment,
+        cos: f32,
+    ) -> Option<Spectrum> {
+        let Segment { w, to_b, .. } = *segment;
+        let is_ahead = self.n_g.dot(w) > 0.0 && self.n_s.dot(w) > 0.0 && to_b > 0.0;
+        if !is_ahead {
+            return None;
+        }
+        let contribution = end.leaving(context, -w) * end.beta * self.flux * (cos * to_b);
+        (!contribution.is_black()).then_some(contribution)
     }
 
     /// The connections of the camera vertex `self` with four light vertices, before visibility, where the strategy of

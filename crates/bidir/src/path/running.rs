@@ -62,15 +62,15 @@ pub struct Weights {
 
 /// How x_0 is drawn.
 #[derive(Clone, Copy, Debug)]
-struct PathStart {
+pub(super) struct PathStart {
     /// a_0.
     emission: f64,
     /// e. Never zero: where s = 1 is impossible, the ratios across it must still cancel.
-    next_event: f64,
+    pub(super) next_event: f64,
     /// 1 where s = 1 can draw x_0, else 0.
     is_drawn: f64,
     /// 1 where s = 0 can hit it, else 0.
-    is_hit: f64,
+    pub(super) is_hit: f64,
 }
 
 /// The length of a path whose roulette has begun at every bounce of both directions.
@@ -102,6 +102,13 @@ impl EndSums {
     /// longer than one vertex and r' is `before`.
     pub(super) fn per_density(&self, before: f64) -> f64 {
         self.shares(ANY_DEEPER, 1.0, before)
+    }
+
+    /// The difference of that factor where the rest of the path is one vertex.
+    #[inline]
+    pub(super) fn per_density_more_for_one(&self) -> f64 {
+        let [one, more] = self.links;
+        self.per_drawn * (one - more)
     }
 }
 
@@ -307,7 +314,7 @@ impl PathStart {
     };
 
     #[inline]
-    fn new(context: &PathContext<'_>, x0: &Vertex, next_event: f32) -> Self {
+    pub(super) fn new(context: &PathContext<'_>, x0: &Vertex, next_event: f32) -> Self {
         Self {
             emission: f64::from(x0.pdf_fwd),
             next_event: f64::from(next_event.max(f32::MIN_POSITIVE)),
@@ -329,7 +336,7 @@ impl PathStart {
 
     /// The factor of a_1 / b_1 in p_2 / p_1.
     #[inline]
-    fn up(&self) -> f64 {
+    pub(super) fn up(&self) -> f64 {
         self.emission / self.next_event
     }
 }

@@ -99,15 +99,9 @@ impl<'a> Turn<'a> {
     #[inline]
     pub fn scatter(&self, context: &PathContext<'_>, mode: TransportMode) -> Spectrum {
         let Self { vertex, wo, wi } = self;
-        match (&vertex.scattering, vertex.light) {
-            (Scattering::Camera, _) => {
-                Spectrum::splat(context.job.view.camera().importance(wi.world))
-            }
-            (Scattering::Light, Some(light)) => {
-                context.emitted(light, &vertex.light_point(), wi.world)
-            }
-            (Scattering::Light, None) => Spectrum::ZERO,
-            (Scattering::Surface(bsdf), _) => {
+        match &vertex.scattering {
+            Scattering::Camera | Scattering::Light => vertex.leaving(context, wi.world),
+            Scattering::Surface(bsdf) => {
                 if !wo.agrees() || !wi.agrees() {
                     return Spectrum::ZERO;
                 }
@@ -117,7 +111,7 @@ impl<'a> Turn<'a> {
                 };
                 bsdf.eval(wo.local, wi.local, mode) * from.normal_ratio()
             }
-            (Scattering::Medium(medium), _) => {
+            Scattering::Medium(medium) => {
                 medium.coefficient * medium.phase.eval(wo.world, wi.world)
             }
         }
@@ -128,16 +122,11 @@ impl<'a> Turn<'a> {
     /// to the probability of the others.
     #[inline]
     pub fn pdf(&self, context: &PathContext<'_>) -> f32 {
-        let (scene, vertex) = (context.job.scene, self.vertex);
-        match (&vertex.scattering, vertex.light) {
-            (Scattering::Camera, _) => context.job.view.camera().pdf_direction(self.wi.world),
-            (Scattering::Light, Some(light)) => {
-                let (light, at) = (scene.light(light), vertex.light_point());
-                light.pdf_direction(&scene.light_context(), &at, self.wi.world)
-            }
-            (Scattering::Light, None) => 0.0,
-            (Scattering::Surface(bsdf), _) => bsdf.pdf(self.wo.local, self.wi.local),
-            (Scattering::Medium(medium), _) => medium.phase.eval(self.wo.world, self.wi.world),
+        let Self { vertex, wo, wi } = self;
+        match &vertex.scattering {
+            Scattering::Camera | Scattering::Light => vertex.pdf_leaving(context, wi.world),
+            Scattering::Surface(bsdf) => bsdf.pdf(wo.local, wi.local),
+            Scattering::Medium(medium) => medium.phase.eval(wo.world, wi.world),
         }
     }
 
@@ -153,6 +142,30 @@ impl<'a> Turn<'a> {
 }
 
 impl Vertex {
+    /// The emission or importance of the first vertex of a walk along `w`; zero of others.
+    #[inline]
+    pub(super) fn leaving(&self, context: &PathContext<'_>, w: Vec3) -> Spectrum {
+        match (&self.scattering, self.light) {
+            (Scattering::Camera, _) => Spectrum::splat(context.job.view.camera().importance(w)),
+            (Scattering::Light, Some(light)) => context.emitted(light, &self.light_point(), w),
+            _ => Spectrum::ZERO,
+        }
+    }
+
+    /// The density of `w` in walks that begin here, in the measure of [`Turn::pdf`]; zero where none does.
+    #[inline]
+    pub(super) fn pdf_leaving(&self, context: &PathContext<'_>, w: Vec3) -> f32 {
+        let scene = context.job.scene;
+        match (&self.scattering, self.light) {
+            (Scattering::Camera, _) => context.job.view.camera().pdf_direction(w),
+            (Scattering::Light, Some(light)) => {
+                let (light, at) = (scene.light(light), self.light_point());
+                light.pdf_direction(&scene.light_context(), &at, w)
+            }
+            _ => 0.0,
+        }
+    }
+
     /// The albedo for a walk that comes along -`w`; 1 at the ends of paths.
     pub fn albedo(&self, w: Vec3) -> Spectrum {
         match &self.scattering {

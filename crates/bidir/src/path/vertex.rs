@@ -236,7 +236,7 @@ impl Vertex {
 
     /// True on a light that no ray can hit by chance.
     #[inline]
-    pub(super) fn is_on_delta_light(&self, context: &PathContext<'_>) -> bool {
+    pub(crate) fn is_on_delta_light(&self, context: &PathContext<'_>) -> bool {
         self.light
             .is_some_and(|light| context.job.scene.light(light).is_delta())
     }

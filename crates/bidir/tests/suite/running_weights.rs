@@ -14,6 +14,7 @@ use bidir::path::{
     SampleCounts, Strategies, Subpath, Vertex, Weights, sample_next_event,
 };
 use bidir::shape::Shape;
+use bidir::spectrum::Spectrum;
 use std::array::from_fn;
 
 /// Both forms take the same densities, and sum in f64; weights are f32.
@@ -32,8 +33,8 @@ struct Comparison {
     paths: usize,
     /// Of paths with five vertices or more, whose strategies share.
     shared: usize,
-    /// Of connections of diffuse vertices.
-    diffuse: usize,
+    /// Of diffuse vertices: with light points, with lens points, and with each other.
+    diffuse: [usize; 3],
 }
 
 impl Comparison {
@@ -115,7 +116,6 @@ impl Comparison {
             return;
         };
         let path = JoinedPath::connection(light, camera);
-        let contribution = path.contribution(context);
         let count = context.count(s, t, [light[s - 1].cell, camera[t - 1].cell]);
         // Other vertices, with counts of their own, are in the other lanes.
         let own = (s + t) % 4;
@@ -125,7 +125,20 @@ impl Comparison {
         });
         let counts = from_fn(|lane| count as f32 * if lane == own { 1.0 } else { 3.0 });
         let connections = y.connect(ends, counts);
-        let Some((found, weight)) = connections.get(own) else {
+        self.check_diffuse(context, &path, connections.get(own));
+    }
+
+    /// C and the weight of a connection of a diffuse vertex against the general form.
+    #[track_caller]
+    fn check_diffuse(
+        &mut self,
+        context: &PathContext<'_>,
+        path: &JoinedPath<'_>,
+        found: Option<(Spectrum, f32)>,
+    ) {
+        let contribution = path.contribution(context);
+        let (s, t) = (path.light.len(), path.camera.len());
+        let Some((found, weight)) = found else {
             assert!(
                 contribution.is_black(),
                 "s = {s}, t = {t}: {contribution:?}"
@@ -144,7 +157,7 @@ impl Comparison {
             "s = {s}, t = {t}: {weight} instead of {pure}; {}",
             describe(context.job.settings)
         );
-        self.diffuse += 1;
+        self.diffuse[if s == 1 { 0 } else { t.min(2) }] += 1;
     }
 
     fn compare_hits(&mut self, context: &PathContext<'_>, camera: &Subpath<'_>) {
@@ -170,8 +183,19 @@ impl Comparison {
         let medium = context.job.scene.medium_at(lens.locus.point);
         let lens = Vertex::camera(&lens, medium);
         for s in 1..=light.len() {
-            if !(light[s - 1].locus.is_infinite() && lens.locus.is_infinite()) {
-                self.compare_connection(context, &light[..s], std::slice::from_ref(&lens));
+            let (z, lens) = (&light[s - 1], std::slice::from_ref(&lens));
+            if z.locus.is_infinite() && lens[0].locus.is_infinite() {
+                continue;
+            }
+            self.compare_connection(context, &light[..s], lens);
+            let sums = &self.sums[0];
+            if context.takes(s, 1)
+                && let Some(end) = sums.diffuse(s - 1)
+            {
+                let (of_lens, segment) = ((&lens[0], sums.at(s - 1)), z.segment_to(&lens[0]));
+                let found = end.light_image(context, s, of_lens, &segment);
+                let path = JoinedPath::connection(&light[..s], lens);
+                self.check_diffuse(context, &path, found);
             }
         }
     }
@@ -186,8 +210,18 @@ impl Comparison {
             let x0 = Vertex::light(context, light, &drawn.at);
             let is_fresh = context.job.settings.light_point == LightPointChoice::Fresh;
             self.next_event = is_fresh.then_some(drawn.pdf);
-            self.compare_connection(context, std::slice::from_ref(&x0), &camera[..t]);
+            let of_light = std::slice::from_ref(&x0);
+            self.compare_connection(context, of_light, &camera[..t]);
             self.next_event = None;
+            if is_fresh
+                && context.takes(1, t)
+                && let Some(y) = self.sums[1].diffuse(t - 1)
+            {
+                let segment = camera[t - 1].segment_to(&x0);
+                let found = y.next_event(context, t, (&x0, drawn.pdf), &segment);
+                let path = JoinedPath::connection(of_light, &camera[..t]);
+                self.check_diffuse(context, &path, found);
+            }
         }
     }
 }
@@ -245,7 +279,7 @@ fn describe(settings: &PathSettings) -> String {
     format!("{mis:?}, {light_point:?}, {light_choice:?}, {roulette}, {strategies}")
 }
 
-/// Returns how many connections of diffuse vertices there were.
+/// Returns how many connections of diffuse vertices there were, of the kind with the fewest.
 #[track_caller]
 fn check(scene: &Shot, pairs: u64) -> usize {
     let (mut comparison, mut least) = (Comparison::default(), 0);
@@ -290,7 +324,7 @@ fn check(scene: &Shot, pairs: u64) -> usize {
     } = comparison;
     assert!(paths >= least, "{paths} paths of {least} pairs");
     assert!(shared * 20 >= least, "{shared} of {least} are shared");
-    diffuse
+    diffuse.into_iter().min().unwrap_or(0)
 }
 
 /// A floor, a wall, balls of smooth glass, smooth metal and smooth varnish, under lights of all

@@ -35,7 +35,7 @@ pub(in super::super) fn connect(job: &Job<'_>, batch: &mut Batch) {
         for t in 2..=connector.camera.vertices.len() {
             let is_due = |of: [u32; 2]| of == [number as u32, t as u32];
             while let Some(event) = next_events.next_if(|it| is_due([it.sample, it.t])) {
-                connector.offer_general(t, &event.end, Some(event.pdf));
+                connector.offer_next_event(t, &event.end, event.pdf);
             }
             let end = *ends_of_lists.next().expect("each vertex has a list");
             let (of_vertex, others) = light_ends.split_at(end - begin);
@@ -105,6 +105,24 @@ impl Connector<'_> {
                     self.offer(t, end, connection);
                 }
             }
+        }
+    }
+
+    /// Connects camera vertex number `t` with a light point that was drawn for it with density `e`.
+    fn offer_next_event(&mut self, t: usize, end: &LightEnd, e: f32) {
+        let Some(y) = self.camera_sums.diffuse(self.camera.first + t - 1) else {
+            return self.offer_general(t, end, Some(e));
+        };
+        let (vertex, context) = (&self.camera.vertices[t - 1], &self.context);
+        let x0 = &self.light.vertices()[end.place.z as usize];
+        let segment = vertex.segment_to(x0);
+        if let Some((contribution, weight)) = y.next_event(context, t, (x0, e), &segment) {
+            let connection = Connection {
+                contribution,
+                weight,
+                root_visibility: context.root_visibility(x0, vertex),
+            };
+            self.offer(t, end, connection);
         }
     }
 

@@ -9,7 +9,10 @@ use crate::contribution::Term;
 use crate::film::SplatPlace;
 use crate::locus::Locus;
 use crate::math::Vec2;
-use crate::path::{EndSums, Job, JoinedPath, PathContext, PathSums, Scattering, Vertex};
+use crate::path::{
+    DiffuseEnd, EndSums, Job, JoinedPath, PathContext, PathSums, Scattering, Segment, Vertex,
+    Weights,
+};
 use crate::sampler::{Dimension, Purpose};
 use crate::spectrum::Spectrum;
 use crate::stats::Stage;
@@ -46,28 +49,21 @@ pub(in super::super) fn light_image(job: &Job<'_>, batch: &mut Batch, weighting:
                 continue;
             }
             let lens = lens_vertex(&context, sample, s);
-            let Some(mut image) = LightImage::new(&context, &walk.vertices[..s], &lens) else {
+            let Some(image) = LightImage::new(&context, &walk.vertices[..s], &lens) else {
                 continue;
             };
-            let passage = ShadowPassage::between(&context, || image.ends());
-            if let Some(edge) = passage.edge() {
-                image.path.pass(edge);
-            }
-            let weight = match weighting {
-                Weighting::Alone => 1.0,
-                Weighting::Combined if passage.is_blocked() => 0.0,
-                Weighting::Combined => {
-                    let sums = PathSums {
-                        light: light_sums.at(walk.first + s - 1),
-                        camera: &EndSums::NONE,
-                        next_event: None,
-                    };
-                    weights.weight(&context, &image.path, &sums)
-                }
+            let z = walk.first + s - 1;
+            let found = if let Some(end) = light_sums.diffuse(z) {
+                image.of_diffuse(&context, end, light_sums.at(z))
+            } else {
+                let weights = (weighting == Weighting::Combined).then_some(&mut *weights);
+                image.of_any(&context, weights, light_sums.at(z))
             };
-            let (term, link) = image.term(sample, weight);
-            let entry = enter(splats, stats, (number, sample), term, link);
-            passage.settle(entry, stats);
+            if let Some((term, passage)) = found {
+                let link = image.link(&context, sample);
+                let entry = enter(splats, stats, (number, sample), term, link);
+                passage.settle(entry, stats);
+            }
         }
     }
     trace(job.scene, splats, shadow_rays, stats);
@@ -86,72 +82,109 @@ pub(in super::super) fn lens_vertex(
     Vertex::camera(&lens, context.job.medium)
 }
 
-/// A light vertex as a lens point of its own sees it, before visibility.
+/// A light vertex and the lens point that sees it, before visibility.
 struct LightImage<'a> {
-    light: u32,
-    /// From the light to the lens.
-    path: JoinedPath<'a>,
-    /// The camera's end of the shadow ray.
-    camera_end: Locus,
+    light: &'a [Vertex],
+    lens: &'a Vertex,
+    /// From the light vertex to the lens.
+    segment: Segment,
     raster: Vec2,
-    contribution: Spectrum,
 }
 
 impl<'a> LightImage<'a> {
-    /// Connects the last vertex of a light subpath to a lens point. None: nothing arrives on the film.
+    /// The last vertex of a light subpath, as a lens point sees it. None: its image is not on the film.
     fn new(context: &PathContext<'_>, light: &'a [Vertex], lens: &'a Vertex) -> Option<Self> {
-        let scene = context.job.scene;
         let end = light.last()?;
         // The image of a Dirac light itself would be a Dirac distribution: such lights are invisible.
-        let is_start = matches!(end.scattering, Scattering::Light);
-        if is_start && end.light.is_none_or(|i| scene.light(i).is_delta()) {
+        if matches!(end.scattering, Scattering::Light) && end.is_on_delta_light(context) {
             return None;
         }
         if lens.locus.is_infinite() && end.locus.is_infinite() {
             return None;
         }
-        let path = JoinedPath::connection(light, std::slice::from_ref(lens));
+        let segment = end.segment_to(lens);
         let on_ray = if lens.locus.is_infinite() {
             end.locus.point
         } else {
             lens.locus.point
         };
-        let raster = context.job.view.camera().raster(on_ray, -path.segment.w)?;
-        if !reaches_film(context, raster) {
-            return None;
+        let raster = context.job.view.camera().raster(on_ray, -segment.w)?;
+        reaches_film(context, raster).then_some(Self {
+            light,
+            lens,
+            segment,
+            raster,
+        })
+    }
+
+    /// Its term where its vertex is `z`, diffuse, with these sums. None: it is zero.
+    fn of_diffuse(
+        &self,
+        context: &PathContext<'_>,
+        z: &DiffuseEnd,
+        sums: &EndSums,
+    ) -> Option<(Term, ShadowPassage)> {
+        let s = self.light.len();
+        let found = z.light_image(context, s, (self.lens, sums), &self.segment);
+        let (contribution, weight) = found?;
+        let term = self.term(context, contribution, weight)?;
+        Some((term, ShadowPassage::Clear))
+    }
+
+    /// Its term, whatever its vertex is, and the media on its way; of weight 1 without `weights`. None: it is zero.
+    fn of_any(
+        &self,
+        context: &PathContext<'_>,
+        weights: Option<&mut Weights>,
+        sums: &EndSums,
+    ) -> Option<(Term, ShadowPassage)> {
+        let mut path = JoinedPath::connection(self.light, std::slice::from_ref(self.lens));
+        let term = self.term(context, path.contribution(context), 1.0)?;
+        let passage = ShadowPassage::between(context, || self.ends(context));
+        if let Some(edge) = passage.edge() {
+            path.pass(edge);
         }
+        let weight = match weights {
+            None => 1.0,
+            Some(_) if passage.is_blocked() => 0.0,
+            Some(weights) => {
+                let sums = PathSums {
+                    light: sums,
+                    camera: &EndSums::NONE,
+                    next_event: None,
+                };
+                weights.weight(context, &path, &sums)
+            }
+        };
+        Some((Term { weight, ..term }, passage))
+    }
+
+    /// The term of C, of which a pass has so many light subpaths. None: it is zero.
+    fn term(&self, context: &PathContext<'_>, c: Spectrum, weight: f32) -> Option<Term> {
         let share =
             context.job.view.film().light_paths() as f64 / context.job.counts.light_subpaths;
-        let contribution = path.contribution(context) * share as f32;
-        (contribution != Spectrum::ZERO).then_some(Self {
-            light: light[0].light?,
-            camera_end: camera_end(context, lens, end),
-            path,
-            raster,
+        let contribution = c * share as f32;
+        (contribution != Spectrum::ZERO).then_some(Term {
+            strategy: Strategy::new(self.light.len(), 1),
+            light: self.light[0].light?,
             contribution,
+            weight,
         })
     }
 
     /// The ends of its shadow ray.
-    fn ends(&self) -> [Locus; 2] {
-        [self.path.z().locus, self.camera_end]
+    fn ends(&self, context: &PathContext<'_>) -> [Locus; 2] {
+        let end = &self.light[self.light.len() - 1];
+        [end.locus, camera_end(context, self.lens, end)]
     }
 
-    /// Its term with this weight, and its link.
-    fn term(&self, sample: &Sample, weight: f32) -> (Term, Link) {
-        let s = self.path.light.len();
-        let at = Dimension::at(s, Purpose::LightImagePixel);
+    fn link(&self, context: &PathContext<'_>, sample: &Sample) -> Link {
+        let at = Dimension::at(self.light.len(), Purpose::LightImagePixel);
         let place = SplatPlace {
             raster: self.raster,
             u: sample.light.get_2d(at),
         };
-        let term = Term {
-            strategy: Strategy::new(s, 1),
-            light: self.light,
-            contribution: self.contribution,
-            weight,
-        };
-        (term, Link::LightImage(self.ends(), place))
+        Link::LightImage(self.ends(context), place)
     }
 }
 

@@ -3,7 +3,7 @@
 use super::super::batch::{LightEnd, NextEvent};
 use super::super::{Batch, CandidateCount, Sample};
 use crate::math::ONE_MINUS_EPSILON;
-use crate::path::{Job, LightPointChoice, PathContext, Vertex, sample_next_event};
+use crate::path::{Job, LightPointChoice, PathContext, Subpaths, Vertex, sample_next_event};
 use crate::sampler::{Dimension, Purpose, kronecker_number, kronecker_point};
 use crate::spectrum::Spectrum;
 
@@ -32,11 +32,12 @@ pub(in super::super) fn next_events(job: &Job<'_>, batch: &mut Batch, counts: Ca
             }
             let count = counts.at(t);
             for k in 0..count {
-                if let Some((x0, number, pdf)) = light_point(&context, sample, y, t, [k, count]) {
+                let part = [k, count];
+                if let Some((end, pdf)) = add_point(light, &context, sample, (t, y), part) {
                     next_events.push(NextEvent {
                         sample: index as u32,
                         t: t as u32,
-                        end: LightEnd::point(light.add_point(&x0), number),
+                        end,
                         pdf,
                     });
                 }
@@ -45,22 +46,24 @@ pub(in super::super) fn next_events(job: &Job<'_>, batch: &mut Batch, counts: Ca
     }
 }
 
-/// Light point number `k` of `count` for `y`, camera vertex number `t`, the number of its light, and its density. Each counts 1 / `count`.
-fn light_point(
+/// Adds light point number `k` of `count` for `y`, camera vertex number `t`, which counts 1 / `count`; returns it with
+/// its density.
+fn add_point(
+    light: &mut Subpaths,
     context: &PathContext<'_>,
     sample: &Sample,
-    y: &Vertex,
-    t: usize,
+    (t, y): (usize, &Vertex),
     [k, count]: [u16; 2],
-) -> Option<(Vertex, u32, f32)> {
+) -> Option<(LightEnd, f32)> {
     let at = |purpose| Dimension::at(t - 1, purpose);
     let part = |u: f32| ((f32::from(k) + u) / f32::from(count)).min(ONE_MINUS_EPSILON);
     let u_light = || part(sample.camera.get_1d(at(Purpose::NextEventLight)));
     let u = sample.camera.get_2d(at(Purpose::NextEventPosition));
     let u_depth = || kronecker_number(sample.camera.get_1d(at(Purpose::NextEventDepth)), k);
     let point = kronecker_point(u, k);
-    let (light, drawn) = sample_next_event(context, y, u_light, point, u_depth)?;
-    let mut x0 = Vertex::light(context, light, &drawn.at);
+    let (number, drawn) = sample_next_event(context, y, u_light, point, u_depth)?;
+    let mut x0 = Vertex::light(context, number, &drawn.at);
     x0.beta = Spectrum::splat(drawn.coverage / (drawn.pdf * f32::from(count)));
-    Some((x0, light, drawn.pdf))
+    let z = light.add_point(&x0);
+    Some((LightEnd::point(z, number), drawn.pdf))
 }

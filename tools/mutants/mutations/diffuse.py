@@ -1,0 +1,96 @@
+"""Faults in connections of diffuse vertices: with each other, with light points and with lens points."""
+
+from .tests import RUNNING, analytic
+
+DIFFUSE = "crates/bidir/src/path/diffuse.rs"
+CONNECT = "crates/bidir/src/integrator/stages/connect.rs"
+
+DIFFUSE_ENDS = [
+    (
+        "connections of diffuse vertices without the camera's other strategies",
+        DIFFUSE,
+        "(r_z * lanes.others + r_y * y.others)",
+        "(r_z * lanes.others)",
+        RUNNING,
+    ),
+    (
+        "weights of diffuse vertices from the lane beside them",
+        DIFFUSE,
+        "weights: weights.to_array(),",
+        "weights: {\n"
+        "                let [a, b, c, d] = weights.to_array();\n"
+        "                [b, c, d, a]\n"
+        "            },",
+        RUNNING,
+    ),
+    (
+        "connections of diffuse vertices that face away from each other",
+        DIFFUSE,
+        "factors: Vec4::select(a & b & c & d, factors, Vec4::ZERO).to_array(),",
+        "factors: factors.to_array(),",
+        RUNNING,
+    ),
+    (
+        "light vertices lost behind the last four",
+        CONNECT,
+        "ends.chunks(4)",
+        "ends.chunks_exact(4)",
+        analytic("a_closed_sphere"),
+    ),
+    (
+        "light vertices lost in the last lane",
+        CONNECT,
+        "four.iter().enumerate()",
+        "four.iter().enumerate().take(3)",
+        analytic("a_closed_sphere"),
+    ),
+    (
+        "connections of diffuse vertices behind a shading normal",
+        DIFFUSE,
+        "[g_z, s_z, g_y, s_y].map",
+        "[g_z, s_z, g_y, g_y].map",
+        RUNNING,
+    ),
+    (
+        "connections of diffuse vertices without the adjoint of shading normals",
+        DIFFUSE,
+        "TransportMode::Importance => (cos_s / cos_g).abs(),",
+        "TransportMode::Importance => 1.0,",
+        RUNNING,
+    ),
+    (
+        "light points of diffuse vertices without the walk that hits the light",
+        DIFFUSE,
+        "let hit = start.is_hit * to_light / start.next_event;",
+        "let hit = start.is_hit * 0.0 * to_light / start.next_event;",
+        RUNNING,
+    ),
+    (
+        "light points of diffuse vertices without light subpaths",
+        DIFFUSE,
+        "let others = hit + drawn * f64::from(self.others);",
+        "let others = hit + 0.0 * drawn * f64::from(self.others);",
+        RUNNING,
+    ),
+    (
+        "light images of diffuse vertices with the counts of longer paths",
+        DIFFUSE,
+        "(f64::from(self.others) + sums.per_density_more_for_one())",
+        "(f64::from(self.others) + 0.0 * sums.per_density_more_for_one())",
+        RUNNING,
+    ),
+    (
+        "light images of diffuse vertices by the cosine to the shading normal",
+        DIFFUSE,
+        "let cos_g = self.n_g.dot(segment.w);",
+        "let cos_g = self.n_s.dot(segment.w);",
+        RUNNING,
+    ),
+    (
+        "light points behind the shading normal of a diffuse vertex",
+        DIFFUSE,
+        "self.n_g.dot(w) > 0.0 && self.n_s.dot(w) > 0.0 && to_b > 0.0",
+        "self.n_g.dot(w) > 0.0 && to_b > 0.0",
+        RUNNING,
+    ),
+]
