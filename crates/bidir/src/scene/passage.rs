@@ -469,3 +469,6 @@ fn by_most(answer: impl Fn(Vec3) -> MediumId) -> MediumId {
     let [a, b] = [RAYS[0], RAYS[1]].map(&answer);
     if a == b || answer(RAYS[2]) == a { a } else { b }
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,130 @@
+//! Collisions are as likely as weights take them to be, and as closed forms say.
+
+use super::*;
+use crate::math::Affine3A;
+use crate::medium::{Coefficients, Grid as Cells, HenyeyGreenstein};
+use crate::sampler::SampleStream;
+use crate::scene::SceneBuilder;
+use crate::shape::{Orientation, Shape, Sphere};
+use crate::spectrum::Rgb;
+use crate::testing::{Battery, Domain, Grid, check_close, samples};
+
+/// How far collisions are counted, from `START` along +z. Unit: m.
+const REACH: f32 = 6.0;
+const START: Vec3 = Vec3::new(0.1, -0.2, -3.0);
+
+const AROUND: [Rgb; 2] = [[0.02, 0.05, 0.0], [0.1, 0.2, 0.4]];
+const INSIDE: [Rgb; 2] = [[0.1, 0.0, 0.3], [1.5, 0.4, 0.1]];
+
+fn coefficients([absorption, scattering]: [Rgb; 2]) -> Coefficients {
+    Coefficients::new(absorption, scattering).expect("coefficients")
+}
+
+fn phase() -> HenyeyGreenstein {
+    HenyeyGreenstein::new(0.3).expect("a mean cosine")
+}
+
+/// A scene in one medium.
+fn filled(medium: Medium) -> (SceneBuilder, MediumId) {
+    let mut builder = SceneBuilder::new();
+    let around = builder.medium(medium);
+    builder.medium_at(START, around);
+    (builder, around)
+}
+
+fn fog() -> (SceneBuilder, MediumId) {
+    filled(Medium::homogeneous(coefficients(AROUND), phase()))
+}
+
+/// Fog around a ball of another.
+fn ball_in_fog() -> Scene {
+    let (mut builder, outside) = fog();
+    let inside = builder.medium(Medium::homogeneous(coefficients(INSIDE), phase()));
+    let ball = Sphere::new(Affine3A::IDENTITY, 1.0, Orientation::Natural);
+    builder.boundary(Shape::Sphere(ball), MediumSides { outside, inside });
+    builder.build().expect("the scene is valid")
+}
+
+/// Smoke in cells of a box around the origin, without a boundary.
+fn smoke() -> Scene {
+    let size = [4, 4, 8];
+    let value = |i: usize| [((i * 7 + i / 16 * 2) % 9) as f32 / 3.0];
+    let place =
+        Affine3A::from_translation(Vec3::splat(-2.0)) * Affine3A::from_scale(Vec3::splat(4.0));
+    let cells = Cells::new(size, (0..128).map(value).collect(), place).expect("a grid");
+    let smoke = Medium::of_density(coefficients(INSIDE), cells, phase()).expect("thin smoke");
+    filled(smoke).0.build().expect("the scene is valid")
+}
+
+/// The place of a collision as a part of `REACH`. None: there is none up to there.
+fn collision(scene: &Scene, stream: &SampleStream) -> Option<Vec3> {
+    let ray = Ray::new(START, Vec3::Z);
+    let chances = Chances::new(stream, 1);
+    let medium = scene.medium_at(START);
+    let Interaction::Medium(locus, _) = scene
+        .advance(&ray, medium, chances, &Wavelengths::default())
+        .interaction
+    else {
+        return None;
+    };
+    let part = (locus.point.z - START.z) / REACH;
+    (part < 1.0).then_some(Vec3::new(part, 0.5, 0.0))
+}
+
+/// The density of collisions `t` from the start, as weights find it. Unit: 1/m.
+fn density(scene: &Scene, t: f32) -> f32 {
+    let medium = MediumSides::all(scene.medium_at(START));
+    let start = Locus::in_space(START).within(medium);
+    let point = START + Vec3::Z * t;
+    let here = scene.medium_at(point);
+    let bounds = scene.medium(here).and_then(Medium::bounds);
+    if bounds.is_some_and(|b| point.clamp(b.min, b.max) != point) {
+        return 0.0;
+    }
+    let end = Locus::in_medium(point, here);
+    let edge = scene.edge(&start, &end, &Wavelengths::default());
+    edge.map_or(0.0, |edge| edge.to_b)
+}
+
+#[test]
+fn collisions_follow_their_density() {
+    let grid = Grid {
+        domain: Domain::Square,
+        columns: 96,
+        rows: 1,
+    };
+    let mut battery = Battery::new("distances in media");
+    let even = fog().0.build().expect("the scene is valid");
+    for (case, scene) in [
+        ("even", even),
+        ("a ball in fog", ball_in_fog()),
+        ("cells", smoke()),
+    ] {
+        let pdf = |p: Vec3| density(&scene, p.x * REACH) * REACH;
+        let draws = samples(case, 1 << 20).map(|stream| collision(&scene, &stream));
+        battery.chi2(case, &grid, pdf, draws);
+    }
+    battery.check();
+}
+
+/// Lanes are drawn evenly: p(t) is the mean of σ_t exp(-τ(t)).
+#[test]
+fn densities_are_those_of_closed_forms() {
+    let scene = ball_in_fog();
+    let half = libm::sqrtf(1.0 - START.truncate().length_squared());
+    let (enter, leave) = (3.0 - half, 3.0 + half);
+    for t in [0.5_f32, 1.9, 2.5, 3.6, 4.5, 5.9] {
+        let within = t.clamp(enter, leave) - enter;
+        let lanes = (0..3).map(|lane| {
+            let [outside, inside] = [AROUND, INSIDE].map(|[a, s]| a[lane] + s[lane]);
+            let here = if t > enter && t < leave {
+                inside
+            } else {
+                outside
+            };
+            here * libm::expf(-outside * (t - within) - inside * within)
+        });
+        let expected = lanes.sum::<f32>() / 3.0;
+        check_close(density(&scene, t), expected, 1e-4, &format!("t = {t}"));
+    }
+}
