@@ -75,8 +75,36 @@ DIFFUSE_ENDS = [
     (
         "light images of diffuse vertices with the counts of longer paths",
         DIFFUSE,
-        "(f64::from(self.others) + sums.per_density_more_for_one())",
-        "(f64::from(self.others) + 0.0 * sums.per_density_more_for_one())",
+        "sums.per_density(1, self.before(vertex))",
+        "sums.per_density(ANY_DEEPER, self.before(vertex))",
+        RUNNING,
+    ),
+    (
+        "light points of lights that no ray can hit, weighed against hits",
+        DIFFUSE,
+        "let hit = start.is_hit * to_light / start.next_event;",
+        "let hit = to_light / start.next_event;",
+        RUNNING,
+    ),
+    (
+        "light points of diffuse vertices with the wrong cosine in a density",
+        DIFFUSE,
+        "f64::from(x0.pdf_leaving(context, -segment.w) * segment.to_a)",
+        "f64::from(x0.pdf_leaving(context, -segment.w) * segment.to_b)",
+        RUNNING,
+    ),
+    (
+        "light images of diffuse vertices with the wrong cosine in a density",
+        DIFFUSE,
+        "f64::from(lens.pdf_leaving(context, -segment.w) * segment.to_a)",
+        "f64::from(lens.pdf_leaving(context, -segment.w) * segment.to_b)",
+        RUNNING,
+    ),
+    (
+        "light points as likely for light subpaths as for next-event estimation",
+        DIFFUSE,
+        "let drawn = start.up() * f64::from(x0",
+        "let drawn = f64::from(x0",
         RUNNING,
     ),
     (

@@ -44,6 +44,13 @@ MEDIA = [
         media("estimators_agree_in_a_room_full_of_fog"),
     ),
     (
+        "every medium on the way passed by the whole depth that was drawn",
+        PASSAGE,
+        "            drawn.depth -= part.drawn[drawn.lane];\n",
+        "            drawn.depth -= 0.0 * part.drawn[drawn.lane];\n",
+        unit("scene::passage"),
+    ),
+    (
         "distances by one lane alone",
         PASSAGE,
         "lane: self.color.pick_lane(u_lane),",

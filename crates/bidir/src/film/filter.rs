@@ -107,10 +107,7 @@ impl Axis {
         let profile = match kind {
             FilterKind::Box => Profile::Box,
             FilterKind::Triangle => Profile::Triangle,
-            FilterKind::Gaussian { sigma } => {
-                let rim = gaussian(radius, sigma);
-                table(&|x| (gaussian(x, sigma) - rim).max(0.0))
-            }
+            FilterKind::Gaussian { sigma } => table(&|x| lowered_gaussian(x, sigma, radius)),
             FilterKind::Mitchell { b, c } => table(&|x| mitchell(2.0 * x / radius, b, c)),
             FilterKind::Sinc { tau } => table(&|x| sinc(x) * sinc(x / tau)),
         };
@@ -205,12 +202,14 @@ struct Table {
 }
 
 impl Table {
-    const INTERVALS: usize = 1024;
+    /// In a pixel, and more where the radius is below `LEAST_RADIUS`.
+    const INTERVALS: usize = 256;
+    const LEAST_RADIUS: f32 = 4.0;
     const INTERVALS_OF_CELL: usize = 4;
 
     /// The table of a symmetrical shape, normalised.
     fn new(radius: f32, shape: &dyn Fn(f32) -> f32) -> Self {
-        let n = Self::INTERVALS;
+        let n = Self::INTERVALS * radius.max(Self::LEAST_RADIUS).ceil() as usize;
         let mut values: Vec<_> = (0..=n)
             .map(|i| shape(i as f32 / n as f32 * radius))
             .collect();
@@ -220,7 +219,7 @@ impl Table {
         for value in &mut values {
             *value = (f64::from(*value) / integral) as f32;
         }
-        // The largest value of its ends and between, so that no part of h has density zero.
+        // The largest |h| of a cell, whose ends are included, so that no part of h has density zero.
         let largest = |cell: &[f32]| cell.iter().fold(0.0, |most: f32, h| most.max(h.abs()));
         let of_cell = |i: usize| largest(&values[i..=i + Self::INTERVALS_OF_CELL]);
         let half = (0..n).step_by(Self::INTERVALS_OF_CELL).map(of_cell);
@@ -231,15 +230,22 @@ impl Table {
     /// h at the part `x` of the radius, from 0 to 1.
     #[inline]
     fn eval(&self, x: f32) -> f32 {
-        let place = x * Self::INTERVALS as f32;
-        let i = (place as usize).min(Self::INTERVALS - 1);
+        let intervals = self.values.len() - 1;
+        let place = x * intervals as f32;
+        let i = (place as usize).min(intervals - 1);
         let [from, to] = [self.values[i], self.values[i + 1]];
         from + (to - from) * (place - i as f32)
     }
 }
 
-fn gaussian(x: f32, sigma: f32) -> f32 {
-    libm::expf(-sqr(x) / (2.0 * sqr(sigma)))
+/// exp(-x² / 2σ²) less its value at the radius. Of a wide one both are nearly 1.
+fn lowered_gaussian(x: f32, sigma: f32, radius: f32) -> f32 {
+    let exponent = |x: f32| {
+        let deviations = f64::from(x) / f64::from(sigma);
+        -0.5 * deviations * deviations
+    };
+    let (here, rim) = (exponent(x), exponent(radius));
+    (-libm::exp(here) * libm::expm1(rim - here)) as f32
 }
 
 /// [Mitchell88, eq. 8] times 6, for x in [0, 2].

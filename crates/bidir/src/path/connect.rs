@@ -40,14 +40,26 @@ impl<'a> JoinedPath<'a> {
     /// The path that connects the ends of two subpaths.
     #[inline]
     pub fn connection(light: &'a [Vertex], camera: &'a [Vertex]) -> Self {
-        Self::new(light, camera, Junction::Connection)
+        let (z, y) = (&light[light.len() - 1], &camera[camera.len() - 1]);
+        Self::new(light, camera, Junction::Connection, z.segment_to(y))
+    }
+
+    /// The same path, where the segment between the ends is known.
+    #[inline]
+    pub(crate) fn connection_by(
+        light: &'a [Vertex],
+        camera: &'a [Vertex],
+        segment: Segment,
+    ) -> Self {
+        Self::new(light, camera, Junction::Connection, segment)
     }
 
     /// The path of a camera walk that went from the last vertex of `camera` to the light at `x0`, which knows the way
     /// back where that goes through media.
     #[inline]
     pub fn hit(x0: &'a Vertex, camera: &'a [Vertex]) -> Self {
-        let mut path = Self::new(std::slice::from_ref(x0), camera, Junction::Hit);
+        let segment = x0.segment_to(&camera[camera.len() - 1]);
+        let mut path = Self::new(std::slice::from_ref(x0), camera, Junction::Hit, segment);
         if x0.to_previous > 0.0 {
             path.segment.to_b = x0.to_previous;
         }
@@ -55,9 +67,13 @@ impl<'a> JoinedPath<'a> {
     }
 
     #[inline]
-    fn new(light: &'a [Vertex], camera: &'a [Vertex], junction: Junction) -> Self {
+    fn new(
+        light: &'a [Vertex],
+        camera: &'a [Vertex],
+        junction: Junction,
+        segment: Segment,
+    ) -> Self {
         let (z, y) = (&light[light.len() - 1], &camera[camera.len() - 1]);
-        let segment = z.segment_to(y);
         Self {
             light,
             camera,

@@ -13,17 +13,19 @@
 //! w = n / (n + r_z k_z + r_y k_y).
 //!
 //! With a light point x_0 that was drawn with density e, or a lens point x, half of that remains: with W its emission
-//! or importance, r the density of the vertex drawn from there, r_0 that of x_0 drawn from the vertex, and k' for a
-//! rest of one vertex,
+//! or importance, r the density of the vertex drawn from there, r_0 that of x_0 drawn from the vertex, a_0 that of x_0
+//! as the start of a light walk, and k' the number k where the rest of the path is one vertex,
 //!
 //! C = (β W)_x (β f)_y (n_s·w)_y cos_g(x) / d²,    w = n / (n + r_0 / e + (a_0 / e) r k),
 //! C = (β W)_x (β f …)_z (n_g·w)_z cos_g(x) / d²,    w = n / (n + r k').
+//!
+//! r_0 / e is absent for a light that no ray can hit; an end at infinity has neither d² nor a cosine.
 //!
 //! [`JoinedPath`](super::JoinedPath) and [`PathSums`](super::PathSums) are the specification, for every kind of
 //! vertex; the two agree but for rounding. No lane depends on the other lanes.
 
 use super::densities::factor;
-use super::running::{EndSums, PathStart};
+use super::running::{ANY_DEEPER, EndSums, PathStart};
 use super::{MisHeuristic, PathContext, Scattering, Segment, Vertex};
 use crate::bsdf::{Bsdf, TransportMode};
 use crate::guide::Cell;
@@ -84,26 +86,35 @@ impl DiffuseEnd {
             Scattering::Surface(Bsdf::Diffuse(bsdf))
                 if is_balance && is_even && is_clear && cos_s * cos_g > 0.0 =>
             {
-                let rho = bsdf.reflectance;
-                let roulette = |albedo: f32| factor(context, usize::MAX, || albedo);
-                let before = cos_s.abs() * INV_PI * vertex.to_previous * roulette(rho.max_lane());
                 let ratio = match mode {
                     TransportMode::Radiance => 1.0,
                     TransportMode::Importance => (cos_s / cos_g).abs(),
                 };
-                Self {
+                let end = Self {
                     point: vertex.locus.point,
-                    others: sums.per_density(before.into()).min(f64::from(f32::MAX)) as f32,
+                    others: 0.0,
                     n_g: vertex.locus.n_g * 1f32.copysign(cos_g),
-                    density: INV_PI * roulette(vertex.albedo_fwd),
+                    density: INV_PI * factor(context, usize::MAX, || vertex.albedo_fwd),
                     n_s: vertex.frame.z * 1f32.copysign(cos_s),
                     cell: vertex.cell,
                     is_diffuse: true,
-                    flux: vertex.beta * (rho * (INV_PI * ratio)),
+                    flux: vertex.beta * (bsdf.reflectance * (INV_PI * ratio)),
+                };
+                let others = sums.per_density(ANY_DEEPER, end.before(vertex));
+                Self {
+                    others: others.min(f64::from(f32::MAX)) as f32,
+                    ..end
                 }
             }
             _ => Self::NONE,
         }
+    }
+
+    /// The density of the vertex before `vertex`, which this is, drawn from its other side: the albedo is that of any
+    /// direction.
+    #[inline]
+    fn before(&self, vertex: &Vertex) -> f64 {
+        f64::from(self.n_s.dot(vertex.wo) * self.density * vertex.to_previous)
     }
 
     /// Itself, if it is one.
@@ -131,8 +142,8 @@ impl DiffuseEnd {
         let cos_s = self.n_s.dot(segment.w);
         let contribution = self.contribution(context, x0, segment, cos_s)?;
         let start = PathStart::new(context, x0, e);
-        // b_0 / e and, but for k, the share of the strategies with more light vertices.
         let to_light = f64::from(self.density * cos_s * segment.to_b);
+        // r_0 / e, and (a_0 / e) r.
         let hit = start.is_hit * to_light / start.next_event;
         let drawn = start.up() * f64::from(x0.pdf_leaving(context, -segment.w) * segment.to_a);
         let n = context.count(1, t, [x0.cell, self.cell]);
@@ -140,25 +151,26 @@ impl DiffuseEnd {
         Some((contribution, (n / (n + others)) as f32))
     }
 
-    /// C and the weight of the light image of this vertex, number `s` of a light subpath with these `sums`:
+    /// C and the weight of the light image of `vertex`, which this is, number `s` of a light subpath with these `sums`:
     /// `segment` leads to the lens point. None: C is zero.
     #[inline]
     pub fn light_image(
         &self,
         context: &PathContext<'_>,
-        s: usize,
-        (lens, sums): (&Vertex, &EndSums),
+        (s, vertex, sums): (usize, &Vertex, &EndSums),
+        lens: &Vertex,
         segment: &Segment,
     ) -> Option<(Spectrum, f32)> {
         let cos_g = self.n_g.dot(segment.w);
         let contribution = self.contribution(context, lens, segment, cos_g)?;
         let drawn = f64::from(lens.pdf_leaving(context, -segment.w) * segment.to_a);
         let n = context.count(s, 1, [self.cell, lens.cell]);
-        let others = drawn * (f64::from(self.others) + sums.per_density_more_for_one());
+        let others = drawn * sums.per_density(1, self.before(vertex));
         Some((contribution, (n / (n + others)) as f32))
     }
 
-    /// C of a connection with the `end` of a path, to which `segment` leads. None: it is zero.
+    /// C of a connection with the `end` of a path, to which `segment` leads, where `cos` is that to n_s at a camera
+    /// vertex, to n_g at a light vertex. None: it is zero.
     #[inline]
     fn contribution(
         &self,

@@ -79,7 +79,7 @@ const FAR: usize = usize::MAX;
 /// s of any strategy that connects with a vertex of a light walk, and t of any behind the first camera vertex:
 /// counts are the same for all of them.
 const ANY_WALKED: usize = 2;
-const ANY_DEEPER: usize = 3;
+pub(super) const ANY_DEEPER: usize = 3;
 
 impl EndSums {
     /// No other strategy.
@@ -99,16 +99,10 @@ impl EndSums {
     }
 
     /// The factor of r in the share of these strategies under the balance heuristic, where the rest of the path is
-    /// longer than one vertex and r' is `before`.
-    pub(super) fn per_density(&self, before: f64) -> f64 {
-        self.shares(ANY_DEEPER, 1.0, before)
-    }
-
-    /// The difference of that factor where the rest of the path is one vertex.
+    /// `others` vertices and r' is `before`.
     #[inline]
-    pub(super) fn per_density_more_for_one(&self) -> f64 {
-        let [one, more] = self.links;
-        self.per_drawn * (one - more)
+    pub(super) fn per_density(&self, others: usize, before: f64) -> f64 {
+        self.shares(others, 1.0, before)
     }
 }
 

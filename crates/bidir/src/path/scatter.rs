@@ -142,7 +142,7 @@ impl<'a> Turn<'a> {
 }
 
 impl Vertex {
-    /// The emission or importance of the first vertex of a walk along `w`; zero of others.
+    /// The emission or importance of the first vertex of a walk along `w`; zero for other vertices.
     #[inline]
     pub(super) fn leaving(&self, context: &PathContext<'_>, w: Vec3) -> Spectrum {
         match (&self.scattering, self.light) {

@@ -1,23 +1,23 @@
 use super::*;
 
-fn examples() -> Vec<Filter> {
+fn examples() -> Vec<(FilterKind, Filter)> {
     [
         (FilterKind::Box, 0.5),
         (FilterKind::Box, 1.3),
         (FilterKind::Triangle, 2.0),
         (FilterKind::Gaussian { sigma: 0.5 }, 1.5),
-        (
-            FilterKind::Mitchell {
-                b: 1.0 / 3.0,
-                c: 1.0 / 3.0,
-            },
-            2.0,
-        ),
+        (FilterKind::Gaussian { sigma: 100.0 }, 1e-3),
+        (MITCHELL, 2.0),
         (FilterKind::Sinc { tau: 3.0 }, 4.0),
     ]
-    .map(|(kind, radius)| Filter::new(kind, Vec2::new(radius, radius * 0.8)))
+    .map(|(kind, radius)| (kind, Filter::new(kind, Vec2::new(radius, radius * 0.8))))
     .into()
 }
+
+const MITCHELL: FilterKind = FilterKind::Mitchell {
+    b: 1.0 / 3.0,
+    c: 1.0 / 3.0,
+};
 
 /// ∫ g(x) h(x) dx over both axes for the test function g.
 fn integral(filter: &Filter, g: impl Fn(Vec2) -> f64) -> f64 {
@@ -38,32 +38,54 @@ fn test_function(p: Vec2) -> f64 {
 
 #[test]
 fn filters_are_normalised() {
-    for filter in examples() {
-        assert!(
-            (integral(&filter, |_| 1.0) - 1.0).abs() < 2e-3,
-            "{filter:?}"
-        );
+    for (kind, filter) in examples() {
+        let integral = integral(&filter, |_| 1.0);
+        assert!((integral - 1.0).abs() < 2e-3, "{kind:?}: {integral}");
     }
 }
 
-#[test]
-fn a_table_follows_its_formula() {
-    let (sigma, radius) = (0.5, 1.5);
-    let axis = Axis::new(FilterKind::Gaussian { sigma }, radius);
-    let formula = |x: f32| gaussian(x, sigma) - gaussian(radius, sigma);
-    // ∫ exp(-x² / 2σ²) is √(2π) σ erf(r / √2 σ).
-    let integral = 2.506_628_3 * sigma * 0.997_300_2 - 2.0 * radius * gaussian(radius, sigma);
-    for i in 0..=10_000 {
-        let x = i as f32 / 10_000.0 * radius;
-        let error = (axis.eval(x) - formula(x) / integral).abs();
-        assert!(error < 3e-6, "{x}: {error}");
+/// Checks h along an axis against its `shape` over [-r, r], which is not normalised.
+#[track_caller]
+fn check_formula(kind: FilterKind, radius: f32, shape: impl Fn(f64) -> f64) {
+    let axis = Axis::new(kind, radius);
+    let n = 100_000;
+    let place = |i: usize| (i as f64 + 0.5) / n as f64 * f64::from(radius);
+    let sum: f64 = (0..n).map(|i| shape(place(i))).sum();
+    let integral = 2.0 * f64::from(radius) * sum / n as f64;
+    for x in (0..n).step_by(7).map(place) {
+        let expected = shape(x) / integral;
+        let error = f64::from(axis.eval(x as f32)) - expected;
+        let peak = shape(0.0) / integral;
+        assert!(error.abs() < 1e-5 * peak, "{kind:?} at {x}: {error}");
     }
     assert!(axis.eval(radius * 1.001) < f32::MIN_POSITIVE);
 }
 
 #[test]
+fn tables_follow_their_formulas() {
+    let bell = |x: f64| libm::exp(-2.0 * x * x);
+    let gaussian = FilterKind::Gaussian { sigma: 0.5 };
+    check_formula(gaussian, 1.5, |x| bell(x) - bell(1.5));
+    // So wide a bell is a parabola.
+    let wide = FilterKind::Gaussian { sigma: 100.0 };
+    check_formula(wide, 0.5, |x| 0.25 - x * x);
+    // Both pieces for B = C = 1/3, radius 2.
+    check_formula(MITCHELL, 2.0, |x| {
+        if x < 1.0 {
+            (7.0 * x - 12.0) * x * x + 16.0 / 3.0
+        } else {
+            ((-7.0 / 3.0 * x + 12.0) * x - 20.0) * x + 32.0 / 3.0
+        }
+    });
+    let sinc = |x: f64| libm::sin(x) / x;
+    let pi = std::f64::consts::PI;
+    let windowed = |x: f64| sinc(pi * x.max(1e-9)) * sinc(pi * x.max(1e-9) / 3.0);
+    check_formula(FilterKind::Sinc { tau: 3.0 }, 4.0, windowed);
+}
+
+#[test]
 fn drawn_offsets_reproduce_the_filter() {
-    for filter in examples() {
+    for (kind, filter) in examples() {
         // At sign changes of h, a grid of numbers errs by 1/n.
         let n = 2048;
         let mut sum = 0.0;
@@ -75,7 +97,7 @@ fn drawn_offsets_reproduce_the_filter() {
         let (mean, expected) = (sum / f64::from(n * n), integral(&filter, test_function));
         assert!(
             (mean - expected).abs() < 5e-3,
-            "{filter:?}: {mean} {expected}"
+            "{kind:?}: {mean} {expected}"
         );
     }
 }
@@ -83,10 +105,10 @@ fn drawn_offsets_reproduce_the_filter() {
 #[test]
 fn picked_pixels_reproduce_the_filter() {
     let g = |x: f32| f64::from(1.0 + x + 0.3 * x * x);
-    for axis in examples()
+    let axes = examples()
         .into_iter()
-        .flat_map(|filter| [filter.x, filter.y])
-    {
+        .flat_map(|(kind, Filter { x, y })| [(kind, x), (kind, y)]);
+    for (kind, axis) in axes {
         let (raster, n) = (10.3f32, 100_000);
         let mut mean = 0.0;
         for i in 0..n {
@@ -99,7 +121,7 @@ fn picked_pixels_reproduce_the_filter() {
         let expected: f64 = offsets.map(|x| f64::from(axis.eval(x)) * g(x)).sum();
         assert!(
             (mean - expected).abs() < 1e-3,
-            "{axis:?}: {mean} {expected}"
+            "{kind:?}: {mean} {expected}"
         );
     }
 }

@@ -10,7 +10,7 @@ use crate::film::SplatPlace;
 use crate::locus::Locus;
 use crate::math::Vec2;
 use crate::path::{
-    DiffuseEnd, EndSums, Job, JoinedPath, PathContext, PathSums, Scattering, Segment, Vertex,
+    EndSums, Job, JoinedPath, PathContext, PathSums, RunningSums, Scattering, Segment, Vertex,
     Weights,
 };
 use crate::sampler::{Dimension, Purpose};
@@ -52,14 +52,11 @@ pub(in super::super) fn light_image(job: &Job<'_>, batch: &mut Batch, weighting:
             let Some(image) = LightImage::new(&context, &walk.vertices[..s], &lens) else {
                 continue;
             };
-            let z = walk.first + s - 1;
-            let found = if let Some(end) = light_sums.diffuse(z) {
-                image.of_diffuse(&context, end, light_sums.at(z))
-            } else {
-                let weights = (weighting == Weighting::Combined).then_some(&mut *weights);
-                image.of_any(&context, weights, light_sums.at(z))
+            let sums = match weighting {
+                Weighting::Alone => None,
+                Weighting::Combined => Some((&*light_sums, walk.first + s - 1)),
             };
-            if let Some((term, passage)) = found {
+            if let Some((term, passage)) = image.weighted_term(&context, sums, weights) {
                 let link = image.link(&context, sample);
                 let entry = enter(splats, stats, (number, sample), term, link);
                 passage.settle(entry, stats);
@@ -117,49 +114,54 @@ impl<'a> LightImage<'a> {
         })
     }
 
-    /// Its term where its vertex is `z`, diffuse, with these sums. None: it is zero.
-    fn of_diffuse(
+    /// Its term, and the media on its way, where its vertex has this number in the sums; of weight 1 without sums.
+    /// None: it is zero.
+    #[inline]
+    fn weighted_term(
         &self,
         context: &PathContext<'_>,
-        z: &DiffuseEnd,
-        sums: &EndSums,
+        sums: Option<(&RunningSums, usize)>,
+        weights: &mut Weights,
     ) -> Option<(Term, ShadowPassage)> {
-        let s = self.light.len();
-        let found = z.light_image(context, s, (self.lens, sums), &self.segment);
-        let (contribution, weight) = found?;
-        let term = self.term(context, contribution, weight)?;
-        Some((term, ShadowPassage::Clear))
+        let Some((sums, z)) = sums else {
+            return self.of_any(context, |_| 1.0);
+        };
+        let light = sums.at(z);
+        if let Some(end) = sums.diffuse(z) {
+            let of_walk = (self.light.len(), self.end(), light);
+            let found = end.light_image(context, of_walk, self.lens, &self.segment);
+            let (contribution, weight) = found?;
+            let term = self.term(context, contribution, weight)?;
+            return Some((term, ShadowPassage::Clear));
+        }
+        let sums = PathSums {
+            light,
+            camera: &EndSums::NONE,
+            next_event: None,
+        };
+        self.of_any(context, |path| weights.weight(context, path, &sums))
     }
 
-    /// Its term, whatever its vertex is, and the media on its way; of weight 1 without `weights`. None: it is zero.
+    /// The same for any vertex and any weight, which is not asked for where nothing arrives.
     fn of_any(
         &self,
         context: &PathContext<'_>,
-        weights: Option<&mut Weights>,
-        sums: &EndSums,
+        weight: impl FnOnce(&JoinedPath<'_>) -> f32,
     ) -> Option<(Term, ShadowPassage)> {
-        let mut path = JoinedPath::connection(self.light, std::slice::from_ref(self.lens));
-        let term = self.term(context, path.contribution(context), 1.0)?;
+        let lens = std::slice::from_ref(self.lens);
+        let mut path = JoinedPath::connection_by(self.light, lens, self.segment);
+        let mut term = self.term(context, path.contribution(context), 0.0)?;
         let passage = ShadowPassage::between(context, || self.ends(context));
         if let Some(edge) = passage.edge() {
             path.pass(edge);
         }
-        let weight = match weights {
-            None => 1.0,
-            Some(_) if passage.is_blocked() => 0.0,
-            Some(weights) => {
-                let sums = PathSums {
-                    light: sums,
-                    camera: &EndSums::NONE,
-                    next_event: None,
-                };
-                weights.weight(context, &path, &sums)
-            }
-        };
-        Some((Term { weight, ..term }, passage))
+        if !passage.is_blocked() {
+            term.weight = weight(&path);
+        }
+        Some((term, passage))
     }
 
-    /// The term of C, of which a pass has so many light subpaths. None: it is zero.
+    /// The term with contribution `c`, scaled to the number of light subpaths in a pass. None: it is zero.
     fn term(&self, context: &PathContext<'_>, c: Spectrum, weight: f32) -> Option<Term> {
         let share =
             context.job.view.film().light_paths() as f64 / context.job.counts.light_subpaths;
@@ -172,12 +174,18 @@ impl<'a> LightImage<'a> {
         })
     }
 
+    /// The light vertex.
+    fn end(&self) -> &'a Vertex {
+        &self.light[self.light.len() - 1]
+    }
+
     /// The ends of its shadow ray.
     fn ends(&self, context: &PathContext<'_>) -> [Locus; 2] {
-        let end = &self.light[self.light.len() - 1];
+        let end = self.end();
         [end.locus, camera_end(context, self.lens, end)]
     }
 
+    /// The link to the film, with the ends of its shadow ray.
     fn link(&self, context: &PathContext<'_>, sample: &Sample) -> Link {
         let at = Dimension::at(self.light.len(), Purpose::LightImagePixel);
         let place = SplatPlace {

@@ -47,7 +47,7 @@ pub(in super::super) fn next_events(job: &Job<'_>, batch: &mut Batch, counts: Ca
 }
 
 /// Adds light point number `k` of `count` for `y`, camera vertex number `t`, which counts 1 / `count`; returns it with
-/// its density.
+/// its density. None: there is no light point.
 fn add_point(
     light: &mut Subpaths,
     context: &PathContext<'_>,

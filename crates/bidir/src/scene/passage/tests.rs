@@ -36,7 +36,7 @@ fn fog() -> (SceneBuilder, MediumId) {
     filled(Medium::homogeneous(coefficients(AROUND), phase()))
 }
 
-/// Fog around a ball of another.
+/// Fog around a ball of another medium.
 fn ball_in_fog() -> Scene {
     let (mut builder, outside) = fog();
     let inside = builder.medium(Medium::homogeneous(coefficients(INSIDE), phase()));
