@@ -132,6 +132,7 @@ impl<'a> LightImage<'a> {
             let found = end.light_image(context, of_walk, self.lens, &self.segment);
             let (contribution, weight) = found?;
             let term = self.term(context, contribution, weight)?;
+            // Diffuse ends are those whose rays go through no medium.
             return Some((term, ShadowPassage::Clear));
         }
         let sums = PathSums {
