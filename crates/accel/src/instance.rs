@@ -5,7 +5,7 @@
 //! With `M` the map to the object's space, the local ray is
 //!
 //! ```text
-//!     o' = M(o + t₀·d),   d' = M d   (no translation),   t = t₀ + t'
+//!     d' = M d   (no translation),   o' = M o + t₀·d',   t = t₀ + t'
 //! ```
 //!
 //! `t₀ ≥ 0` is where the ray enters a ball around the instance, 0 if it starts inside. It is what a
@@ -23,7 +23,7 @@
 //! local line hits is in a box that the world ray meets.
 //!
 //! **Limits.** `t` is rounded once, from `t₀ + t'`. The local limits are those of the world less `t₀`,
-//! rounded outward by one unit before and after, so that nothing is culled that would tie.
+//! moved outward by `4ε` of themselves, so that nothing is culled that would tie.
 
 use glam::{DAffine3, DVec3};
 
@@ -105,39 +105,54 @@ impl Placement {
         &self.object_from_world
     }
 
-    /// The `t₀` at which the ray, already cleaned, enters the ball.
-    #[inline(always)]
-    fn entry(&self, ray: &Ray) -> f64 {
-        let direction = ray.direction.as_dvec3();
-        let to_center = self.center - ray.origin.as_dvec3();
-        let square = direction.length_squared();
-        let entry =
-            to_center.dot(direction) / square - 1.001 * f64::from(self.radius) / square.sqrt();
-        entry.max(0.0)
-    }
-
     /// The ray in the object's space, with how it is seen from the world. `instance` is the number
     /// that hits get.
     #[inline(always)]
-    pub(crate) fn view(&self, ray: &Ray, instance: u32) -> (Ray, Object) {
-        let start = self.entry(ray);
-        let origin = ray.origin.as_dvec3() + start * ray.direction.as_dvec3();
-        let object = Object {
-            instance,
-            start,
-            t_min: ray.t_min,
-            t_max: ray.t_max,
-        };
+    pub(crate) fn view(&self, ray: &Ray, approach: &Approach, instance: u32) -> (Ray, Object) {
+        let start = approach.entry(self);
+        let object = Object::new(instance, start, ray);
+        let origin = self.object_from_world.transform_point3(approach.origin);
+        let direction = self.object_from_world.transform_vector3(approach.direction);
         let local = Ray {
-            origin: self.object_from_world.transform_point3(origin).as_vec3(),
-            direction: self
-                .object_from_world
-                .transform_vector3(ray.direction.as_dvec3())
-                .as_vec3(),
-            t_min: ((f64::from(ray.t_min.next_down()) - start) as f32).next_down(),
+            origin: (origin + start * direction).as_vec3(),
+            direction: direction.as_vec3(),
+            t_min: moved(ray.t_min, start, -OUTWARD),
             t_max: object.local_t_max(),
         };
         (local, object)
+    }
+}
+
+/// A ray of the world in the form that instances need, each of them the same.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Approach {
+    origin: DVec3,
+    direction: DVec3,
+    /// `d / |d|²`.
+    along: DVec3,
+    /// `1.001 / |d|`.
+    slowness: f64,
+}
+
+impl Approach {
+    /// Of a ray that is already cleaned.
+    #[inline(always)]
+    pub(crate) fn new(ray: &Ray) -> Self {
+        let direction = ray.direction.as_dvec3();
+        let inverse2 = 1.0 / direction.length_squared();
+        Self {
+            origin: ray.origin.as_dvec3(),
+            direction,
+            along: direction * inverse2,
+            slowness: 1.001 * inverse2.sqrt(),
+        }
+    }
+
+    /// The `t₀` at which the ray enters the ball.
+    #[inline(always)]
+    fn entry(&self, placement: &Placement) -> f64 {
+        let nearest = (placement.center - self.origin).dot(self.along);
+        (nearest - self.slowness * f64::from(placement.radius)).max(0.0)
     }
 }
 
@@ -199,22 +214,45 @@ pub(crate) struct Object {
     /// The limits in the world.
     t_min: f32,
     pub(crate) t_max: f32,
+    /// Limits of local hits that are certainly within those of the ray as it came.
+    sure: [f32; 2],
+}
+
+/// By how much limits are moved outward, of themselves.
+const OUTWARD: f64 = 2.0 * f32::EPSILON as f64;
+
+/// The limit `world` less `t₀`, moved by `outward` of itself.
+#[inline(always)]
+fn moved(world: f32, start: f64, outward: f64) -> f32 {
+    let world = f64::from(world);
+    let least = f64::from(f32::MIN_POSITIVE).copysign(outward);
+    (world - start + (world * outward + least)) as f32
 }
 
 impl Object {
+    #[inline(always)]
+    fn new(instance: u32, start: f64, ray: &Ray) -> Self {
+        let inward = |t: f32| 8.0 * f32::EPSILON * t.abs() + f32::MIN_POSITIVE;
+        let [first, last] = [ray.t_min, ray.t_max].map(|t| (f64::from(t) - start) as f32);
+        Self {
+            instance,
+            start,
+            t_min: ray.t_min,
+            t_max: ray.t_max,
+            sure: [first + inward(first), last - inward(last)],
+        }
+    }
+
+    #[inline(always)]
     fn local_t_max(&self) -> f32 {
-        let world = f64::from(self.t_max.next_up());
-        ((world - self.start) as f32).next_up().min(f32::MAX)
+        moved(self.t_max, self.start, OUTWARD).min(f32::MAX)
     }
 }
 
 impl Space for Object {
     #[inline(always)]
     fn sure_limits(&self, _: &Ray) -> [f32; 2] {
-        let local = |world: f32| (f64::from(world) - self.start) as f32;
-        let inward = |t: f32| 8.0 * f32::EPSILON * t.abs() + f32::MIN_POSITIVE;
-        let (first, last) = (local(self.t_min), local(self.t_max));
-        [first + inward(first), last - inward(last)]
+        self.sure
     }
 
     #[inline(always)]

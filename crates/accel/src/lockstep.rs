@@ -14,7 +14,7 @@ use std::ops::ControlFlow;
 use crate::builder::{MAX_DEPTH, Tree};
 use crate::bvh::Bvh;
 use crate::child::{Child, Target};
-use crate::instance::World;
+use crate::instance::{Approach, World};
 use crate::node::{BoxRay, WIDTH, widen};
 use crate::query::Anything;
 use crate::ray::Ray;
@@ -168,6 +168,7 @@ impl ActiveRay {
                 let visit = VisitInstance {
                     bvh,
                     index,
+                    approach: &Approach::new(&ray),
                     ray,
                     query: &mut query,
                 };

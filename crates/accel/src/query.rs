@@ -6,9 +6,6 @@ use crate::ray::Hit;
 
 /// A question about the hits of a ray.
 pub(crate) trait Query {
-    /// True if children are visited from near to far.
-    const NEAR_FIRST: bool;
-
     /// True if any hit answers it.
     const ANYTHING: bool = false;
 
@@ -29,8 +26,6 @@ impl<F> ClosestHit<F> {
 }
 
 impl<F: Fn(&Hit) -> bool> Query for ClosestHit<F> {
-    const NEAR_FIRST: bool = true;
-
     #[inline(always)]
     fn offer(&mut self, hit: Hit, t_max: &mut f32) -> ControlFlow<()> {
         if self.best.is_none_or(|best| hit.is_before(&best)) && (self.accept)(&hit) {
@@ -57,8 +52,6 @@ impl<F> AnyHit<F> {
 }
 
 impl<F: Fn(&Hit) -> bool> Query for AnyHit<F> {
-    const NEAR_FIRST: bool = false;
-
     #[inline(always)]
     fn offer(&mut self, hit: Hit, _: &mut f32) -> ControlFlow<()> {
         self.found = (self.accept)(&hit);
@@ -76,7 +69,6 @@ pub(crate) struct Anything {
 }
 
 impl Query for Anything {
-    const NEAR_FIRST: bool = false;
     const ANYTHING: bool = true;
 
     #[inline(always)]
@@ -102,8 +94,6 @@ impl<F> EachHit<F> {
 }
 
 impl<F: FnMut(&Hit) -> ControlFlow<()>> Query for EachHit<F> {
-    const NEAR_FIRST: bool = false;
-
     #[inline(always)]
     fn offer(&mut self, hit: Hit, _: &mut f32) -> ControlFlow<()> {
         self.flow = (self.found)(&hit);

@@ -5,7 +5,6 @@ use std::mem::MaybeUninit;
 use crate::builder::{MAX_DEPTH, Tree};
 use crate::child::Child;
 use crate::node::{BoxLanes, Node, WIDTH};
-use crate::query::Query;
 use crate::simd::Simd;
 
 /// Entries on the stack of a tree at most: of every node on the way all children but the one visited,
@@ -56,7 +55,7 @@ impl Stack {
     /// Finds the children of `node` that the ray meets up to `limit`; returns the one to visit next and
     /// pushes the others.
     #[inline(always)]
-    pub(crate) fn open<S: Simd, Q: Query>(
+    pub(crate) fn open<S: Simd>(
         &mut self,
         tree: &Tree,
         node: &Node,
@@ -72,15 +71,6 @@ impl Stack {
         };
         let entries = node.entries(distances);
         let (first, second) = (entries[first % WIDTH], entries[second % WIDTH]);
-        if !Q::NEAR_FIRST {
-            self.push_ahead(tree, first);
-            let mut last = second;
-            for slot in slots {
-                self.push_ahead(tree, last);
-                last = entries[slot % WIDTH];
-            }
-            return Some(child(last));
-        }
         let bottom = self.len;
         self.push_ahead(tree, first.max(second));
         let mut last = first.min(second);
@@ -114,13 +104,12 @@ impl Stack {
 
     /// The last child that is entered at `limit` or before; drops those after it.
     #[inline(always)]
-    pub(crate) fn pop<Q: Query>(&mut self, limit: f32) -> Option<Child> {
+    pub(crate) fn pop(&mut self, limit: f32) -> Option<Child> {
         let limit = u64::from(limit.to_bits()) << 32 | u64::from(u32::MAX);
         while self.len > 0 {
             let entry = self.get(self.len - 1);
             self.len -= 1;
-            // Without an order no hit shortens the ray.
-            if !Q::NEAR_FIRST || entry <= limit {
+            if entry <= limit {
                 return Some(child(entry));
             }
         }

@@ -7,7 +7,7 @@ use glam::Vec3;
 use crate::builder::Tree;
 use crate::bvh::Bvh;
 use crate::child::{Child, Target};
-use crate::instance::{Space, World};
+use crate::instance::{Approach, Space, World};
 use crate::node::{BoxRay, widen};
 use crate::quadric::Quadric;
 use crate::query::Query;
@@ -36,11 +36,13 @@ impl<Q: Query> Kernel for Ask<'_, Q> {
                 space: World,
                 ray,
             };
+            let mut approach = None;
             // A query that breaks off has nothing more to ask.
             let _ = walk.run::<S, Q>(query, |_, index, ray, query| {
                 let visit = VisitInstance {
                     bvh,
                     index,
+                    approach: approach.get_or_insert_with(|| Approach::new(&ray)),
                     ray,
                     query,
                 };
@@ -57,6 +59,7 @@ pub(crate) struct VisitInstance<'a, Q> {
     pub(crate) bvh: &'a Bvh,
     pub(crate) index: usize,
     pub(crate) ray: Ray,
+    pub(crate) approach: &'a Approach,
     pub(crate) query: &'a mut Q,
 }
 
@@ -66,7 +69,7 @@ impl<Q: Query> Kernel for VisitInstance<'_, Q> {
     #[inline(always)]
     fn run<S: Simd>(self) -> Self::Output {
         let placement = &self.bvh.placements[self.index];
-        let (local, space) = placement.view(&self.ray, self.index as u32 + 1);
+        let (local, space) = placement.view(&self.ray, self.approach, self.index as u32 + 1);
         let Some(local) = clean(&local) else {
             return ControlFlow::Continue(self.ray.t_max);
         };
@@ -108,7 +111,7 @@ impl<P: Space> Walk<'_, P> {
         let mut child = Child::node(0);
         loop {
             if let Some(index) = child.as_node() {
-                if let Some(next) = stack.open::<S, Q>(tree, tree.node(index), &box_ray, limit) {
+                if let Some(next) = stack.open::<S>(tree, tree.node(index), &box_ray, limit) {
                     child = next;
                     continue;
                 }
@@ -128,7 +131,7 @@ impl<P: Space> Walk<'_, P> {
                 }
                 limit = widen(ray.t_max);
             }
-            match stack.pop::<Q>(limit) {
+            match stack.pop(limit) {
                 Some(next) => child = next,
                 None => return ControlFlow::Continue(()),
             }

@@ -17,9 +17,16 @@
 //! err by less than `2.5·2⁻⁵²·6(X + M)² < ε²(X + M)²`: their signs need no second look, and the exact test
 //! computes what it would have computed.
 //!
-//! A triangle is also discarded if `t` is certainly outside the limits: it lies between the vertices'
-//! `p_z/d_z`. These are computed with two roundings, and what `f64` loses in the exact test when they
-//! differ in sign is less; both are small against `8ε` of the largest.
+//! A triangle is also discarded if `t` is certainly outside the limits. If the line passes, `t` is the mean of the
+//! vertices' `t_i = p_z/d_z`, weighted by the magnitudes `w_i` of the edge functions opposite to them. With `B` the bound
+//! above, the computed mean errs by
+//!
+//! ```text
+//!     Σ e_i (t_i - t) / Σ w_i + Σ w_i f_i / Σ w_i,    |e_i| ≤ B,  |f_i| ≤ f = 8ε·(|min t_i| + |max t_i|),
+//! ```
+//!
+//! at most `3B·(max t_i - min t_i) / Σ w_i + f`: `t_i` are computed with two roundings. Half a `B` and another `f` exceed
+//! what the sums and products lose, and what `f64` loses in the exact test when the `t_i` differ in sign.
 //!
 //! [Woop13]: https://jcgt.org/published/0002/01/05/
 
@@ -148,11 +155,11 @@ impl TriangleBlock {
         if passed == 0 {
             return Candidates::NONE;
         }
-        let (beyond, within) = ray.compare(limits, sure, [a[2], b[2], c[2]]);
+        let passage = ray.passage([a[2], b[2], c[2]], [bc, ca, ab], bound);
         Candidates {
-            possible: passed & !beyond,
+            possible: passed & !passage.outside([limits.t_min, limits.t_max]),
             certain: bound.lt(low) | high.lt(minus_bound),
-            within,
+            within: passage.within(sure),
         }
     }
 
@@ -253,19 +260,43 @@ pub(crate) struct TriangleLanes<V> {
 }
 
 impl<V: F32x4> TriangleLanes<V> {
-    /// Masks of the lanes whose triangles, with vertices at these depths, the line passes at a `t`
-    /// certainly outside the limits, and certainly within those that are sure.
+    /// Of vertices at `depths`, by the edge functions opposite to them, whose error is at most `bound`.
     #[inline(always)]
-    fn compare(&self, limits: &Ray, sure: [f32; 2], depths: [V; 3]) -> (u32, u32) {
-        let [a, b, c] = depths;
-        let [a, b, c] = [a * self.per_depth, b * self.per_depth, c * self.per_depth];
-        let (low, high) = (a.min(b).min(c), a.max(b).max(c));
+    fn passage(&self, depths: [V; 3], edges: [V; 3], bound: V) -> PassageLanes<V> {
+        let [a, b, c] = edges.map(F32x4::abs);
+        let [p, q, r] = depths.map(|depth| depth * self.per_depth);
+        let (low, high) = (p.min(q).min(r), p.max(q).max(r));
         let slack = (low.abs() + high.abs())
-            .mul_add(V::splat(4.0 * f32::EPSILON), V::splat(f32::MIN_POSITIVE));
-        let (t_min, t_max) = (V::splat(limits.t_min), V::splat(limits.t_max));
-        let beyond = (high + slack).lt(t_min) | t_max.lt(low - slack);
-        let [first, last] = sure.map(V::splat);
-        let within = first.le(low - slack) & (high + slack).le(last);
-        (beyond, within)
+            .mul_add(V::splat(8.0 * f32::EPSILON), V::splat(f32::MIN_POSITIVE));
+        let sum = a + b + c;
+        let error = (bound * (high - low)).mul_add(V::splat(3.5), V::splat(f32::MIN_POSITIVE));
+        PassageLanes {
+            sum,
+            t: a.mul_add(p, b.mul_add(q, c * r)),
+            error: sum.mul_add(slack, error),
+        }
+    }
+}
+
+/// The `t` at which a line passes triangles, if it passes them, with its error. Both are times `sum`.
+struct PassageLanes<V> {
+    sum: V,
+    t: V,
+    error: V,
+}
+
+impl<V: F32x4> PassageLanes<V> {
+    /// The mask of the lanes certainly outside the limits.
+    #[inline(always)]
+    fn outside(&self, limits: [f32; 2]) -> u32 {
+        let [t_min, t_max] = limits.map(|t| V::splat(t) * self.sum);
+        (self.t + self.error).lt(t_min) | t_max.lt(self.t - self.error)
+    }
+
+    /// The mask of the lanes certainly within the limits.
+    #[inline(always)]
+    fn within(&self, limits: [f32; 2]) -> u32 {
+        let [t_min, t_max] = limits.map(|t| V::splat(t) * self.sum);
+        t_min.le(self.t - self.error) & (self.t + self.error).le(t_max)
     }
 }

@@ -59,11 +59,11 @@ fn maps_without_inverse_are_refused() {
 fn local_rays_begin_at_the_ball() {
     let (placement, _) = place(DAffine3::from_scale(DVec3::splat(2.0))).expect("a scale");
     let near = Ray::new(Vec3::ZERO, Vec3::X);
-    let (local, object) = placement.view(&near, 1);
+    let (local, object) = placement.view(&near, &Approach::new(&near), 1);
     assert!(object.start <= 0.0 && local.t_min <= 0.0);
     assert_eq!((local.origin, local.direction), (Vec3::ZERO, Vec3::X / 2.0));
     let far = Ray::new(Vec3::X * -1e6, Vec3::X);
-    let (local, object) = placement.view(&far, 1);
+    let (local, object) = placement.view(&far, &Approach::new(&far), 1);
     assert!((object.start - 1e6 + 2.0 * 3.0_f64.sqrt()).abs() < 0.1);
     let hit = Hit {
         t: -2.0 * local.origin.x,
@@ -90,7 +90,7 @@ fn vector(state: &mut u64) -> DVec3 {
 
 /// The answer without the box in the world that might cull it.
 fn unculled(bvh: &Bvh, ray: &Ray) -> Option<f32> {
-    let (local, space) = bvh.placements[0].view(ray, 1);
+    let (local, space) = bvh.placements[0].view(ray, &Approach::new(ray), 1);
     let hit = bvh.objects[0].closest(&local, accept_all)?;
     space.world_hit(hit).map(|hit| hit.t)
 }

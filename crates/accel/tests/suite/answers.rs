@@ -136,6 +136,45 @@ fn limits_include_their_ends() {
 }
 
 #[test]
+fn hits_at_the_limits_are_found_and_none_beyond() {
+    let mut random = Random(17);
+    let mut hits = 0;
+    for round in 0..40_000 {
+        let scale = ((round % 61) as f32 - 30.0).exp2();
+        // Some far from the origin, some flat, some that rays begin on.
+        let middle = [0.0, 1.0, 100.0][round % 3] * random.cube();
+        let flat = [1.0, 1e-4][round % 2];
+        let corner =
+            |random: &mut Random| (middle + random.cube() * Vec3::new(1.0, 1.0, flat)) * scale;
+        let triangle = [(); 3].map(|()| corner(&mut random));
+        let bvh = build(&[Primitive::Triangle(triangle)]);
+        let [a, b, c] = triangle;
+        let [u, v] = [random.unit(), random.unit()];
+        let on = a + (b - a) * u + (c - a) * (v * (1.0 - u));
+        let away = [1e-6, 1e-3, 1.0][round / 6 % 3] * scale;
+        let ray = Ray::new(on + random.cube() * away, random.ball());
+        let Some(hit) = bvh.closest(&ray, accept_all) else {
+            continue;
+        };
+        hits += 1;
+        let is_hit = |t_min, t_max| {
+            let limited = Ray {
+                t_min,
+                t_max,
+                ..ray
+            };
+            let found = bvh.closest(&limited, accept_all).is_some();
+            assert_eq!(bvh.is_hit(&limited), found);
+            found
+        };
+        assert!(is_hit(hit.t, f32::INFINITY) && is_hit(0.0, hit.t) && is_hit(hit.t, hit.t));
+        assert!(!is_hit(hit.t.next_up(), f32::INFINITY));
+        assert!(hit.t <= 0.0 || !is_hit(0.0, hit.t.next_down()));
+    }
+    assert!(hits > 5000, "{hits}");
+}
+
+#[test]
 fn t_is_in_units_of_the_direction() {
     let triangle = [
         Vec3::new(-1.0, -1.0, 2.0),
