@@ -34,6 +34,9 @@ pub(crate) const MAX_PRIMITIVES: usize = Child::MAX_ELEMENTS;
 /// Groups smaller than this are built by one thread.
 const PARALLEL_MIN: usize = 4096;
 
+/// Levels of the tree down to the boxes of [`Tree::outline`].
+const OUTLINE_LEVELS: usize = 3;
+
 /// Why building panics where [`Primitives`] break their promise.
 const CHANGED: &str = "a primitive is the same each time";
 
@@ -109,6 +112,19 @@ impl Tree {
         // SAFETY: all children are made by the builder, where they and what they point to are appended
         // together; `validate` checks it.
         unsafe { self.nodes.get_unchecked(index) }
+    }
+
+    /// Boxes that together contain all that the tree has: those of its third level.
+    pub(crate) fn outline(&self) -> Vec<Aabb> {
+        let mut boxes = vec![(self.bounds, Child::node(0))];
+        for _ in 0..OUTLINE_LEVELS {
+            let below = |(bounds, child): (Aabb, Child)| {
+                let node = child.as_node().and_then(|index| self.nodes.get(index));
+                node.map_or(vec![(bounds, child)], Node::boxes)
+            };
+            boxes = boxes.into_iter().flat_map(below).collect();
+        }
+        boxes.into_iter().map(|(bounds, _)| bounds).collect()
     }
 
     /// Begins to load what `child` leads to: it will be visited soon.

@@ -4,6 +4,7 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use glam::{DAffine3, Vec3};
+use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
 
 use crate::aabb::Aabb;
 use crate::builder::{MAX_PRIMITIVES, Tree};
@@ -234,29 +235,31 @@ fn place(
     objects: &[Arc<Bvh>],
     instances: &[Instance],
 ) -> Result<(Vec<Placement>, Vec<Aabb>), BuildError> {
+    let outlines: Vec<_> = objects.iter().map(|object| object.tree.outline()).collect();
     let place = |instance: &Instance| {
-        let object = objects.get(instance.object as usize);
-        let object = object.ok_or(InstanceError::NoObject)?;
+        let index = instance.object as usize;
+        let object = objects.get(index).ok_or(InstanceError::NoObject)?;
         if !object.placements.is_empty() {
             return Err(InstanceError::Nested);
         }
         let is_empty = object.tree.nodes.is_empty();
-        let bounds = if is_empty {
-            Aabb::around(&[Vec3::ZERO])
+        let point = Aabb::around(&[Vec3::ZERO]);
+        let placed = if is_empty {
+            Placement::new(instance, &point, &[point])
         } else {
-            object.tree.bounds
+            Placement::new(instance, &object.tree.bounds, &outlines[index])
         };
-        let placed = Placement::new(instance, &bounds);
         let (placement, bounds) = placed.ok_or(InstanceError::NotInvertible)?;
         Ok((placement, if is_empty { Aabb::EMPTY } else { bounds }))
     };
-    let numbered = |(index, instance)| {
-        place(instance).map_err(|reason| BuildError::BadInstance {
+    let numbered = |(index, placed): (usize, Result<_, _>)| {
+        placed.map_err(|reason| BuildError::BadInstance {
             instance: index,
             reason,
         })
     };
-    let placed: Result<Vec<_>, _> = instances.iter().enumerate().map(numbered).collect();
+    let placed: Vec<_> = instances.par_iter().map(place).collect();
+    let placed: Result<Vec<_>, _> = placed.into_iter().enumerate().map(numbered).collect();
     Ok(placed?.into_iter().unzip())
 }
 

@@ -19,8 +19,9 @@
 //! (origin) and `2ερ` (direction); a leaf moves its vertices by `2ερ` (translation) and rounds
 //! `t'`, which is another `2ερ` along the line. That is less than `e = 2ε(m + 8ρ)`, of which the
 //! second half is room for the `f64` arithmetic, for origins up to 2²⁶ radii away.
-//! The world box of an instance is that of the mapped local box, widened by `|M⁻¹|·e`: whatever the
-//! local line hits is in a box that the world ray meets.
+//! The world box of an instance is that of the mapped local boxes, widened by `|M⁻¹|·e`: whatever the
+//! local line hits is in a box that the world ray meets. Local boxes are those at the third level of the object's tree:
+//! mapped together they leave less room around what is round or turned than the object's own box.
 //!
 //! **Limits.** `t` is rounded once, from `t₀ + t'`. The local limits are those of the world less `t₀`,
 //! moved outward by `4ε` of themselves, so that nothing is culled that would tie.
@@ -60,11 +61,12 @@ const CANCELLED: f64 = 1.0 / (1u64 << 48) as f64;
 const _: () = assert!(size_of::<Placement>() <= 128);
 
 impl Placement {
-    /// Places an object with these bounds, and returns the bounds of the place.
+    /// Places an object with these bounds, and returns the bounds of the place. `parts`: boxes that together contain the
+    /// object, and are more than one if its own box has empty corners.
     ///
     /// None: the map has no inverse, or is so close to having none that the rounding of rays exceeds
     /// the instance, or something overflows.
-    pub(crate) fn new(instance: &Instance, object: &Aabb) -> Option<(Self, Aabb)> {
+    pub(crate) fn new(instance: &Instance, object: &Aabb, parts: &[Aabb]) -> Option<(Self, Aabb)> {
         let world_from_object = instance.world_from_object;
         let object_from_world = world_from_object.inverse();
         let (low, high) = (object.min.as_dvec3(), object.max.as_dvec3());
@@ -73,10 +75,11 @@ impl Placement {
         let half = abs_times(&world_from_object, 0.5 * (high - low));
         // The rounding error depends on the ball, and the ball on the error: begin with room.
         let offset = abs_times(&world_from_object, local_center.abs());
-        let cancelled = CANCELLED * (center.abs() + offset);
+        let cancelled = CANCELLED * (center.abs() + offset + half);
         let radius = 2.0 * half.length() + 1e-5 * offset.length() + 1e3 * cancelled.length();
         let error = local_error(&object_from_world, local_center, radius);
-        let reach = half + abs_times(&world_from_object, error) + cancelled;
+        let margin = abs_times(&world_from_object, error) + cancelled;
+        let reach = half + margin;
         let is_moderate = |map: &DAffine3| {
             let columns = [map.matrix3.x_axis, map.matrix3.y_axis, map.matrix3.z_axis];
             columns.iter().all(|column| column.length() <= MOST_SCALE)
@@ -88,9 +91,10 @@ impl Placement {
         {
             return None;
         }
+        let (low, high) = mapped(&world_from_object, parts);
         let bounds = Aabb {
-            min: (center - reach).to_array().map(|x| outward(x, -1.0)).into(),
-            max: (center + reach).to_array().map(|x| outward(x, 1.0)).into(),
+            min: (low - margin).to_array().map(|x| outward(x, -1.0)).into(),
+            max: (high + margin).to_array().map(|x| outward(x, 1.0)).into(),
         };
         let placement = Self {
             object_from_world,
@@ -154,6 +158,17 @@ impl Approach {
         let nearest = (placement.center - self.origin).dot(self.along);
         (nearest - self.slowness * f64::from(placement.radius)).max(0.0)
     }
+}
+
+/// The corners of a box around all `parts` in the place where `map` takes them.
+fn mapped(map: &DAffine3, parts: &[Aabb]) -> (DVec3, DVec3) {
+    let none = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    parts.iter().fold(none, |(min, max), part| {
+        let (low, high) = (part.min.as_dvec3(), part.max.as_dvec3());
+        let center = map.transform_point3(0.5 * (low + high));
+        let half = abs_times(map, 0.5 * (high - low));
+        (min.min(center - half), max.max(center + half))
+    })
 }
 
 /// A bound of `|M p|` for `|p| ≤ extent`, without the translation.

@@ -94,6 +94,14 @@ impl Node {
         }
     }
 
+    /// The children that there are, each with its box.
+    pub(crate) fn boxes(&self) -> Vec<(Aabb, Child)> {
+        let slots = (0..WIDTH).filter(|&slot| self.children[slot] != Child::NOTHING);
+        slots
+            .map(|slot| (self.bounds(slot), self.children[slot]))
+            .collect()
+    }
+
     /// Which boxes the ray meets at distances up to `limit` (of [`widen`]): a mask with the bit of each
     /// box, and the distances at which they are entered.
     #[inline(always)]

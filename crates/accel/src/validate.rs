@@ -54,6 +54,13 @@ fn all_visited(what: &str, visited: &[bool]) -> Result<(), String> {
         .map_or(Ok(()), |index| Err(format!("{what} {index} is in no leaf")))
 }
 
+/// The eight corners of a box.
+fn corners(part: &Aabb) -> impl Iterator<Item = Vec3> + use<> {
+    let sides = [part.min, part.max];
+    (0..8)
+        .map(move |corner| Vec3::from_array([0, 1, 2].map(|axis| sides[corner >> axis & 1][axis])))
+}
+
 /// Marks `index`, which must exist and not be marked yet.
 fn visit(what: &str, index: usize, visited: &mut [bool]) -> Result<(), String> {
     match visited.get_mut(index) {
@@ -104,15 +111,14 @@ impl Walk<'_> {
         Ok(total)
     }
 
-    /// Checks that an instance with these bounds contains the corners of its object.
+    /// Checks that an instance with these bounds contains the corners of its object's boxes.
     fn instance(&mut self, index: usize, bounds: &Aabb) -> Result<(), String> {
         visit("instance", index, &mut self.instances)?;
         let world_from_object = self.bvh.placements[index].object_from_world().inverse();
-        let object = self.bvh.object_of(index).bounds();
-        for corner in 0..8 {
-            let pick = |axis: usize| [object.min, object.max][corner >> axis & 1][axis];
-            let local = Vec3::new(pick(0), pick(1), pick(2)).as_dvec3();
-            let point = world_from_object.transform_point3(local);
+        let parts = self.bvh.object_of(index).tree.outline();
+        let corners = parts.iter().flat_map(corners);
+        let points = corners.map(|corner| world_from_object.transform_point3(corner.as_dvec3()));
+        for point in points {
             let outside = point.cmplt(bounds.min.as_dvec3()) | point.cmpgt(bounds.max.as_dvec3());
             if outside.any() {
                 return Err(format!(

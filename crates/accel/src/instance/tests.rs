@@ -15,7 +15,7 @@ fn place(world_from_object: DAffine3) -> Option<(Placement, Aabb)> {
         object: 3,
         world_from_object,
     };
-    Placement::new(&instance, &UNIT)
+    Placement::new(&instance, &UNIT, &[UNIT])
 }
 
 #[test]
@@ -29,6 +29,26 @@ fn bounds_are_wider_than_the_mapped_box_but_hardly() {
     assert!(bounds.contains(&exact) && bounds != exact);
     assert!((bounds.extent() - exact.extent()).max_element() < 3e-5);
     assert_eq!(placement.object, 3);
+}
+
+#[test]
+fn bounds_of_a_turned_ball_are_hardly_wider_than_the_ball() {
+    let mut state = 1;
+    let mut point = || vector(&mut state).normalize().as_vec3();
+    let triangles: Vec<_> = (0..4000)
+        .map(|_| Primitive::Triangle([point(); 3]))
+        .collect();
+    let options = BuildOptions::default();
+    let ball = Arc::new(Bvh::build(&triangles, &options).expect("finite"));
+    let instance = Instance {
+        object: 0,
+        world_from_object: DAffine3::from_rotation_y(0.25 * std::f64::consts::PI),
+    };
+    let bvh = Bvh::with_instances(&[][..], vec![ball], &[instance], &options).expect("valid");
+    assert_eq!(bvh.validate(), Ok(()));
+    let extent = bvh.bounds().extent();
+    // Its own box, turned, has 2.83, 2 and 2.83.
+    assert!(extent.max_element() < 2.3, "{extent}");
 }
 
 #[test]
@@ -103,7 +123,9 @@ fn no_hit_is_culled_by_the_world_box() {
         // Triangles that end at the box, so that silhouettes are on it; some far from their origin.
         let offset = [0.0, 1.0, 1e6][round % 3] * vector(&mut state);
         let corner = |state: &mut u64| (vector(state) + offset).as_vec3();
-        let primitives: Vec<_> = (0..6)
+        // One leaf, or a tree of several levels, whose third has the boxes that count.
+        let count = [6, 6, 6, 600][round / 18 % 4];
+        let primitives: Vec<_> = (0..count)
             .map(|_| [(); 3].map(|()| corner(&mut state)))
             .map(Primitive::Triangle)
             .collect();
@@ -132,10 +154,10 @@ fn no_hit_is_culled_by_the_world_box() {
         assert_eq!(bvh.validate(), Ok(()));
         for i in 0..300 {
             // At a corner of a triangle, from near and far: half of the rays pass just beside.
-            let Primitive::Triangle(triangle) = primitives[i % 6] else {
+            let Primitive::Triangle(triangle) = primitives[i % count] else {
                 unreachable!("only triangles")
             };
-            let corner = triangle[i / 6 % 3].as_dvec3() + blur * vector(&mut state);
+            let corner = triangle[i / count % 3].as_dvec3() + blur * vector(&mut state);
             let target = world_from_object.transform_point3(corner);
             let far = [0.0, 1.0, 100.0, 1e5][i % 4];
             let origin = (target + far * vector(&mut state)).as_vec3();
