@@ -266,14 +266,14 @@ impl<V: F32x4> TriangleLanes<V> {
         let [a, b, c] = edges.map(F32x4::abs);
         let [p, q, r] = depths.map(|depth| depth * self.per_depth);
         let (low, high) = (p.min(q).min(r), p.max(q).max(r));
-        let slack = (low.abs() + high.abs())
-            .mul_add(V::splat(8.0 * f32::EPSILON), V::splat(f32::MIN_POSITIVE));
         let sum = a + b + c;
+        // Twice as large as any of the sums below: if one of them overflows, so does the error.
+        let largest = (sum + sum) * (low.abs() + high.abs() + V::splat(f32::MIN_POSITIVE));
         let error = (bound * (high - low)).mul_add(V::splat(3.5), V::splat(f32::MIN_POSITIVE));
         PassageLanes {
             sum,
             t: a.mul_add(p, b.mul_add(q, c * r)),
-            error: sum.mul_add(slack, error),
+            error: largest.mul_add(V::splat(4.0 * f32::EPSILON), error),
         }
     }
 }

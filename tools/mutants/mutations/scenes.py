@@ -137,9 +137,16 @@ SCENES = [
     (
         "t of a passage without the error of its vertices",
         "crates/accel/src/triangle.rs",
-        "error: sum.mul_add(slack, error),",
-        "error: error + sum.mul_add(slack, error) * V::splat(0.0),",
+        "largest.mul_add(V::splat(4.0 * f32::EPSILON), error)",
+        "largest.mul_add(V::splat(0.0), error)",
         ("bidir-accel", SUITE, "answers::hits_at_the_limits"),
+    ),
+    (
+        "t of a passage whose error does not overflow",
+        "crates/accel/src/triangle.rs",
+        "error: largest.mul_add(V::splat(4.0 * f32::EPSILON), error),",
+        "error: (largest * V::splat(4.0 * f32::EPSILON) + error).min(V::splat(f32::MAX)),",
+        ("bidir-accel", SUITE, "degenerate::"),
     ),
     (
         "t of a passage weighted by the edges of other vertices",
