@@ -127,7 +127,7 @@ impl Placement {
     }
 }
 
-/// A ray of the world in the form that instances need, each of them the same.
+/// A ray of the world, with all that its ways to instances have in common.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Approach {
     origin: DVec3,
@@ -139,7 +139,7 @@ pub(crate) struct Approach {
 }
 
 impl Approach {
-    /// Of a ray that is already cleaned.
+    /// Prepares a ray that is already cleaned.
     #[inline(always)]
     pub(crate) fn new(ray: &Ray) -> Self {
         let direction = ray.direction.as_dvec3();
@@ -233,10 +233,10 @@ pub(crate) struct Object {
     sure: [f32; 2],
 }
 
-/// By how much limits are moved outward, of themselves.
+/// The part of itself by which a limit is moved outward: `4ε`.
 const OUTWARD: f64 = 2.0 * f32::EPSILON as f64;
 
-/// The limit `world` less `t₀`, moved by `outward` of itself.
+/// The limit `world` less `t₀`, moved by the part `outward` of itself.
 #[inline(always)]
 fn moved(world: f32, start: f64, outward: f64) -> f32 {
     let world = f64::from(world);

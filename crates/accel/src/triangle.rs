@@ -260,7 +260,8 @@ pub(crate) struct TriangleLanes<V> {
 }
 
 impl<V: F32x4> TriangleLanes<V> {
-    /// Of vertices at `depths`, by the edge functions opposite to them, whose error is at most `bound`.
+    /// The `t` at which the line passes triangles with vertices at `depths`, by the edge functions opposite to them,
+    /// whose error is at most `bound`.
     #[inline(always)]
     fn passage(&self, depths: [V; 3], edges: [V; 3], bound: V) -> PassageLanes<V> {
         let [a, b, c] = edges.map(F32x4::abs);
