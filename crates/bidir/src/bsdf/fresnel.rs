@@ -2,6 +2,7 @@
 
 use crate::math::{safe_sqrt, sqr};
 use crate::spectrum::Spectrum;
+use glam::Vec4;
 
 /// The reflectance of an interface between dielectrics.
 ///
@@ -30,37 +31,31 @@ pub fn schlick(cos: f32) -> f32 {
     sqr(sqr(x)) * x
 }
 
-/// The reflectance of a conductor with index `eta + i·k` against vacuum, lane by lane
+/// The reflectance of a conductor with index `eta + i·k` against vacuum, all lanes at once
 /// [Lagarde13, "Fresnel term of conductors"].
 #[inline]
 pub fn conductor(cos_i: f32, eta: Spectrum, k: Spectrum) -> Spectrum {
+    let [eta2, k2] = [eta, k].map(|index| Vec4::from(index.0) * Vec4::from(index.0));
+    let root = |lanes: Vec4| lanes.max(Vec4::ZERO).sqrt();
     let cos_i = cos_i.abs().min(1.0);
-    eta.zip(k, |eta, k| conductor_lane(cos_i, eta, k))
-}
-
-#[inline]
-fn conductor_lane(cos_i: f32, eta: f32, k: f32) -> f32 {
     let cos2 = sqr(cos_i);
     let sin2 = 1.0 - cos2;
-    let (eta2, k2) = (sqr(eta), sqr(k));
     let difference = eta2 - k2 - sin2;
-    let a2_plus_b2 = safe_sqrt(sqr(difference) + 4.0 * eta2 * k2);
-    let a = safe_sqrt((a2_plus_b2 + difference) / 2.0);
+    let a2_plus_b2 = root(difference * difference + 4.0 * eta2 * k2);
+    let a = root((a2_plus_b2 + difference) / 2.0);
     let cross = 2.0 * cos_i * a;
     let perpendicular = contrast(a2_plus_b2 + cos2, cross);
     let parallel = perpendicular * contrast(cos2 * a2_plus_b2 + sqr(sin2), cross * sin2);
-    ((perpendicular + parallel) / 2.0).clamp(0.0, 1.0)
+    let mean = (perpendicular + parallel) / 2.0;
+    Spectrum(mean.clamp(Vec4::ZERO, Vec4::ONE).to_array())
 }
 
 /// (sum - cross) / (sum + cross); 1 where both are zero: at normal incidence for a black index of
 /// zero, and at grazing incidence for the index of vacuum.
 #[inline]
-fn contrast(sum: f32, cross: f32) -> f32 {
-    if sum + cross > 0.0 {
-        (sum - cross) / (sum + cross)
-    } else {
-        1.0
-    }
+fn contrast(sum: Vec4, cross: Vec4) -> Vec4 {
+    let is_any = (sum + cross).cmpgt(Vec4::ZERO);
+    Vec4::select(is_any, (sum - cross) / (sum + cross), Vec4::ONE)
 }
 
 #[cfg(test)]
