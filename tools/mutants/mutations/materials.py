@@ -28,9 +28,16 @@ MATERIALS = [
     (
         "a varnish's base drawn without its probability",
         "crates/bidir/src/bsdf/coated_diffuse.rs",
-        "prob * self.coat.pdf(wo, wi) + (1.0 - prob) * base",
-        "prob * self.coat.pdf(wo, wi) + base",
+        "prob * densities[from] + (1.0 - prob) * base",
+        "prob * densities[from] + base",
         unit("samples_follow_the_density"),
+    ),
+    (
+        "the way back from a varnish as likely as the way in",
+        "crates/bidir/src/bsdf/coated_diffuse.rs",
+        "pdf_reverse: pdf(1, wo)",
+        "pdf_reverse: pdf(0, wi)",
+        unit("light_flows_both_ways"),
     ),
     (
         "radiance within a varnish not compressed",
@@ -42,8 +49,8 @@ MATERIALS = [
     (
         "directions within a lacquer without their Jacobian",
         "crates/bidir/src/bsdf/coated_conductor.rs",
-        "within * wi.z.abs() / (sqr(self.coat.eta()) * inner_i.z.abs())",
-        "within",
+        "pdf * stretch(wi, inner_i)",
+        "pdf",
         unit("samples_follow_the_density"),
     ),
     (

@@ -59,8 +59,8 @@ PATHS = [
     (
         "old direction at the junction",
         "crates/bidir/src/path/densities.rs",
-        "before[0] = back.pdf(context)",
-        "before[0] = at_z.pdf(context)",
+        "before[0] = pdf * z",
+        "before[0] = at_z.pdf(context) * z",
         PATH,
     ),
     (

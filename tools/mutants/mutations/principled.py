@@ -11,22 +11,22 @@ PRINCIPLED = [
     (
         "a diffuse base under Fresnel's layer in one direction only",
         VALUE,
-        "self.tint * (self.diffuse * self.uncovered(wo) * self.uncovered(wi))",
-        "self.tint * (self.diffuse * self.uncovered(wo))",
+        "self.tint * (self.diffuse * self.uncovered(o) * self.uncovered(i))",
+        "self.tint * (self.diffuse * self.uncovered(o))",
         unit("light_flows_both_ways"),
     ),
     (
         "a facet's choice between reflection and transmission not in the density",
-        DRAW,
-        "return prob * self.ggx.mirror_pdf(wo, wi);\n        }\n        if self.glass",
-        "return self.ggx.mirror_pdf(wo, wi);\n        }\n        if self.glass",
+        VALUE,
+        "let prob = self.reflection_prob(cos).unwrap_or(0.0);",
+        "let prob = 1.0;",
         unit("samples_follow_the_density"),
     ),
     (
         "a coat that leaves all light to what it covers",
         MODEL,
-        "(1.0 - self.coat_albedo(w)) * (1.0 - self.sheen_albedo(w))",
-        "1.0 - self.sheen_albedo(w)",
+        "(1.0 - self.coat) * (1.0 - self.sheen)",
+        "1.0 - self.sheen",
         unit("white_surfaces_gain_nothing_in_a_furnace"),
     ),
     (
@@ -45,9 +45,9 @@ PRINCIPLED = [
     ),
     (
         "rough lobes of a coat drawn more often than weights know",
-        DRAW,
-        "pdf += probs.coat * self.coat_ggx().mirror_pdf(wo, wi);",
-        "pdf += 0.8 * probs.coat * self.coat_ggx().mirror_pdf(wo, wi);",
+        VALUE,
+        "let of_coat = probs.coat * coat.densities[from];",
+        "let of_coat = 0.8 * probs.coat * coat.densities[from];",
         unit("samples_follow_the_density"),
     ),
     # --- glTF ---------------------------------------------------------------------------------

@@ -15,10 +15,10 @@
 //! Light that the layer scatters (ϖ > 0) goes on as if it had not been.
 
 use super::coat::{
-    Coat, Curve, Layer, METAL_SHAPES, MetalCoat, Reflections, all_orders, seen_through,
+    Coat, Curve, Layer, METAL_SHAPES, MetalCoat, Reflections, Seen, all_orders, seen_through,
 };
 use super::microfacet::Ggx;
-use super::{BsdfSample, Filling, fresnel, same_hemisphere};
+use super::{BsdfSample, BsdfValue, Filling, fresnel, same_hemisphere};
 use crate::math::{INV_PI, Vec2, Vec3, sqr, warp};
 use crate::spectrum::Spectrum;
 
@@ -65,6 +65,17 @@ enum Lobe {
     Once,
     /// Off the metal, more than once.
     Trapped,
+}
+
+/// Layer and metal as light along one direction meets them.
+struct MetalSeen {
+    coat: Seen,
+    /// The direction within. None: total reflection.
+    inner: Option<Vec3>,
+    /// (1-μ)⁵.
+    grazing: f32,
+    /// E / Ē.
+    trapped: f32,
 }
 
 impl CoatedConductor {
@@ -118,29 +129,33 @@ impl CoatedConductor {
         trip.map(|trip| reflected + sqr(1.0 - reflected) * trip * all_orders(reflected * trip))
     }
 
-    /// About the part of light along `w` that each lobe scatters. It depends on |cosθ| alone.
+    /// Layer and metal as light along `w` meets them.
     #[inline]
-    fn shares(&self, w: Vec3) -> [Spectrum; 3] {
-        let coat = Spectrum::splat(self.coat.reflectance(w));
-        let Some(inner) = self.coat.refracted(w) else {
+    fn seen(&self, w: Vec3) -> MetalSeen {
+        let coat = self.coat.interface(w);
+        MetalSeen {
+            coat,
+            inner: self.coat.refracted(w),
+            grazing: fresnel::schlick(w.z.abs()),
+            trapped: (1.0 - coat.reflected) * self.trapped.at(w.z.abs()).max(0.0),
+        }
+    }
+
+    /// About the part of light that each lobe scatters. It depends on |cosθ| alone.
+    #[inline]
+    fn shares(&self, seen: &MetalSeen) -> [Spectrum; 3] {
+        let coat = Spectrum::splat(seen.coat.reflected);
+        let Some(inner) = seen.inner else {
             return [coat, Spectrum::ZERO, Spectrum::ZERO];
         };
-        let once = self.once_fresnel(inner.z.abs(), fresnel::schlick(w.z.abs()))
-            * sqr(self.coat.transmittance(w));
-        let trapped = self.multiple * self.trapped_part(w);
-        [coat, once, trapped]
+        let once = self.once_fresnel(inner.z.abs(), seen.grazing) * sqr(seen.coat.through);
+        [coat, once, self.multiple * seen.trapped]
     }
 
     /// The reflectance of the metal's facets.
     #[inline]
     fn fresnel(&self, cos: f32) -> Spectrum {
         fresnel::conductor(cos, self.eta, self.k)
-    }
-
-    /// E(w) / Ē.
-    #[inline]
-    fn trapped_part(&self, w: Vec3) -> f32 {
-        (1.0 - self.coat.reflectance(w)) * self.trapped.at(w.z.abs()).max(0.0)
     }
 
     /// The metal's reflectance of what it reflects once, at a facet of cosine `cos`, along directions of
@@ -152,12 +167,18 @@ impl CoatedConductor {
         fresnel.map(|part| part + (1.0 - part) * more)
     }
 
-    /// The probabilities of drawing from each lobe. None: nothing is scattered.
+    /// The probabilities of drawing from each lobe. All zero: nothing is scattered.
     #[inline]
-    fn probs(&self, w: Vec3) -> Option<[f32; 3]> {
-        let shares = self.shares(w).map(Spectrum::max_lane);
+    fn probs(shares: &[Spectrum; 3]) -> [f32; 3] {
+        let shares = shares.map(Spectrum::max_lane);
         let sum = shares[0] + shares[1] + shares[2];
-        (sum > 0.0).then(|| shares.map(|share| share / sum))
+        shares.map(|share| if sum > 0.0 { share / sum } else { 0.0 })
+    }
+
+    /// The albedo, given the shares.
+    #[inline]
+    fn albedo_of([coat, once, trapped]: &[Spectrum; 3]) -> Spectrum {
+        (*coat + *once + *trapped).map(|lane| lane.min(1.0))
     }
 
     #[inline]
@@ -165,51 +186,56 @@ impl CoatedConductor {
         if self.is_delta() {
             return self.mirror_reflectance(wo);
         }
-        let [coat, once, trapped] = self.shares(wo);
-        (coat + once + trapped).map(|lane| lane.min(1.0))
+        Self::albedo_of(&self.shares(&self.seen(wo)))
     }
 
     #[inline]
-    pub(super) fn eval(&self, wo: Vec3, wi: Vec3) -> Spectrum {
+    pub(super) fn eval(&self, wo: Vec3, wi: Vec3) -> BsdfValue {
         if self.is_delta() || !same_hemisphere(wo, wi) {
-            return Spectrum::ZERO;
+            return BsdfValue::NONE;
         }
-        let coat = Spectrum::splat(self.coat.eval(wo, wi));
-        let inner = (self.coat.refracted(wo), self.coat.refracted(wi));
-        let (Some(inner_o), Some(inner_i)) = inner else {
-            return coat;
+        let seen = [wo, wi].map(|w| self.seen(w));
+        let shares = seen.each_ref().map(|seen| self.shares(seen));
+        let (coat, of_coat) = self.coat.eval(wo, wi);
+        let (metal, of_once) = self.eval_metal([wo, wi], &seen);
+        let pdf = |from: usize, to: Vec3| {
+            let [coat, once, trapped] = Self::probs(&shares[from]);
+            let even = warp::cosine_hemisphere_pdf(to.z.abs());
+            coat * of_coat[from] + once * of_once[from] + trapped * even
         };
-        let (facets, cos) = self.facets.mirror(inner_o, inner_i);
-        let through = self.coat.transmittance(wo) * self.coat.transmittance(wi);
-        let grazing = (fresnel::schlick(wo.z.abs()) + fresnel::schlick(wi.z.abs())) * 0.5;
-        let once = self.once_fresnel(cos, grazing) * (facets * through / sqr(self.coat.eta()));
-        let trapped = self.multiple * (self.trapped_part(wo) * self.trapped_part(wi) * INV_PI);
-        coat + (once + trapped) * self.coat.attenuation(wo, wi)
+        BsdfValue {
+            f: Spectrum::splat(coat) + metal,
+            pdf: pdf(0, wi),
+            pdf_reverse: pdf(1, wo),
+            albedo_reverse: Self::albedo_of(&shares[1]).max_lane(),
+        }
     }
 
-    /// The density of drawing `wi` by a reflection at the metal: that of the direction within, times
-    /// dω'/dω = |cosθ| / (η² |cosθ'|).
+    /// f of the metal under the interface, and the densities of drawing either direction by one reflection at the metal:
+    /// that of the direction within, times dω'/dω = |cosθ| / (η² |cosθ'|).
     #[inline]
-    fn once_pdf(&self, wo: Vec3, wi: Vec3) -> f32 {
-        let (Some(inner_o), Some(inner_i)) = (self.coat.refracted(wo), self.coat.refracted(wi))
-        else {
-            return 0.0;
+    fn eval_metal(
+        &self,
+        [wo, wi]: [Vec3; 2],
+        [seen_o, seen_i]: &[MetalSeen; 2],
+    ) -> (Spectrum, [f32; 2]) {
+        let (Some(inner_o), Some(inner_i)) = (seen_o.inner, seen_i.inner) else {
+            return (Spectrum::ZERO, [0.0; 2]);
         };
-        let within = self.facets.mirror_pdf(inner_o, inner_i);
-        within * wi.z.abs() / (sqr(self.coat.eta()) * inner_i.z.abs())
-    }
-
-    #[inline]
-    pub(super) fn pdf(&self, wo: Vec3, wi: Vec3) -> f32 {
-        if self.is_delta() || !same_hemisphere(wo, wi) {
-            return 0.0;
-        }
-        let Some([coat, once, trapped]) = self.probs(wo) else {
-            return 0.0;
-        };
-        coat * self.coat.pdf(wo, wi)
-            + once * self.once_pdf(wo, wi)
-            + trapped * warp::cosine_hemisphere_pdf(wi.z.abs())
+        let mirror = self.facets.mirror(inner_o, inner_i);
+        let bend = 1.0 / sqr(self.coat.eta());
+        let through = seen_o.coat.through * seen_i.coat.through;
+        let grazing = (seen_o.grazing + seen_i.grazing) * 0.5;
+        let once = self.once_fresnel(mirror.cos, grazing) * (mirror.facets * through * bend);
+        let trapped = self.multiple * (seen_o.trapped * seen_i.trapped * INV_PI);
+        let f = (once + trapped) * self.coat.attenuation(wo, wi);
+        let [pdf, pdf_reverse] = mirror.densities;
+        let stretch = |w: Vec3, inner: Vec3| bend * (w.z / inner.z).abs();
+        let densities = [
+            pdf * stretch(wi, inner_i),
+            pdf_reverse * stretch(wo, inner_o),
+        ];
+        (f, densities)
     }
 
     #[inline]
@@ -218,21 +244,24 @@ impl CoatedConductor {
             return None;
         }
         if self.is_delta() {
-            return Some(BsdfSample::mirror(wo, self.mirror_reflectance(wo), 1.0));
+            let reflectance = self.mirror_reflectance(wo);
+            return Some(BsdfSample::mirror(wo, reflectance, 1.0, reflectance));
         }
-        let [coat, once, _] = self.probs(wo)?;
+        let seen = self.seen(wo);
+        let shares = self.shares(&seen);
+        let [coat, once, _] = Self::probs(&shares);
         let lobe = match u_lobe {
             u if u < coat => Lobe::Coat,
             u if u < coat + once => Lobe::Once,
             _ => Lobe::Trapped,
         };
         if lobe == Lobe::Coat && self.coat.is_smooth() {
-            let reflectance = Spectrum::splat(self.coat.reflectance(wo));
-            return Some(BsdfSample::mirror(wo, reflectance, coat));
+            let reflectance = Spectrum::splat(seen.coat.reflected);
+            let albedo = Self::albedo_of(&shares);
+            return Some(BsdfSample::mirror(wo, reflectance, coat, albedo));
         }
         let wi = self.sample_lobe(lobe, wo, u)?;
-        let densities = [self.pdf(wo, wi), self.pdf(wi, wo)];
-        BsdfSample::of_densities(wi, self.eval(wo, wi), densities)
+        BsdfSample::of_value(wi, &self.eval(wo, wi))
     }
 
     /// Draws a direction from a lobe that is no Dirac distribution. None: it does not leave.

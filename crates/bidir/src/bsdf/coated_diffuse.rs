@@ -9,9 +9,9 @@
 //! M = Ē e(wo) e(wi) / π, as if it had forgotten where it came from: its energy is right from every
 //! direction, its distribution an approximation. So the reflectance is exact, up to tables.
 
-use super::coat::{Coat, Curve, Filled, LENGTHS, Layer, RATIOS, SHAPES, Slab, all_orders};
+use super::coat::{Coat, Curve, Filled, LENGTHS, Layer, RATIOS, SHAPES, Seen, Slab, all_orders};
 use super::microfacet::Ggx;
-use super::{BsdfSample, same_hemisphere};
+use super::{BsdfSample, BsdfValue, same_hemisphere};
 use crate::math::{INV_PI, PI, Vec2, Vec3, sqr, warp};
 use crate::spectrum::Spectrum;
 
@@ -25,10 +25,8 @@ pub struct CoatedDiffuse {
     thrown: Spectrum,
     /// e.
     shape: Curve<SHAPES>,
-    /// ∫ T cosθ dω: the part of the base's light that leaves a clear layer.
-    escape: f32,
-    /// About the part of entering light that leaves again, by the brightest lane.
-    bright: f32,
+    /// About the part of entering light that leaves again.
+    entering: Spectrum,
 }
 
 /// The medium that fills a layer.
@@ -66,17 +64,15 @@ impl CoatedDiffuse {
         let base = reflectance.zip(trips, |rho, trip| {
             rho * all_orders(rho * trip) * INV_PI / sqr(coat.eta())
         });
-        let unlit = Self {
+        let thrown = lanes(|lane| lane.thrown);
+        // ∫ T cosθ dω of the base's light leaves a clear layer.
+        let escape = PI * layer.transmitted;
+        Self {
             coat,
             base,
-            thrown: lanes(|lane| lane.thrown),
+            thrown,
             shape: mean.shape,
-            escape: PI * layer.transmitted,
-            bright: 0.0,
-        };
-        Self {
-            bright: unlit.entering_albedo(Vec3::Z).max_lane(),
-            ..unlit
+            entering: base * coat.attenuation(Vec3::Z, Vec3::Z) * escape + thrown,
         }
     }
 
@@ -91,25 +87,24 @@ impl CoatedDiffuse {
         self.base.is_black() && self.thrown.is_black()
     }
 
-    /// About the part that leaves again of light that entered along `w`.
-    #[inline]
-    fn entering_albedo(&self, w: Vec3) -> Spectrum {
-        self.base * self.escape * self.coat.attenuation(w, Vec3::Z) + self.thrown
-    }
-
     #[inline]
     pub(super) fn albedo(&self, wo: Vec3) -> Spectrum {
-        let coat = Spectrum::splat(self.coat.reflectance(wo));
-        let within = self.entering_albedo(wo) * self.coat.transmittance(wo);
-        (coat + within).map(|lane| lane.min(1.0))
+        let Seen { reflected, through } = self.coat.interface(wo);
+        self.entering
+            .map(|part| (reflected + part * through).min(1.0))
+    }
+
+    /// The part of light that the interface scatters, and that of the base's brightest lane.
+    #[inline]
+    fn shares(&self, seen: Seen) -> [f32; 2] {
+        [seen.reflected, self.entering.max_lane() * seen.through]
     }
 
     /// The probability of drawing from the interface. It depends on |cosθ| alone, so that a mirrored
     /// direction has the same.
     #[inline]
-    fn coat_prob(&self, w: Vec3) -> f32 {
-        let coat = self.coat.reflectance(w);
-        let base = self.coat.transmittance(w) * self.bright;
+    fn coat_prob(&self, seen: Seen) -> f32 {
+        let [coat, base] = self.shares(seen);
         if coat > 0.0 {
             coat / (coat + base)
         } else {
@@ -118,16 +113,28 @@ impl CoatedDiffuse {
     }
 
     #[inline]
-    pub(super) fn eval(&self, wo: Vec3, wi: Vec3) -> Spectrum {
+    pub(super) fn eval(&self, wo: Vec3, wi: Vec3) -> BsdfValue {
         if !same_hemisphere(wo, wi) {
-            return Spectrum::ZERO;
+            return BsdfValue::NONE;
         }
-        let through = self.coat.transmittance(wo) * self.coat.transmittance(wi);
+        let seen = [wo, wi].map(|w| self.coat.interface(w));
         let mut within = self.base * self.coat.attenuation(wo, wi);
         if !self.thrown.is_black() {
             within += self.thrown * (INV_PI * self.thrown_shape(wo) * self.thrown_shape(wi));
         }
-        Spectrum::splat(self.coat.eval(wo, wi)) + within * through
+        let (coat, densities) = self.coat.eval(wo, wi);
+        let pdf = |from: usize, to: Vec3| {
+            let prob = self.coat_prob(seen[from]);
+            let base = warp::cosine_hemisphere_pdf(to.z.abs());
+            prob * densities[from] + (1.0 - prob) * base
+        };
+        let [reflected, entered] = self.shares(seen[1]);
+        BsdfValue {
+            f: Spectrum::splat(coat) + within * (seen[0].through * seen[1].through),
+            pdf: pdf(0, wi),
+            pdf_reverse: pdf(1, wo),
+            albedo_reverse: (reflected + entered).min(1.0),
+        }
     }
 
     #[inline]
@@ -136,21 +143,12 @@ impl CoatedDiffuse {
     }
 
     #[inline]
-    pub(super) fn pdf(&self, wo: Vec3, wi: Vec3) -> f32 {
-        if !same_hemisphere(wo, wi) {
-            return 0.0;
-        }
-        let prob = self.coat_prob(wo);
-        let base = warp::cosine_hemisphere_pdf(wi.z.abs());
-        prob * self.coat.pdf(wo, wi) + (1.0 - prob) * base
-    }
-
-    #[inline]
     pub(super) fn sample(&self, wo: Vec3, u_lobe: f32, u: Vec2) -> Option<BsdfSample> {
         if wo.z == 0.0 {
             return None;
         }
-        let prob = self.coat_prob(wo);
+        let seen = self.coat.interface(wo);
+        let prob = self.coat_prob(seen);
         let wi = if u_lobe >= prob {
             if self.is_black_within() {
                 return None;
@@ -158,16 +156,12 @@ impl CoatedDiffuse {
             let wi = warp::cosine_hemisphere(u);
             Vec3::new(wi.x, wi.y, wi.z.copysign(wo.z))
         } else if self.coat.is_smooth() {
-            return Some(self.mirror(wo, prob));
+            let reflectance = Spectrum::splat(seen.reflected);
+            return Some(BsdfSample::mirror(wo, reflectance, prob, self.albedo(wo)));
         } else {
             self.coat.sample(wo, u)?
         };
-        BsdfSample::of_densities(wi, self.eval(wo, wi), [self.pdf(wo, wi), self.pdf(wi, wo)])
-    }
-
-    #[inline]
-    fn mirror(&self, wo: Vec3, prob: f32) -> BsdfSample {
-        BsdfSample::mirror(wo, Spectrum::splat(self.coat.reflectance(wo)), prob)
+        BsdfSample::of_value(wi, &self.eval(wo, wi))
     }
 
     pub(super) fn examples() -> impl Iterator<Item = (&'static str, Self)> {

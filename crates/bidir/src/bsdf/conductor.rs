@@ -5,7 +5,7 @@
 //! scattering.
 
 use super::microfacet::Ggx;
-use super::{BsdfSample, fresnel, same_hemisphere};
+use super::{BsdfSample, BsdfValue, fresnel, same_hemisphere};
 use crate::math::{Vec2, Vec3};
 use crate::spectrum::Spectrum;
 
@@ -39,20 +39,18 @@ impl Conductor {
     }
 
     #[inline]
-    pub(super) fn eval(&self, wo: Vec3, wi: Vec3) -> Spectrum {
+    pub(super) fn eval(&self, wo: Vec3, wi: Vec3) -> BsdfValue {
         if self.is_smooth() || !same_hemisphere(wo, wi) {
-            return Spectrum::ZERO;
+            return BsdfValue::NONE;
         }
-        let (facets, cos) = self.ggx.mirror(wo, wi);
-        self.fresnel(cos) * facets
-    }
-
-    #[inline]
-    pub(super) fn pdf(&self, wo: Vec3, wi: Vec3) -> f32 {
-        if self.is_smooth() || !same_hemisphere(wo, wi) {
-            return 0.0;
+        let mirror = self.ggx.mirror(wo, wi);
+        let [pdf, pdf_reverse] = mirror.densities;
+        BsdfValue {
+            f: self.fresnel(mirror.cos) * mirror.facets,
+            pdf,
+            pdf_reverse,
+            albedo_reverse: self.albedo(wi).max_lane(),
         }
-        self.ggx.mirror_pdf(wo, wi)
     }
 
     #[inline]
@@ -61,23 +59,11 @@ impl Conductor {
             return None;
         }
         if self.is_smooth() {
-            return Some(BsdfSample::mirror(wo, self.fresnel(wo.z), 1.0));
+            let reflectance = self.fresnel(wo.z);
+            return Some(BsdfSample::mirror(wo, reflectance, 1.0, reflectance));
         }
-        let m = self.ggx.sample_visible(wo, u);
-        let wi = m * (2.0 * wo.dot(m)) - wo;
-        if !same_hemisphere(wo, wi) {
-            return None;
-        }
-        // The facets' density cancels but for the shadowing of wi.
-        let weight = self.fresnel(wo.dot(m)) * (self.ggx.g2(wo, wi) / self.ggx.g1(wo));
-        let (pdf, pdf_reverse) = (self.pdf(wo, wi), self.pdf(wi, wo));
-        Some(BsdfSample {
-            wi,
-            weight,
-            pdf,
-            pdf_reverse,
-            is_delta: false,
-        })
+        let wi = self.ggx.sample_mirror(wo, u)?;
+        BsdfSample::of_value(wi, &self.eval(wo, wi))
     }
 
     pub(super) fn examples() -> impl Iterator<Item = (&'static str, Self)> {

@@ -6,7 +6,7 @@
 //! absorption within, no dispersion, and no multiple scattering between facets.
 
 use super::microfacet::Ggx;
-use super::{BsdfSample, TransportMode, fresnel, same_hemisphere};
+use super::{BsdfSample, BsdfValue, TransportMode, fresnel, same_hemisphere};
 use crate::math::{Vec2, Vec3, safe_sqrt, sqr};
 use crate::spectrum::Spectrum;
 
@@ -27,6 +27,15 @@ pub struct Dielectric {
 pub(super) enum Lobe {
     Reflection,
     Transmission,
+}
+
+/// Refraction by facets, without what they let through.
+pub(super) struct Crossing {
+    /// D G₂ |wo·m| |wi·m| / (|cosθ_o cosθ_i| (wi·m + wo·m/η)²), without the scale of radiance. Unit: 1/sr.
+    pub(super) facets: f32,
+    /// The densities of drawing the facet and so wi for wo, and wo for wi: D_v(m) |dω_m / dω| [Walter07, eq. 17].
+    /// Measure: solid angle, 1/sr.
+    pub(super) densities: [f32; 2],
 }
 
 impl Dielectric {
@@ -79,46 +88,47 @@ impl Dielectric {
         seen.then_some((m, lobe))
     }
 
-    /// |dω_m / dω_i| of refraction at `m`, without the |wi·m| factor [Walter07, eq. 17].
     #[inline]
-    pub(super) fn refraction_jacobian(&self, wo: Vec3, wi: Vec3, m: Vec3) -> f32 {
-        1.0 / sqr(wi.dot(m) + wo.dot(m) / self.eta_across(wo))
-    }
-
-    #[inline]
-    pub(super) fn eval(&self, wo: Vec3, wi: Vec3, mode: TransportMode) -> Spectrum {
+    pub(super) fn eval(&self, wo: Vec3, wi: Vec3, mode: TransportMode) -> BsdfValue {
         if self.is_smooth() {
-            return Spectrum::ZERO;
+            return BsdfValue::NONE;
         }
         let Some((m, lobe)) = self.facet(wo, wi) else {
-            return Spectrum::ZERO;
+            return BsdfValue::NONE;
         };
         let fresnel = fresnel::dielectric(wo.dot(m), self.eta);
-        let facets = self.ggx.d(m) * self.ggx.g2(wo, wi) / (wo.z * wi.z).abs();
-        Spectrum::splat(match lobe {
-            Lobe::Reflection => facets * fresnel / 4.0,
-            Lobe::Transmission => {
-                let bend = (wo.dot(m) * wi.dot(m)).abs() * self.refraction_jacobian(wo, wi, m);
-                facets * (1.0 - fresnel) * bend * self.crossing_scale(wo, mode)
+        let (f, [pdf, pdf_reverse]) = match lobe {
+            Lobe::Reflection => {
+                let mirror = self.ggx.mirror(wo, wi);
+                let densities = mirror.densities.map(|pdf| fresnel * pdf);
+                (mirror.facets * fresnel, densities)
             }
-        })
+            Lobe::Transmission => {
+                let crossing = self.crossing(wo, wi, m);
+                let scale = self.crossing_scale(wo, mode);
+                let densities = crossing.densities.map(|pdf| (1.0 - fresnel) * pdf);
+                (crossing.facets * (1.0 - fresnel) * scale, densities)
+            }
+        };
+        BsdfValue {
+            f: Spectrum::splat(f),
+            pdf,
+            pdf_reverse,
+            albedo_reverse: 1.0,
+        }
     }
 
+    /// Refraction between two directions by facets with normal `m`.
     #[inline]
-    pub(super) fn pdf(&self, wo: Vec3, wi: Vec3) -> f32 {
-        if self.is_smooth() {
-            return 0.0;
-        }
-        let Some((m, lobe)) = self.facet(wo, wi) else {
-            return 0.0;
-        };
-        let fresnel = fresnel::dielectric(wo.dot(m), self.eta);
-        let facet_pdf = self.ggx.visible_pdf(wo, m);
-        match lobe {
-            Lobe::Reflection => facet_pdf * fresnel / (4.0 * wo.dot(m).abs()),
-            Lobe::Transmission => {
-                facet_pdf * (1.0 - fresnel) * wi.dot(m).abs() * self.refraction_jacobian(wo, wi, m)
-            }
+    pub(super) fn crossing(&self, wo: Vec3, wi: Vec3, m: Vec3) -> Crossing {
+        let (d, eta) = (self.ggx.d(m), self.eta_across(wo));
+        let [cos_o, cos_i] = [wo, wi].map(|w| w.dot(m).abs());
+        let jacobian = 1.0 / sqr(wi.dot(m) + wo.dot(m) / eta);
+        let g1 = [wo, wi].map(|w| self.ggx.g1(w) / w.z.abs());
+        let both = d * cos_o * cos_i * jacobian;
+        Crossing {
+            facets: both * self.ggx.g2(wo, wi) / (wo.z * wi.z).abs(),
+            densities: [g1[0] * both, g1[1] * both / sqr(eta)],
         }
     }
 
@@ -156,11 +166,10 @@ impl Dielectric {
         if wi.z == 0.0 || same_hemisphere(wo, wi) != (lobe == Lobe::Reflection) {
             return None;
         }
-        Some(if self.is_smooth() {
-            self.smooth_sample(wo, wi, scale, prob)
-        } else {
-            self.rough_sample(wo, wi, scale)
-        })
+        if self.is_smooth() {
+            return Some(self.smooth_sample(wo, wi, scale, prob));
+        }
+        BsdfSample::of_value(wi, &self.eval(wo, wi, mode))
     }
 
     /// `wi` drawn by a flat interface, which takes its lobe with probability `prob`.
@@ -171,19 +180,8 @@ impl Dielectric {
             weight: Spectrum::splat(scale),
             pdf: prob * sqr(self.eta_at(wi)) * wi.z.abs(),
             pdf_reverse: prob * sqr(self.eta_at(wo)) * wo.z.abs(),
+            albedo_reverse: 1.0,
             is_delta: true,
-        }
-    }
-
-    /// `wi` drawn by a facet that `wo` sees.
-    #[inline]
-    fn rough_sample(&self, wo: Vec3, wi: Vec3, scale: f32) -> BsdfSample {
-        BsdfSample {
-            wi,
-            weight: Spectrum::splat(scale * self.ggx.g2(wo, wi) / self.ggx.g1(wo)),
-            pdf: self.pdf(wo, wi),
-            pdf_reverse: self.pdf(wi, wo),
-            is_delta: false,
         }
     }
 

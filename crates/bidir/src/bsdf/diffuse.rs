@@ -1,7 +1,7 @@
 //! f = ρ/π (1/sr), drawn with density |cosθ|/π (solid angle, 1/sr). Both sides reflect, none
 //! transmits.
 
-use super::{BsdfSample, same_hemisphere};
+use super::{BsdfSample, BsdfValue, same_hemisphere};
 use crate::math::{INV_PI, Vec2, Vec3, warp};
 use crate::spectrum::Spectrum;
 
@@ -14,11 +14,16 @@ pub struct Diffuse {
 
 impl Diffuse {
     #[inline]
-    pub(super) fn eval(&self, wo: Vec3, wi: Vec3) -> Spectrum {
-        if same_hemisphere(wo, wi) {
-            self.reflectance * INV_PI
-        } else {
-            Spectrum::ZERO
+    pub(super) fn eval(&self, wo: Vec3, wi: Vec3) -> BsdfValue {
+        if !same_hemisphere(wo, wi) {
+            return BsdfValue::NONE;
+        }
+        let [pdf, pdf_reverse] = [wi, wo].map(|w| warp::cosine_hemisphere_pdf(w.z.abs()));
+        BsdfValue {
+            f: self.reflectance * INV_PI,
+            pdf,
+            pdf_reverse,
+            albedo_reverse: self.reflectance.max_lane(),
         }
     }
 
@@ -31,21 +36,9 @@ impl Diffuse {
             return None;
         }
         Some(BsdfSample {
-            wi,
             weight: self.reflectance,
-            pdf: Self::pdf(wo, wi),
-            pdf_reverse: Self::pdf(wi, wo),
-            is_delta: false,
+            ..BsdfSample::of_value(wi, &self.eval(wo, wi))?
         })
-    }
-
-    #[inline]
-    pub(super) fn pdf(wo: Vec3, wi: Vec3) -> f32 {
-        if same_hemisphere(wo, wi) {
-            warp::cosine_hemisphere_pdf(wi.z.abs())
-        } else {
-            0.0
-        }
     }
 
     pub(super) fn examples() -> impl Iterator<Item = (&'static str, Self)> {

@@ -3,7 +3,7 @@
 //! Drawn by one cosine-distributed direction on the side of `wi`, the side with probability
 //! proportional to the largest lane of r and of t. No interface is crossed: radiance is not scaled.
 
-use super::{BsdfSample, same_hemisphere};
+use super::{BsdfSample, BsdfValue, same_hemisphere};
 use crate::math::{INV_PI, Vec2, Vec3, warp};
 use crate::spectrum::Spectrum;
 
@@ -30,27 +30,25 @@ impl DiffuseTransmission {
     }
 
     #[inline]
-    pub(super) fn eval(&self, wo: Vec3, wi: Vec3) -> Spectrum {
+    pub(super) fn eval(&self, wo: Vec3, wi: Vec3) -> BsdfValue {
+        let Some(prob) = self.reflection_prob() else {
+            return BsdfValue::NONE;
+        };
         if wo.z == 0.0 || wi.z == 0.0 {
-            Spectrum::ZERO
-        } else if same_hemisphere(wo, wi) {
-            self.reflectance * INV_PI
-        } else {
-            self.transmittance * INV_PI
+            return BsdfValue::NONE;
         }
-    }
-
-    #[inline]
-    pub(super) fn pdf(&self, wo: Vec3, wi: Vec3) -> f32 {
-        let Some(prob) = self.reflection_prob().filter(|_| wo.z != 0.0) else {
-            return 0.0;
-        };
-        let side = if same_hemisphere(wo, wi) {
-            prob
+        let (part, prob) = if same_hemisphere(wo, wi) {
+            (self.reflectance, prob)
         } else {
-            1.0 - prob
+            (self.transmittance, 1.0 - prob)
         };
-        side * warp::cosine_hemisphere_pdf(wi.z.abs())
+        let [pdf, pdf_reverse] = [wi, wo].map(|w| prob * warp::cosine_hemisphere_pdf(w.z.abs()));
+        BsdfValue {
+            f: part * INV_PI,
+            pdf,
+            pdf_reverse,
+            albedo_reverse: self.albedo().max_lane(),
+        }
     }
 
     #[inline]
@@ -59,8 +57,7 @@ impl DiffuseTransmission {
         let side = if u_lobe < prob { wo.z } else { -wo.z };
         let wi = warp::cosine_hemisphere(u);
         let wi = Vec3::new(wi.x, wi.y, wi.z.copysign(side));
-        let densities = [self.pdf(wo, wi), self.pdf(wi, wo)];
-        BsdfSample::of_densities(wi, self.eval(wo, wi), densities)
+        BsdfSample::of_value(wi, &self.eval(wo, wi))
     }
 
     pub(super) fn examples() -> impl Iterator<Item = (&'static str, Self)> {

@@ -20,6 +20,18 @@ pub struct Ggx {
     alpha_y: f32,
 }
 
+/// Reflection by the facets with normal m halfway between two directions on one side.
+#[derive(Clone, Copy, Debug)]
+pub struct Mirror {
+    /// D(m) G₂(wo, wi) / (4 |cosθ_o cosθ_i|): f without the facets' reflectance [Walter07, eq. 20]. Unit: 1/sr.
+    pub facets: f32,
+    /// wo·m = wi·m.
+    pub cos: f32,
+    /// The densities with which [`Ggx::sample_mirror`] draws wi for wo, and wo for wi: D_v(m) / (4 |v·m|)
+    /// [Walter07, eq. 14]. Measure: solid angle, 1/sr.
+    pub densities: [f32; 2],
+}
+
 impl Ggx {
     /// Slopes α_x and α_y. Smooth where both are below [`SMOOTH_ALPHA`]; else each is at least
     /// 10⁻⁴, so that no term overflows.
@@ -68,27 +80,18 @@ impl Ggx {
         1.0 / (1.0 + self.lambda(wo) + self.lambda(wi))
     }
 
-    /// The density of [`sample_visible`](Self::sample_visible). Measure: solid angle of m, 1/sr.
+    /// Reflection between two directions on one side.
     #[inline]
-    pub fn visible_pdf(self, v: Vec3, m: Vec3) -> f32 {
-        self.g1(v) * v.dot(m).abs() * self.d(m) / v.z.abs()
-    }
-
-    /// D(m) G₂(wo, wi) / (4 |cosθ_o cosθ_i|) with m halfway between two directions on one side, and
-    /// wo·m: reflection by facets, without their reflectance [Walter07, eq. 20]. Unit: 1/sr.
-    #[inline]
-    pub fn mirror(self, wo: Vec3, wi: Vec3) -> (f32, f32) {
+    pub fn mirror(self, wo: Vec3, wi: Vec3) -> Mirror {
         let m = (wo + wi).normalize();
-        let facets = self.d(m) * self.g2(wo, wi);
-        (facets / (4.0 * wo.z * wi.z), wo.dot(m))
-    }
-
-    /// The density of [`sample_mirror`](Self::sample_mirror) [Walter07, eq. 14]. Measure: solid
-    /// angle of wi, 1/sr.
-    #[inline]
-    pub fn mirror_pdf(self, wo: Vec3, wi: Vec3) -> f32 {
-        let m = (wo + wi).normalize();
-        self.visible_pdf(wo, m) / (4.0 * wo.dot(m).abs())
+        let quarter = self.d(m) / 4.0;
+        let [lambda_o, lambda_i] = [wo, wi].map(|w| self.lambda(w));
+        Mirror {
+            facets: quarter / ((1.0 + lambda_o + lambda_i) * (wo.z * wi.z)),
+            cos: wo.dot(m),
+            densities: [(lambda_o, wo), (lambda_i, wi)]
+                .map(|(lambda, w)| quarter / ((1.0 + lambda) * w.z.abs())),
+        }
     }
 
     /// The direction that a facet which `wo` sees reflects it to. None: below the surface.
@@ -153,7 +156,8 @@ mod tests {
     use super::*;
     use crate::math::warp;
 
-    /// Checks ∫ D(m) m_z dm = 1 and ∫ D_v(m) dm = 1, both by uniform directions on a fine grid.
+    /// Checks ∫ D(m) m_z dm = 1 and ∫ D_v(m) dm = 1, both by uniform directions on a fine grid, with D_v as reflection
+    /// has it.
     #[track_caller]
     fn check_normalised(ggx: Ggx, v: Vec3) {
         let n = 1500;
@@ -165,7 +169,9 @@ mod tests {
                 let d_omega = f64::from(2.0 * PI) / f64::from(n * n);
                 area += f64::from(ggx.d(m) * m.z) * d_omega;
                 if v.dot(m) > 0.0 {
-                    visible += f64::from(ggx.visible_pdf(v, m)) * d_omega;
+                    let wi = m * (2.0 * v.dot(m)) - v;
+                    let density = ggx.mirror(v, wi).densities[0] * 4.0 * v.dot(m);
+                    visible += f64::from(density) * d_omega;
                 }
             }
         }

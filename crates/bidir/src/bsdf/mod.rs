@@ -5,12 +5,11 @@
 //! from the surface. `wo` is the known direction, `wi` the sampled one; [`TransportMode`] decides
 //! which of them the light comes from.
 //!
-//! - `eval(wo, wi)` is f, without the cosine. Unit: 1/sr. Zero for Dirac distributions.
 //! - `sample(wo)` draws `wi`, and returns `weight = f·|cosθ_i| / density`.
-//! - `pdf(wo, wi)` is the density of `sample`. Measure: solid angle, 1/sr. Zero for Dirac
-//!   distributions.
+//! - `eval(wo, wi)` is f, without the cosine, and the densities of `sample` in both directions: a [`BsdfValue`],
+//!   as all of them have most terms in common. Zero for Dirac distributions.
 //!
-//! The three describe the same distribution; the batteries in `bsdf/tests` prove it for every
+//! Both describe the same distribution; the batteries in `bsdf/tests` prove it for every
 //! value of [`Bsdf::examples`].
 //!
 //! **Dirac distributions.** A smooth interface scatters into one direction, so its density has a
@@ -20,8 +19,8 @@
 //! the η and θ of the sampled side. Ratios of the two are then the true ratios of densities, which is
 //! all that multiple importance sampling needs.
 //!
-//! **Mixed lobes.** A smooth coat reflects by a Dirac lobe, and its base does not. `eval` and `pdf` are
-//! those of the other lobes, `pdf` with the probability of drawing them, and each sample is marked
+//! **Mixed lobes.** A smooth coat reflects by a Dirac lobe, and its base does not. `eval` is that
+//! of the other lobes, densities with the probability of drawing them, and each sample is marked
 //! with its kind. Almost no path that the one kind makes is made by the other, so on every path the
 //! vertex is the one or the other (docs/derivations/mis-weights.md).
 //!
@@ -75,6 +74,30 @@ impl TransportMode {
     }
 }
 
+/// The scattering between two directions, without Dirac lobes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BsdfValue {
+    /// f for light that goes from one to the other. Unit: 1/sr.
+    pub f: Spectrum,
+    /// The density of drawing `wi` for `wo`: without Dirac lobes, but with the probability that they leave. Measure:
+    /// solid angle, 1/sr.
+    pub pdf: f32,
+    /// The density of drawing `wo` for `wi`.
+    pub pdf_reverse: f32,
+    /// The largest lane of the albedo for `wi`, where anything is scattered.
+    pub albedo_reverse: f32,
+}
+
+impl BsdfValue {
+    /// Nothing is scattered.
+    pub const NONE: Self = Self {
+        f: Spectrum::ZERO,
+        pdf: 0.0,
+        pdf_reverse: 0.0,
+        albedo_reverse: 0.0,
+    };
+}
+
 /// A direction drawn by `Bsdf::sample`.
 #[derive(Clone, Copy, Debug)]
 pub struct BsdfSample {
@@ -87,34 +110,37 @@ pub struct BsdfSample {
     pub pdf: f32,
     /// The coefficient or density of drawing `wo` by a walk that arrives along `wi`.
     pub pdf_reverse: f32,
+    /// The largest lane of the albedo that such a walk meets.
+    pub albedo_reverse: f32,
     /// True where a Dirac lobe was drawn: on this path no strategy may connect at this vertex.
     pub is_delta: bool,
 }
 
 impl BsdfSample {
     /// The mirrored direction, drawn with probability `prob` from a Dirac lobe of `reflectance` that
-    /// is as likely seen from there.
+    /// is as likely seen from there, as is the `albedo`.
     #[inline]
-    fn mirror(wo: Vec3, reflectance: Spectrum, prob: f32) -> Self {
+    fn mirror(wo: Vec3, reflectance: Spectrum, prob: f32, albedo: Spectrum) -> Self {
         let pdf = prob * wo.z.abs();
         Self {
             wi: Vec3::new(-wo.x, -wo.y, wo.z),
             weight: reflectance / prob,
             pdf,
             pdf_reverse: pdf,
+            albedo_reverse: albedo.max_lane(),
             is_delta: true,
         }
     }
 
-    /// A direction of value `f`, with the densities of drawing it and of drawing `wo` from it. None:
-    /// where the density underflows.
+    /// A direction with its value. None: where the density underflows.
     #[inline]
-    fn of_densities(wi: Vec3, f: Spectrum, [pdf, pdf_reverse]: [f32; 2]) -> Option<Self> {
-        (pdf > 0.0 && wi.z != 0.0).then(|| Self {
+    fn of_value(wi: Vec3, value: &BsdfValue) -> Option<Self> {
+        (value.pdf > 0.0 && wi.z != 0.0).then(|| Self {
             wi,
-            weight: f * (wi.z.abs() / pdf),
-            pdf,
-            pdf_reverse,
+            weight: value.f * (wi.z.abs() / value.pdf),
+            pdf: value.pdf,
+            pdf_reverse: value.pdf_reverse,
+            albedo_reverse: value.albedo_reverse,
             is_delta: false,
         })
     }
@@ -142,16 +168,16 @@ pub enum Bsdf {
 }
 
 impl Bsdf {
-    /// f for light that goes from one direction to the other, without Dirac lobes. Unit: 1/sr.
+    /// f, densities and albedo for two directions, without Dirac lobes. `mode` is that of a walk that knows `wo`.
     ///
-    /// Only [`Turn::scatter`](crate::path::Turn::scatter) calls this.
+    /// Paths have it by [`Turn`](crate::path::Turn) alone, which knows geometric normals, too.
     #[inline]
-    pub(crate) fn eval(&self, wo: Vec3, wi: Vec3, mode: TransportMode) -> Spectrum {
+    pub fn eval(&self, wo: Vec3, wi: Vec3, mode: TransportMode) -> BsdfValue {
         match self {
             Self::Diffuse(bsdf) => bsdf.eval(wo, wi),
             Self::Conductor(bsdf) => bsdf.eval(wo, wi),
             Self::Dielectric(bsdf) => bsdf.eval(wo, wi, mode),
-            Self::ThinDielectric(_) => Spectrum::ZERO,
+            Self::ThinDielectric(_) => BsdfValue::NONE,
             Self::DiffuseTransmission(bsdf) => bsdf.eval(wo, wi),
             Self::CoatedDiffuse(bsdf) => bsdf.eval(wo, wi),
             Self::CoatedConductor(bsdf) => bsdf.eval(wo, wi),
@@ -183,22 +209,6 @@ impl Bsdf {
         };
         // If the density underflows, there is no sample.
         sample.filter(|sample| sample.pdf > 0.0)
-    }
-
-    /// The density of `sample` at `wi`, without Dirac lobes but with the probability that they leave.
-    /// Measure: solid angle, 1/sr.
-    #[inline]
-    pub fn pdf(&self, wo: Vec3, wi: Vec3) -> f32 {
-        match self {
-            Self::Diffuse(_) => Diffuse::pdf(wo, wi),
-            Self::Conductor(bsdf) => bsdf.pdf(wo, wi),
-            Self::Dielectric(bsdf) => bsdf.pdf(wo, wi),
-            Self::ThinDielectric(_) => 0.0,
-            Self::DiffuseTransmission(bsdf) => bsdf.pdf(wo, wi),
-            Self::CoatedDiffuse(bsdf) => bsdf.pdf(wo, wi),
-            Self::CoatedConductor(bsdf) => bsdf.pdf(wo, wi),
-            Self::Principled(bsdf) => bsdf.pdf(wo, wi),
-        }
     }
 
     /// True where all scattering is a Dirac distribution.

@@ -31,7 +31,8 @@ impl ThinDielectric {
             return None;
         }
         let reflectance = self.reflectance(wo);
-        let mirrored = BsdfSample::mirror(wo, Spectrum::splat(reflectance), reflectance);
+        let mirrored =
+            BsdfSample::mirror(wo, Spectrum::splat(reflectance), reflectance, Spectrum::ONE);
         if u_lobe < reflectance {
             return Some(mirrored);
         }
@@ -41,7 +42,7 @@ impl ThinDielectric {
             weight: Spectrum::ONE,
             pdf,
             pdf_reverse: pdf,
-            is_delta: true,
+            ..mirrored
         })
     }
 

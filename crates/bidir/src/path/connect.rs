@@ -22,7 +22,7 @@ pub enum Junction {
 
 /// A whole path: a light subpath and a camera subpath, of at least one vertex each, and how their
 /// ends see each other.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct JoinedPath<'a> {
     /// The light's part. For [`Junction::Hit`] it is the vertex that was hit, as a light vertex.
     pub light: &'a [Vertex],
@@ -79,7 +79,10 @@ impl<'a> JoinedPath<'a> {
             camera,
             junction,
             segment,
-            turns: [z.turn(z.wo, segment.w), y.turn(y.wo, -segment.w)],
+            turns: [
+                z.turn(z.wo, segment.w, TransportMode::Importance),
+                y.turn(y.wo, -segment.w, TransportMode::Radiance),
+            ],
         }
     }
 
@@ -136,11 +139,11 @@ impl<'a> JoinedPath<'a> {
             return Spectrum::ZERO;
         }
         let [at_z, at_y] = self.turns();
-        let at_light = at_z.scatter(context, TransportMode::Importance);
+        let at_light = at_z.scatter(context);
         if at_light.is_black() {
             return Spectrum::ZERO;
         }
-        let at_camera = at_y.scatter(context, TransportMode::Radiance);
+        let at_camera = at_y.scatter(context);
         z.beta * at_light * at_camera * y.beta * geometry_term
     }
 

@@ -129,14 +129,12 @@ impl JoinedPath<'_> {
         }
         let mut before = [0.0; 2];
         if s > 1 {
-            let back = at_z.reversed();
-            let survival = factor(context, t + 1, || back.albedo());
-            before[0] = back.pdf(context) * z.to_previous * survival;
+            let (pdf, albedo) = at_z.reversed();
+            before[0] = pdf * z.to_previous * factor(context, t + 1, || albedo);
         }
         if t > 1 {
-            let back = at_y.reversed();
-            let survival = factor(context, s + 1, || back.albedo());
-            before[1] = back.pdf(context) * y.to_previous * survival;
+            let (pdf, albedo) = at_y.reversed();
+            before[1] = pdf * y.to_previous * factor(context, s + 1, || albedo);
         }
         let survival = factor(context, t, || y.albedo_fwd);
         Reversed {

@@ -2,11 +2,12 @@
 //! draw there, and their densities. Visibility and roulette are no part of it.
 
 use super::{PathContext, Scattering, Vertex};
-use crate::bsdf::TransportMode;
+use crate::bsdf::{Bsdf, BsdfValue, TransportMode};
 use crate::light::LightPoint;
 use crate::math::{Vec2, Vec3};
 use crate::medium::MediumScattering;
 use crate::spectrum::Spectrum;
+use std::cell::OnceCell;
 
 /// A direction drawn at a vertex.
 #[derive(Clone, Copy, Debug)]
@@ -27,13 +28,15 @@ pub(super) struct Scattered {
 
 /// A vertex with the directions towards both of its neighbours on a path.
 ///
-/// `wo` is where a walk came from and `wi` where it goes on; whatever is asked of the two shares
-/// their local coordinates.
-#[derive(Clone, Copy, Debug)]
+/// `wo` is where a walk of `mode` came from and `wi` where it goes on; whatever is asked of the two shares
+/// their local coordinates, and the value of a BSDF, which is found when it is first asked for.
+#[derive(Clone, Debug)]
 pub struct Turn<'a> {
     vertex: &'a Vertex,
+    mode: TransportMode,
     wo: Side,
     wi: Side,
+    value: OnceCell<BsdfValue>,
 }
 
 /// A unit direction at a vertex.
@@ -76,14 +79,12 @@ impl<'a> Turn<'a> {
         self.vertex
     }
 
-    /// The same path from its other end.
+    /// Values and densities of `bsdf`, that of the vertex. This is the only caller of `Bsdf::eval`.
     #[inline]
-    pub(super) fn reversed(self) -> Self {
-        Self {
-            wo: self.wi,
-            wi: self.wo,
-            ..self
-        }
+    fn value(&self, bsdf: &Bsdf) -> &BsdfValue {
+        let Self { mode, wo, wi, .. } = self;
+        self.value
+            .get_or_init(|| bsdf.eval(wo.local, wi.local, *mode))
     }
 
     /// The value of the vertex in the measurement contribution: scattering, emission or
@@ -94,22 +95,20 @@ impl<'a> Turn<'a> {
     /// importance. That is the adjoint of shading normals [Veach97, §5.3]; it makes the
     /// integrand one function of the path, whichever end a walk began at. If shading and
     /// geometric normal disagree on the side of a direction, nothing is scattered.
-    ///
-    /// This is the only caller of `Bsdf::eval`.
     #[inline]
-    pub fn scatter(&self, context: &PathContext<'_>, mode: TransportMode) -> Spectrum {
-        let Self { vertex, wo, wi } = self;
+    pub fn scatter(&self, context: &PathContext<'_>) -> Spectrum {
+        let Self { vertex, wo, wi, .. } = self;
         match &vertex.scattering {
             Scattering::Camera | Scattering::Light => vertex.leaving(context, wi.world),
             Scattering::Surface(bsdf) => {
                 if !wo.agrees() || !wi.agrees() {
                     return Spectrum::ZERO;
                 }
-                let from = match mode {
+                let from = match self.mode {
                     TransportMode::Radiance => wi,
                     TransportMode::Importance => wo,
                 };
-                bsdf.eval(wo.local, wi.local, mode) * from.normal_ratio()
+                self.value(bsdf).f * from.normal_ratio()
             }
             Scattering::Medium(medium) => {
                 medium.coefficient * medium.phase.eval(wo.world, wi.world)
@@ -122,21 +121,28 @@ impl<'a> Turn<'a> {
     /// to the probability of the others.
     #[inline]
     pub fn pdf(&self, context: &PathContext<'_>) -> f32 {
-        let Self { vertex, wo, wi } = self;
+        let Self { vertex, wo, wi, .. } = self;
         match &vertex.scattering {
             Scattering::Camera | Scattering::Light => vertex.pdf_leaving(context, wi.world),
-            Scattering::Surface(bsdf) => bsdf.pdf(wo.local, wi.local),
+            Scattering::Surface(bsdf) => self.value(bsdf).pdf,
             Scattering::Medium(medium) => medium.phase.eval(wo.world, wi.world),
         }
     }
 
-    /// The largest lane of the albedo that a walk along -`wo` meets here.
-    #[inline(always)]
-    pub(super) fn albedo(&self) -> f32 {
+    /// Density of drawing `wo` by a walk that comes along -`wi`, in the measure of [`pdf`](Self::pdf), and the largest
+    /// lane of the albedo that it meets. Paths end at a camera or a light: none goes on there.
+    #[inline]
+    pub(super) fn reversed(&self) -> (f32, f32) {
         match &self.vertex.scattering {
-            Scattering::Surface(bsdf) => bsdf.albedo(self.wo.local).max_lane(),
-            Scattering::Medium(medium) => medium.albedo.max_lane(),
-            Scattering::Camera | Scattering::Light => 1.0,
+            Scattering::Surface(bsdf) => {
+                let value = self.value(bsdf);
+                (value.pdf_reverse, value.albedo_reverse)
+            }
+            Scattering::Medium(medium) => {
+                let pdf = medium.phase.eval(self.wi.world, self.wo.world);
+                (pdf, medium.albedo.max_lane())
+            }
+            Scattering::Camera | Scattering::Light => (0.0, 1.0),
         }
     }
 }
@@ -175,13 +181,15 @@ impl Vertex {
         }
     }
 
-    /// The vertex of a walk that came along -`wo` and goes on along `wi`.
+    /// The vertex of a walk of `mode` that came along -`wo` and goes on along `wi`.
     #[inline]
-    pub fn turn(&self, wo: Vec3, wi: Vec3) -> Turn<'_> {
+    pub fn turn(&self, wo: Vec3, wi: Vec3, mode: TransportMode) -> Turn<'_> {
         Turn {
             vertex: self,
+            mode,
             wo: Side::new(self, wo),
             wi: Side::new(self, wi),
+            value: OnceCell::new(),
         }
     }
 
@@ -200,28 +208,22 @@ impl Vertex {
         };
         let wo = Side::new(self, self.wo);
         let sample = bsdf.sample(wo.local, mode, u_lobe, u)?;
-        let turn = Turn {
-            vertex: self,
-            wo,
-            wi: Side::new(self, self.frame.to_world(sample.wi)),
-        };
-        if !turn.wo.agrees() || !turn.wi.agrees() {
+        let wi = Side::new(self, self.frame.to_world(sample.wi));
+        if !wo.agrees() || !wi.agrees() {
             return None;
         }
         // `sample.weight` has the shading cosine of `wi`: for radiance that is `scatter` times the
         // geometric cosine already.
         let weight = match mode {
             TransportMode::Radiance => sample.weight,
-            TransportMode::Importance => {
-                sample.weight * (turn.wo.normal_ratio() / turn.wi.normal_ratio())
-            }
+            TransportMode::Importance => sample.weight * (wo.normal_ratio() / wi.normal_ratio()),
         };
         Some(Scattered {
-            wi: turn.wi.world,
+            wi: wi.world,
             weight,
             pdf: sample.pdf,
             pdf_reverse: sample.pdf_reverse,
-            albedo_reverse: turn.reversed().albedo(),
+            albedo_reverse: sample.albedo_reverse,
             is_delta: sample.is_delta,
         })
     }

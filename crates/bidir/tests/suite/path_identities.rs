@@ -57,10 +57,10 @@ fn rewalk(
             let edge = edge(context, &before, &vertex)?;
             segment.pass(&edge);
             vertex.wo = -segment.w;
-            vertex.pdf_fwd = before.turn(before.wo, segment.w).pdf(context) * segment.to_b;
+            vertex.pdf_fwd = before.turn(before.wo, segment.w, mode).pdf(context) * segment.to_b;
             vertex.to_previous = segment.to_a;
             let roulette = survival(context, i, &before);
-            let scatter = before.turn(before.wo, -vertex.wo).scatter(context, mode);
+            let scatter = before.turn(before.wo, -vertex.wo, mode).scatter(context);
             let step = segment.geometry_term / (vertex.pdf_fwd * roulette);
             // The first camera density counts samples per pixel, and so does importance.
             vertex.beta = before.beta * scatter * edge.transmittance * step;
@@ -73,7 +73,7 @@ fn rewalk(
         if let Some(after) = walk.get(i + 2).copied() {
             let (wi, mut back) = (next.segment_to(&after).w, next.segment_to(&vertex));
             back.pass(&edge(context, &next, &vertex)?);
-            walk[i].pdf_rev = next.turn(wi, back.w).pdf(context) * back.to_b;
+            walk[i].pdf_rev = next.turn(wi, back.w, mode).pdf(context) * back.to_b;
             walk[i + 1].albedo_rev = next.albedo(wi).max_lane();
         }
     }
@@ -231,8 +231,8 @@ fn strategies(context: &PathContext<'_>, path: &[Vertex]) -> Option<Vec<(usize, 
             x0.pdf_rev = camera[n - 1].pdf_fwd;
             x0.to_previous = camera[n - 1].to_previous;
             let w = JoinedPath::hit(&x0, &camera[..n - 1]).weight(context, &mut densities);
-            let turn = x0.turn(x0.wo, camera[n - 1].wo);
-            let emitted = turn.scatter(context, TransportMode::Importance);
+            let turn = x0.turn(x0.wo, camera[n - 1].wo, TransportMode::Importance);
+            let emitted = turn.scatter(context);
             result.push((s, w, camera[n - 1].beta * emitted));
             continue;
         }

@@ -50,6 +50,15 @@ pub(super) struct Coat<const R: usize, const L: usize> {
     length: Curve<L>,
 }
 
+/// An interface as light along one direction meets it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Seen {
+    /// About the part that it reflects; exact where it is smooth.
+    pub(super) reflected: f32,
+    /// T: the part that it lets through to the base.
+    pub(super) through: f32,
+}
+
 impl<const R: usize, const L: usize> Coat<R, L> {
     /// A coat with facets of `ggx` under the interface of `layer`, which `ratio` gives the
     /// transmittance.
@@ -89,11 +98,18 @@ impl<const R: usize, const L: usize> Coat<R, L> {
     /// T(w): the part of light along `w` that the interface lets through to the base.
     #[inline]
     pub(super) fn transmittance(&self, w: Vec3) -> f32 {
-        let through = 1.0 - self.reflectance(w);
-        if self.is_smooth() {
-            return through;
+        self.interface(w).through
+    }
+
+    /// The interface as light along `w` meets it.
+    #[inline]
+    pub(super) fn interface(&self, w: Vec3) -> Seen {
+        let reflected = self.reflectance(w);
+        let mut through = 1.0 - reflected;
+        if !self.is_smooth() {
+            through = (through * self.ratio.at(w.z.abs())).clamp(0.0, 1.0);
         }
-        (through * self.ratio.at(w.z.abs())).clamp(0.0, 1.0)
+        Seen { reflected, through }
     }
 
     /// The direction within the layer, on the same side, as a smooth interface bends it. None: total
@@ -132,23 +148,16 @@ impl<const R: usize, const L: usize> Coat<R, L> {
         })
     }
 
-    /// f of the interface's reflection. Unit: 1/sr. Zero where it is smooth.
+    /// f of the interface's reflection, and the densities with which [`sample`](Self::sample) draws `wi` for `wo`, and
+    /// `wo` for `wi`. Unit of all: 1/sr. Zero where it is smooth.
     #[inline]
-    pub(super) fn eval(&self, wo: Vec3, wi: Vec3) -> f32 {
+    pub(super) fn eval(&self, wo: Vec3, wi: Vec3) -> (f32, [f32; 2]) {
         if self.is_smooth() {
-            return 0.0;
+            return (0.0, [0.0; 2]);
         }
-        let (facets, cos) = self.ggx.mirror(wo, wi);
-        facets * fresnel::dielectric(cos.abs(), self.eta)
-    }
-
-    /// The density of [`sample`](Self::sample). Measure: solid angle, 1/sr. Zero where it is smooth.
-    #[inline]
-    pub(super) fn pdf(&self, wo: Vec3, wi: Vec3) -> f32 {
-        if self.is_smooth() {
-            return 0.0;
-        }
-        self.ggx.mirror_pdf(wo, wi)
+        let mirror = self.ggx.mirror(wo, wi);
+        let reflected = fresnel::dielectric(mirror.cos.abs(), self.eta);
+        (mirror.facets * reflected, mirror.densities)
     }
 
     /// Draws a direction of the rough interface's reflection. None: below the surface.

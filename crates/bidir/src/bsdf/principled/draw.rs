@@ -1,71 +1,16 @@
 //! Drawing directions: a lobe by about what it scatters, then a direction from it. The density is the
 //! sum over all lobes.
 
-use super::{EVEN, Lobe, Principled, Probs, Side, Wall, coat_fresnel, mirrored_below};
+use super::{Lobe, Principled, Probs, Wall, coat_fresnel, mirrored_below};
 use crate::bsdf::dielectric::refract;
 use crate::bsdf::{BsdfSample, TransportMode, same_hemisphere};
 use crate::math::{ONE_MINUS_EPSILON, Vec2, Vec3, sqr, warp};
 use crate::spectrum::Spectrum;
 
 impl Principled {
-    #[inline]
-    pub(in crate::bsdf) fn pdf(&self, wo: Vec3, wi: Vec3) -> f32 {
-        if wo.z == 0.0 || wi.z == 0.0 {
-            return 0.0;
-        }
-        let (wo, wi) = (self.along_grain(wo), self.along_grain(wi));
-        let Some(probs) = self.probs(wo) else {
-            return 0.0;
-        };
-        let is_reflected = same_hemisphere(wo, wi);
-        let side = if is_reflected {
-            self.diffuse_reflection_prob()
-        } else {
-            1.0 - self.diffuse_reflection_prob()
-        };
-        let mut pdf = probs.diffuse * side * warp::cosine_hemisphere_pdf(wi.z.abs());
-        if is_reflected {
-            pdf += probs.sheen * EVEN;
-            if probs.coat > 0.0 && !self.coat_ggx().is_smooth() {
-                pdf += probs.coat * self.coat_ggx().mirror_pdf(wo, wi);
-            }
-        }
-        if probs.facets > 0.0 && !self.ggx.is_smooth() {
-            pdf += probs.facets * self.facets_pdf(wo, wi);
-        }
-        pdf
-    }
-
-    /// The density of `wi` where a facet is drawn that `wo` sees, and reflects or lets through.
-    #[inline]
-    fn facets_pdf(&self, wo: Vec3, wi: Vec3) -> f32 {
-        if same_hemisphere(wo, wi) {
-            let m = (wo + wi).normalize();
-            let cos = wo.dot(m).abs().copysign(wo.z);
-            let prob = self.reflection_prob(cos).unwrap_or(0.0);
-            return prob * self.ggx.mirror_pdf(wo, wi);
-        }
-        if self.glass <= 0.0 {
-            return 0.0;
-        }
-        if self.wall == Wall::Thin {
-            let wi = mirrored_below(wi);
-            let cos = wo.dot((wo + wi).normalize());
-            let prob = 1.0 - self.reflection_prob(cos).unwrap_or(1.0);
-            return prob * self.ggx.mirror_pdf(wo, wi);
-        }
-        let interface = self.interface();
-        let Some((m, Side::Transmission)) = interface.facet(wo, wi) else {
-            return 0.0;
-        };
-        let prob = 1.0 - self.reflection_prob(wo.dot(m)).unwrap_or(1.0);
-        let jacobian = wi.dot(m).abs() * interface.refraction_jacobian(wo, wi, m);
-        prob * self.ggx.visible_pdf(wo, m) * jacobian
-    }
-
     /// The probability that light which is scattered diffusely stays on its side.
     #[inline]
-    fn diffuse_reflection_prob(&self) -> f32 {
+    pub(super) fn diffuse_reflection_prob(&self) -> f32 {
         let [back, through] = [self.tint * self.diffuse, self.through].map(Spectrum::max_lane);
         if through > 0.0 {
             back / (back + through)
@@ -108,8 +53,7 @@ impl Principled {
             grain: Vec2::X,
             ..*self
         };
-        let densities = [along.pdf(wo, wi), along.pdf(wi, wo)];
-        BsdfSample::of_densities(wi, along.eval(wo, wi, mode), densities)
+        BsdfSample::of_value(wi, &along.eval(wo, wi, mode))
     }
 
     /// Draws a direction from a lobe that is no Dirac distribution. None: it does not leave.
@@ -157,10 +101,10 @@ impl Principled {
             prob += probs.map_or(0.0, |probs| probs.coat);
         }
         if self.ggx.is_smooth() {
-            reflectance += self.facet(wo.z).0 * sqr(self.layers(wo));
+            reflectance += self.facet(wo.z).0 * sqr(self.layers(wo).below());
             prob += self.smooth_probs(wo)[0];
         }
-        let drawn = BsdfSample::mirror(wo, reflectance, prob);
+        let drawn = BsdfSample::mirror(wo, reflectance, prob, self.albedo(wo));
         let pdf = drawn.pdf * sqr(if self.is_bare(wo) { self.eta } else { 1.0 });
         BsdfSample {
             pdf,
@@ -193,12 +137,14 @@ impl Principled {
             }
         };
         let [prob, reverse] = [wo, wi].map(|w| self.smooth_probs(w)[1]);
-        let value = self.facet(wo.z).1 * (scale * self.layers(wo) * self.layers(wi));
+        let value =
+            self.facet(wo.z).1 * (scale * self.layers(wo).below() * self.layers(wi).below());
         (wi.z != 0.0 && prob > 0.0).then(|| BsdfSample {
             wi,
             weight: value / prob,
             pdf: prob * sqr(index_i) * wi.z.abs(),
             pdf_reverse: reverse * sqr(index_o) * wo.z.abs(),
+            albedo_reverse: self.albedo(wi).max_lane(),
             is_delta: true,
         })
     }

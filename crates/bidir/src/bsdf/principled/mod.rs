@@ -86,6 +86,24 @@ struct Probs {
     sheen: f32,
 }
 
+/// What lies on the base, as light along one direction meets it.
+struct Layers {
+    /// Ẽ of the coat, times how much it covers.
+    coat: f32,
+    /// Ẽ of the sheen's brightest lane.
+    sheen: f32,
+    /// W̃ of the base's facets.
+    weight: f32,
+}
+
+impl Layers {
+    /// The part of light that coat and sheen leave.
+    #[inline]
+    fn below(&self) -> f32 {
+        (1.0 - self.coat) * (1.0 - self.sheen)
+    }
+}
+
 impl Principled {
     /// The slope that bounds go by.
     #[inline]
@@ -123,23 +141,21 @@ impl Principled {
         self.sheen.max_lane() * under::sheen_albedo(w.z.abs(), self.sheen_alpha)
     }
 
-    /// The part of light along `w` that coat and sheen leave.
+    /// What lies on the base, as light along `w` meets it.
     #[inline]
-    fn layers(&self, w: Vec3) -> f32 {
-        (1.0 - self.coat_albedo(w)) * (1.0 - self.sheen_albedo(w))
+    fn layers(&self, w: Vec3) -> Layers {
+        Layers {
+            coat: self.coat_albedo(w),
+            sheen: self.sheen_albedo(w),
+            weight: under::facet_weight(w.z.abs(), self.alpha()),
+        }
     }
 
     /// k: the part that the dielectric's reflection leaves for a diffuse base.
     #[inline]
-    fn uncovered(&self, w: Vec3) -> f32 {
-        self.uncovered_at(under::facet_weight(w.z.abs(), self.alpha()))
-    }
-
-    /// The same, given W̃.
-    #[inline]
-    fn uncovered_at(&self, weight: f32) -> f32 {
+    fn uncovered(&self, seen: &Layers) -> f32 {
         let [f0, f90] = self.cover;
-        (1.0 - f0 - (f90 - f0) * weight).clamp(0.0, 1.0)
+        (1.0 - f0 - (f90 - f0) * seen.weight).clamp(0.0, 1.0)
     }
 
     /// The part of light that facets of the transparent part reflect; `cos` is positive outside.
@@ -187,28 +203,31 @@ impl Principled {
 
     /// About the part of light along `w` that each lobe scatters.
     #[inline]
-    fn shares(&self, w: Vec3) -> [Spectrum; 4] {
-        let [coat, fibres] = [self.coat_albedo(w), self.sheen_albedo(w)];
-        let below = (1.0 - coat) * (1.0 - fibres);
-        let weight = under::facet_weight(w.z.abs(), self.alpha());
+    fn shares(&self, w: Vec3, seen: &Layers) -> [Spectrum; 4] {
         let (_, crossing) = self.facet(w.z);
         // Facets tilted away from `w` reflect where the bound is zero.
         let tilted = 0.01 * self.f90.max(self.glass);
-        let facets = self.reflectance(w.z, weight) + crossing + Spectrum::splat(tilted);
+        let facets = self.reflectance(w.z, seen.weight) + crossing + Spectrum::splat(tilted);
         let diffuse = self.tint * self.diffuse + self.through;
         [
-            Spectrum::splat(coat),
-            facets * below,
-            diffuse * (PI * below * self.uncovered_at(weight)),
-            self.sheen.map(|lane| lane.min(1.0)) * ((1.0 - coat) * fibres),
+            Spectrum::splat(seen.coat),
+            facets * seen.below(),
+            diffuse * (PI * seen.below() * self.uncovered(seen)),
+            self.sheen.map(|lane| lane.min(1.0)) * ((1.0 - seen.coat) * seen.sheen),
         ]
     }
 
-    /// The probabilities of drawing from each lobe; they depend on |cosθ| and the side alone. None:
+    /// The probabilities of drawing from each lobe, for light along `w`; they depend on |cosθ| and the side alone. None:
     /// nothing is scattered.
     #[inline]
     fn probs(&self, w: Vec3) -> Option<Probs> {
-        let mut shares = self.shares(w).map(Spectrum::max_lane);
+        self.probs_of(&self.shares(w, &self.layers(w)))
+    }
+
+    /// The same, given the shares.
+    #[inline]
+    fn probs_of(&self, shares: &[Spectrum; 4]) -> Option<Probs> {
+        let mut shares = shares.map(Spectrum::max_lane);
         if self.f0.is_black() && self.f90 <= 0.0 && self.glass <= 0.0 {
             shares[1] = 0.0;
         }
@@ -240,8 +259,13 @@ impl Principled {
 
     #[inline]
     pub(super) fn albedo(&self, wo: Vec3) -> Spectrum {
-        let [coat, facets, diffuse, sheen] = self.shares(wo);
-        (coat + facets + diffuse + sheen).map(|lane| lane.clamp(0.0, 1.0))
+        Self::albedo_of(&self.shares(wo, &self.layers(wo)))
+    }
+
+    /// The albedo, given the shares.
+    #[inline]
+    fn albedo_of([coat, facets, diffuse, sheen]: &[Spectrum; 4]) -> Spectrum {
+        (*coat + *facets + *diffuse + *sheen).map(|lane| lane.clamp(0.0, 1.0))
     }
 
     /// A direction in the axes of the grain.

@@ -1,82 +1,140 @@
-//! The value of the scattering: the sum of all lobes that are no Dirac distributions.
+//! The value of the scattering, and the density of drawing it: the sums over all lobes that are no Dirac distributions.
 
-use super::{Principled, Side, Wall, coat_fresnel, mirrored_below, sheen};
-use crate::bsdf::{TransportMode, same_hemisphere};
-use crate::math::Vec3;
+use super::{EVEN, Layers, Principled, Side, Wall, coat_fresnel, mirrored_below, sheen};
+use crate::bsdf::{BsdfValue, TransportMode, same_hemisphere};
+use crate::math::{Vec3, warp};
 use crate::spectrum::Spectrum;
+
+/// A lobe between two directions: f, and the densities of drawing each for the other.
+struct LobeValue {
+    f: Spectrum,
+    densities: [f32; 2],
+}
+
+impl LobeValue {
+    const NONE: Self = Self {
+        f: Spectrum::ZERO,
+        densities: [0.0; 2],
+    };
+}
 
 impl Principled {
     #[inline]
-    pub(in crate::bsdf) fn eval(&self, wo: Vec3, wi: Vec3, mode: TransportMode) -> Spectrum {
+    pub(in crate::bsdf) fn eval(&self, wo: Vec3, wi: Vec3, mode: TransportMode) -> BsdfValue {
         if wo.z == 0.0 || wi.z == 0.0 {
-            return Spectrum::ZERO;
+            return BsdfValue::NONE;
         }
-        let (wo, wi) = (self.along_grain(wo), self.along_grain(wi));
-        if same_hemisphere(wo, wi) {
-            self.eval_reflection(wo, wi)
+        let pair = [wo, wi].map(|w| self.along_grain(w));
+        let seen = pair.map(|w| self.layers(w));
+        let shares = [0, 1].map(|end| self.shares(pair[end], &seen[end]));
+        let is_reflected = same_hemisphere(wo, wi);
+        let [facets, coat] = if is_reflected {
+            [self.reflecting_facets(pair), self.coat_lobe(pair)]
         } else {
-            self.eval_transmission(wo, wi, mode)
+            [self.crossing_facets(pair, mode), LobeValue::NONE]
+        };
+        let f = if is_reflected {
+            self.reflected(pair, &seen, facets.f) + coat.f
+        } else {
+            self.crossed(&seen, facets.f)
+        };
+        let stays = self.diffuse_reflection_prob();
+        let side = if is_reflected { stays } else { 1.0 - stays };
+        let even = if is_reflected { EVEN } else { 0.0 };
+        let pdf = |from: usize| {
+            let probs = self.probs_of(&shares[from])?;
+            let diffuse = side * warp::cosine_hemisphere_pdf(pair[1 - from].z.abs());
+            let of_facets = probs.facets * facets.densities[from];
+            let of_coat = probs.coat * coat.densities[from];
+            Some(probs.diffuse * diffuse + probs.sheen * even + of_facets + of_coat)
+        };
+        BsdfValue {
+            f,
+            pdf: pdf(0).unwrap_or(0.0),
+            pdf_reverse: pdf(1).unwrap_or(0.0),
+            albedo_reverse: Self::albedo_of(&shares[1]).max_lane(),
         }
     }
 
+    /// f of all lobes but the coat on one side, where `facets` is that of the base's facets.
     #[inline]
-    fn eval_reflection(&self, wo: Vec3, wi: Vec3) -> Spectrum {
-        let mut base = Spectrum::ZERO;
-        if !self.ggx.is_smooth() {
-            let (facets, cos) = self.ggx.mirror(wo, wi);
-            let (reflected, _) = self.facet(cos.abs().copysign(wo.z));
-            base += reflected * facets;
-        }
+    fn reflected(&self, [wo, wi]: [Vec3; 2], [o, i]: &[Layers; 2], facets: Spectrum) -> Spectrum {
+        let mut base = facets;
         if self.diffuse > 0.0 {
-            base += self.tint * (self.diffuse * self.uncovered(wo) * self.uncovered(wi));
+            base += self.tint * (self.diffuse * self.uncovered(o) * self.uncovered(i));
         }
-        base *= Spectrum::splat(self.layers(wo) * self.layers(wi));
-        if self.is_bare(wo) {
+        base *= Spectrum::splat(o.below() * i.below());
+        if self.sheen.is_black() || self.is_bare(wo) {
             return base;
         }
-        let under_coat = (1.0 - self.coat_albedo(wo)) * (1.0 - self.coat_albedo(wi));
-        if !self.sheen.is_black() {
-            base += self.sheen * (sheen::eval(wo, wi, self.sheen_alpha) * under_coat);
-        }
-        base + Spectrum::splat(self.eval_coat(wo, wi))
+        let under_coat = (1.0 - o.coat) * (1.0 - i.coat);
+        base + self.sheen * (sheen::eval(wo, wi, self.sheen_alpha) * under_coat)
+    }
+
+    /// f of all lobes through the surface, where `facets` is that of facets.
+    #[inline]
+    fn crossed(&self, [o, i]: &[Layers; 2], facets: Spectrum) -> Spectrum {
+        let diffuse = self.through * (self.uncovered(o) * self.uncovered(i));
+        (facets + diffuse) * (o.below() * i.below())
     }
 
     #[inline]
-    fn eval_coat(&self, wo: Vec3, wi: Vec3) -> f32 {
+    fn coat_lobe(&self, [wo, wi]: [Vec3; 2]) -> LobeValue {
         let ggx = self.coat_ggx();
-        if self.coat <= 0.0 || ggx.is_smooth() {
-            return 0.0;
+        if self.coat <= 0.0 || self.is_bare(wo) || ggx.is_smooth() {
+            return LobeValue::NONE;
         }
-        let (facets, cos) = ggx.mirror(wo, wi);
-        self.coat * facets * coat_fresnel(cos.abs())
+        let mirror = ggx.mirror(wo, wi);
+        let reflected = self.coat * mirror.facets * coat_fresnel(mirror.cos.abs());
+        LobeValue {
+            f: Spectrum::splat(reflected),
+            densities: mirror.densities,
+        }
     }
 
+    /// The facets that reflect, without the layers on them.
     #[inline]
-    fn eval_transmission(&self, wo: Vec3, wi: Vec3, mode: TransportMode) -> Spectrum {
-        let mut f = Spectrum::ZERO;
-        if !self.through.is_black() {
-            f += self.through * (self.uncovered(wo) * self.uncovered(wi));
+    fn reflecting_facets(&self, [wo, wi]: [Vec3; 2]) -> LobeValue {
+        if self.ggx.is_smooth() {
+            return LobeValue::NONE;
         }
-        if self.glass > 0.0 && !self.ggx.is_smooth() {
-            f += match self.wall {
-                Wall::Solid => self.eval_refraction(wo, wi, mode),
-                Wall::Thin => {
-                    let (facets, cos) = self.ggx.mirror(wo, mirrored_below(wi));
-                    self.facet(cos).1 * facets
-                }
+        let mirror = self.ggx.mirror(wo, wi);
+        let cos = mirror.cos.abs().copysign(wo.z);
+        let prob = self.reflection_prob(cos).unwrap_or(0.0);
+        LobeValue {
+            f: self.facet(cos).0 * mirror.facets,
+            densities: mirror.densities.map(|pdf| prob * pdf),
+        }
+    }
+
+    /// The facets that let through.
+    #[inline]
+    fn crossing_facets(&self, [wo, wi]: [Vec3; 2], mode: TransportMode) -> LobeValue {
+        if self.glass <= 0.0 || self.ggx.is_smooth() {
+            return LobeValue::NONE;
+        }
+        let crossing_prob = |cos| 1.0 - self.reflection_prob(cos).unwrap_or(1.0);
+        if self.wall == Wall::Thin {
+            let mirror = self.ggx.mirror(wo, mirrored_below(wi));
+            let prob = crossing_prob(mirror.cos);
+            return LobeValue {
+                f: self.facet(mirror.cos).1 * mirror.facets,
+                densities: mirror.densities.map(|pdf| prob * pdf),
             };
         }
-        f * (self.layers(wo) * self.layers(wi))
-    }
-
-    #[inline]
-    fn eval_refraction(&self, wo: Vec3, wi: Vec3, mode: TransportMode) -> Spectrum {
         let interface = self.interface();
         let Some((m, Side::Transmission)) = interface.facet(wo, wi) else {
-            return Spectrum::ZERO;
+            return LobeValue::NONE;
         };
-        let facets = self.ggx.d(m) * self.ggx.g2(wo, wi) / (wo.z * wi.z).abs();
-        let bend = (wo.dot(m) * wi.dot(m)).abs() * interface.refraction_jacobian(wo, wi, m);
-        self.facet(wo.dot(m)).1 * (facets * bend * interface.crossing_scale(wo, mode))
+        let crossing = interface.crossing(wo, wi, m);
+        let [pdf, pdf_reverse] = crossing.densities;
+        let scale = crossing.facets * interface.crossing_scale(wo, mode);
+        LobeValue {
+            f: self.facet(wo.dot(m)).1 * scale,
+            densities: [
+                crossing_prob(wo.dot(m)) * pdf,
+                crossing_prob(wi.dot(m)) * pdf_reverse,
+            ],
+        }
     }
 }

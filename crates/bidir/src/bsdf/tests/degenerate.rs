@@ -2,7 +2,7 @@ use super::{MODES, direction};
 use crate::bsdf::coat::{Layer, Reflections, Slab};
 use crate::bsdf::microfacet::Ggx;
 use crate::bsdf::{
-    Bsdf, CoatedConductor, CoatedDiffuse, CoatedMetal, Conductor, Dielectric, Diffuse,
+    Bsdf, BsdfValue, CoatedConductor, CoatedDiffuse, CoatedMetal, Conductor, Dielectric, Diffuse,
     DiffuseTransmission, Filling, ThinDielectric,
 };
 use crate::math::{ONE_MINUS_EPSILON, Vec2, Vec3};
@@ -96,7 +96,6 @@ fn values_are_numbers_in_every_corner() {
     let bsdf = prop_oneof![a_bsdf().boxed(), prop::sample::select(coated()).boxed()];
     check_property(&(bsdf, a_direction(), a_direction(), numbers), |case| {
         let (bsdf, wo, wi, (u_lobe, u_x, u_y)) = case;
-        prop_assert!(bsdf.pdf(wo, wi) >= 0.0 && bsdf.pdf(wo, wi).is_finite());
         prop_assert!(
             bsdf.albedo(wo)
                 .0
@@ -104,7 +103,17 @@ fn values_are_numbers_in_every_corner() {
                 .all(|lane| (0.0..=1.0).contains(lane))
         );
         for mode in MODES {
-            let f = bsdf.eval(wo, wi, mode);
+            let BsdfValue {
+                f,
+                pdf,
+                pdf_reverse,
+                ..
+            } = bsdf.eval(wo, wi, mode);
+            prop_assert!(pdf >= 0.0 && pdf.is_finite(), "density {pdf}");
+            prop_assert!(
+                pdf_reverse >= 0.0 && pdf_reverse.is_finite(),
+                "density {pdf_reverse}"
+            );
             prop_assert!(
                 f.is_finite() && f.0.iter().all(|&lane| lane >= 0.0),
                 "f = {f:?}"

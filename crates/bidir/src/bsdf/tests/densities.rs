@@ -22,7 +22,12 @@ fn check(is_taken: impl Fn(&str) -> bool) {
             // The part of a Dirac lobe is not in the density.
             (!drawn.is_delta).then_some(drawn.wi)
         });
-        battery.chi2(&name, &grid, |wi| bsdf.pdf(wo, wi), draws);
+        battery.chi2(
+            &name,
+            &grid,
+            |wi| bsdf.eval(wo, wi, TransportMode::Radiance).pdf,
+            draws,
+        );
     }
     battery.check();
 }

@@ -115,7 +115,7 @@ fn a_grid_of_values_holds_the_energy_of_the_draws() {
             let z = 1.0 - 2.0 * ((i / n) as f32 + 0.5) / n as f32;
             let phi = std::f32::consts::TAU * ((i % n) as f32 + 0.5) / n as f32;
             let wi = direction(z, phi);
-            let f = bsdf.eval(wo, wi, TransportMode::Importance)[0];
+            let f = bsdf.eval(wo, wi, TransportMode::Importance).f[0];
             integral += f64::from(f * z.abs()) * 4.0 * std::f64::consts::PI / f64::from(n * n);
         }
         let (sum, _) = scattered(&bsdf, wo, "quadrature");

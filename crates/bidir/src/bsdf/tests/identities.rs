@@ -20,19 +20,29 @@ fn check_sample(bsdf: &Bsdf, wo: Vec3, mode: TransportMode, drawn: &BsdfSample, 
     let wi = drawn.wi;
     assert!((wi.length() - 1.0).abs() < 1e-4, "{case}: wi {wi}");
     assert!(!drawn.is_delta && drawn.pdf > 0.0, "{case}");
-    check_close(drawn.pdf, bsdf.pdf(wo, wi), 1e-3, case);
-    check_close(drawn.pdf_reverse, bsdf.pdf(wi, wo), 1e-3, case);
-    let weight = bsdf.eval(wo, wi, mode) * (wi.z.abs() / drawn.pdf);
+    let value = bsdf.eval(wo, wi, mode);
+    check_close(drawn.pdf, value.pdf, 1e-3, case);
+    check_close(drawn.pdf_reverse, value.pdf_reverse, 1e-3, case);
+    check_close(drawn.albedo_reverse, value.albedo_reverse, 1e-6, case);
+    let weight = value.f * (wi.z.abs() / drawn.pdf);
     check_spectra(drawn.weight, weight, case);
 }
 
-/// Checks that light flows alike in both directions, up to the radiance that crossing scales.
+/// Checks that light flows alike in both directions, up to the radiance that crossing scales, and that what holds for
+/// a walk the other way is its own.
 #[track_caller]
 fn check_reciprocity(bsdf: &Bsdf, wo: Vec3, wi: Vec3, case: &str) {
-    let [radiance, importance] = MODES.map(|mode| bsdf.eval(wo, wi, mode));
-    check_spectra(radiance, bsdf.eval(wi, wo, TransportMode::Importance), case);
+    let [forth, back] = [[wo, wi], [wi, wo]].map(|[a, b]| MODES.map(|mode| bsdf.eval(a, b, mode)));
+    for (forth, back) in forth.iter().zip(&back) {
+        check_close(forth.pdf, back.pdf_reverse, 1e-3, case);
+        check_close(forth.pdf_reverse, back.pdf, 1e-3, case);
+        let albedo = bsdf.albedo(wi).max_lane();
+        check_close(forth.albedo_reverse, albedo, 1e-6, case);
+    }
+    let [radiance, importance] = forth.map(|value| value.f);
+    check_spectra(radiance, back[1].f, case);
     if same_hemisphere(wo, wi) {
-        check_spectra(radiance, bsdf.eval(wi, wo, TransportMode::Radiance), case);
+        check_spectra(radiance, back[0].f, case);
         check_spectra(radiance, importance, case);
     } else {
         // (η_o/η_i)², with wo on the side that radiance goes to.
@@ -122,7 +132,7 @@ fn check_dirac(bsdf: &Bsdf, wo: Vec3, mode: TransportMode, u_lobe: f32, case: &s
         "{case}"
     );
     assert!(
-        bsdf.eval(wo, drawn.wi, mode).is_black() && bsdf.pdf(wo, drawn.wi) <= 0.0,
+        bsdf.eval(wo, drawn.wi, mode).f.is_black() && bsdf.eval(wo, drawn.wi, mode).pdf <= 0.0,
         "{case}"
     );
     let back = bsdf
@@ -192,7 +202,7 @@ fn light_goes_through_only_what_transmits() {
             let get = |i| sample.get_2d(Dimension::at(i, Purpose::Scatter));
             (warp::uniform_sphere(get(0)), warp::uniform_sphere(get(1)))
         }) {
-            let f = bsdf.eval(wo, wi, TransportMode::Radiance);
+            let f = bsdf.eval(wo, wi, TransportMode::Radiance).f;
             crossing += usize::from(!f.is_black() && !same_hemisphere(wo, wi));
         }
         assert!(crossing == 0 || bsdf.transmits(), "{name}: {crossing}");

@@ -103,7 +103,7 @@ fn next_event(
         ends[0].media = context.job.scene.light_media(light);
     }
     let mut segment = Segment::between(&ends[0], &ends[1]);
-    let turn = vertex.turn(vertex.wo, -segment.w);
+    let turn = vertex.turn(vertex.wo, -segment.w, TransportMode::Radiance);
     let contribution = arriving(context, &turn, light, &x0, &segment);
     if contribution == Spectrum::ZERO {
         return None;
@@ -144,5 +144,5 @@ fn arriving(
     if emitted.is_black() {
         return Spectrum::ZERO;
     }
-    emitted * turn.scatter(context, TransportMode::Radiance) * turn.vertex().beta * factor
+    emitted * turn.scatter(context) * turn.vertex().beta * factor
 }

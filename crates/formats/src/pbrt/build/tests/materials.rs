@@ -1,5 +1,5 @@
 use super::{check_world, world};
-use bidir::bsdf::Bsdf;
+use bidir::bsdf::{Bsdf, TransportMode};
 use bidir::material::Material;
 use bidir::math::{Vec2, Vec3};
 use bidir::spectrum::{ColorModel, Wavelengths};
@@ -90,7 +90,10 @@ fn unequal_slopes_of_a_coat_turn_with_the_surface() {
         panic!("the material is a coated diffuse one");
     };
     let bsdf = Bsdf::CoatedDiffuse(bsdf);
-    let along = |w: Vec3| bsdf.pdf(Vec3::Z, w.normalize());
+    let along = |w: Vec3| {
+        let value = bsdf.eval(Vec3::Z, w.normalize(), TransportMode::Radiance);
+        value.pdf
+    };
     assert!(along(Vec3::new(0.5, 0.0, 1.0)) > 1.2 * along(Vec3::new(0.0, 0.5, 1.0)));
 }
 
