@@ -5,6 +5,7 @@
 //! weights and selection never ask. Only three edges convert, and each takes the sample's
 //! [`Wavelengths`]: emission, texture look-up and film development.
 
+use glam::Vec4;
 use std::ops::{Add, AddAssign, Div, Index, Mul, MulAssign, Sub};
 
 /// Four lanes of radiance, importance, reflectance or throughput.
@@ -22,6 +23,12 @@ impl Spectrum {
     #[inline]
     pub const fn splat(value: f32) -> Self {
         Self([value; 4])
+    }
+
+    /// The lanes in one register.
+    #[inline]
+    fn lanes(self) -> Vec4 {
+        Vec4::from_array(self.0)
     }
 
     /// Applies `f` lane by lane.
@@ -47,7 +54,7 @@ impl Spectrum {
     /// True where every lane is exactly zero.
     #[inline]
     pub fn is_black(self) -> bool {
-        self.0.iter().all(|&lane| lane == 0.0)
+        self.lanes().cmpeq(Vec4::ZERO).all()
     }
 
     /// True where no lane is NaN or infinite.
@@ -69,7 +76,7 @@ impl Add for Spectrum {
     type Output = Self;
     #[inline]
     fn add(self, other: Self) -> Self {
-        self.zip(other, |a, b| a + b)
+        Self((self.lanes() + other.lanes()).to_array())
     }
 }
 
@@ -84,7 +91,7 @@ impl Sub for Spectrum {
     type Output = Self;
     #[inline]
     fn sub(self, other: Self) -> Self {
-        self.zip(other, |a, b| a - b)
+        Self((self.lanes() - other.lanes()).to_array())
     }
 }
 
@@ -92,7 +99,7 @@ impl Mul for Spectrum {
     type Output = Self;
     #[inline]
     fn mul(self, other: Self) -> Self {
-        self.zip(other, |a, b| a * b)
+        Self((self.lanes() * other.lanes()).to_array())
     }
 }
 
@@ -107,7 +114,7 @@ impl Mul<f32> for Spectrum {
     type Output = Self;
     #[inline]
     fn mul(self, scale: f32) -> Self {
-        self.map(|lane| lane * scale)
+        Self((self.lanes() * scale).to_array())
     }
 }
 

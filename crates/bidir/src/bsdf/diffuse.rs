@@ -18,11 +18,10 @@ impl Diffuse {
         if !same_hemisphere(wo, wi) {
             return BsdfValue::NONE;
         }
-        let [pdf, pdf_reverse] = [wi, wo].map(|w| warp::cosine_hemisphere_pdf(w.z.abs()));
         BsdfValue {
             f: self.reflectance * INV_PI,
-            pdf,
-            pdf_reverse,
+            pdf: warp::cosine_hemisphere_pdf(wi.z.abs()),
+            pdf_reverse: warp::cosine_hemisphere_pdf(wo.z.abs()),
             albedo_reverse: self.reflectance.max_lane(),
         }
     }
@@ -35,9 +34,14 @@ impl Diffuse {
         if wi.z == 0.0 || wo.z == 0.0 || self.reflectance.is_black() {
             return None;
         }
+        let value = self.eval(wo, wi);
         Some(BsdfSample {
+            wi,
             weight: self.reflectance,
-            ..BsdfSample::of_value(wi, &self.eval(wo, wi))?
+            pdf: value.pdf,
+            pdf_reverse: value.pdf_reverse,
+            albedo_reverse: value.albedo_reverse,
+            is_delta: false,
         })
     }
 

@@ -7,6 +7,9 @@
 use super::ONE_MINUS_EPSILON;
 use glam::{Vec2, Vec3};
 
+/// So many cells are searched as fast as a table leads to one.
+const FEW: usize = 8;
+
 /// A piecewise-constant distribution over `[0, 1)`: also the choice of one of `n` things.
 ///
 /// Sums are kept in f64, so that a million small weights lose nothing.
@@ -16,6 +19,8 @@ pub struct Distribution1d {
     cdf: Vec<f64>,
     /// For each of 2^k equal parts of the interval the cell where it begins, and the last cell of any width.
     parts: Vec<u32>,
+    /// The largest power of two up to the most cells that a part goes on for; 0: every part ends in its first cell.
+    stride: usize,
     /// The sum of the weights as they were given.
     total: f64,
 }
@@ -47,17 +52,31 @@ impl Distribution1d {
             };
         }
         let parts = Self::parts_of(&cdf);
-        Self { cdf, parts, total }
+        let longest = parts.windows(2).map(|part| part[1] - part[0]).max();
+        let stride = longest
+            .and_then(u32::checked_ilog2)
+            .map_or(0, |log| 1 << log);
+        Self {
+            cdf,
+            parts,
+            stride,
+            total,
+        }
     }
 
-    /// The cells where equal parts of the interval begin: as many parts as cells, or up to twice as many.
+    /// The cells where equal parts of the interval begin: as many parts as cells, or up to twice as many; one, where
+    /// cells are [`FEW`].
     fn parts_of(cdf: &[f64]) -> Vec<u32> {
         let cells = cdf.len() - 1;
         assert!(
             u32::try_from(cells).is_ok(),
             "cells are numbered in 32 bits"
         );
-        let parts = cells.next_power_of_two();
+        let parts = if cells > FEW {
+            cells.next_power_of_two()
+        } else {
+            1
+        };
         // Where rounding of a number near 1 must end.
         let has_width = |&i: &usize| cdf[i] < cdf[i + 1];
         let last = (0..cells).rev().find(has_width).unwrap_or(0);
@@ -97,13 +116,22 @@ impl Distribution1d {
     #[inline]
     pub fn sample(&self, u: f32) -> (usize, f32, f32) {
         let u = f64::from(u);
-        // Exact, as the number of parts is a power of two.
         let parts = self.parts.len() - 1;
-        let part = ((u * parts as f64) as usize).min(parts - 1);
-        let [first, last] = [part, part + 1].map(|part| self.parts[part] as usize);
-        // The last cell that begins at or before u; cells of no width are stepped over.
-        let ends = &self.cdf[first + 1..=last];
-        let i = first + ends.partition_point(|&end| end <= u);
+        let part = if parts > 1 {
+            // Exact, as the number of parts is a power of two.
+            ((u * parts as f64) as usize).min(parts - 1)
+        } else {
+            0
+        };
+        let (mut i, last) = (self.parts[part] as usize, self.parts[part + 1] as usize);
+        // The last cell that begins at or before u; cells of no width are stepped over. As many steps for every u:
+        // their number would be hard to predict.
+        let mut stride = self.stride;
+        while stride > 0 {
+            let next = (i + stride).min(last);
+            i = if self.cdf[next] <= u { next } else { i };
+            stride /= 2;
+        }
         let width = self.cdf[i + 1] - self.cdf[i];
         let rest = ((u - self.cdf[i]) / width) as f32;
         (i, width as f32, rest.clamp(0.0, ONE_MINUS_EPSILON))

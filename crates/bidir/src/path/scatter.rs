@@ -7,7 +7,7 @@ use crate::light::LightPoint;
 use crate::math::{Vec2, Vec3};
 use crate::medium::MediumScattering;
 use crate::spectrum::Spectrum;
-use std::cell::OnceCell;
+use std::cell::Cell;
 
 /// A direction drawn at a vertex.
 #[derive(Clone, Copy, Debug)]
@@ -36,7 +36,7 @@ pub struct Turn<'a> {
     mode: TransportMode,
     wo: Side,
     wi: Side,
-    value: OnceCell<BsdfValue>,
+    value: Cell<Option<BsdfValue>>,
 }
 
 /// A unit direction at a vertex.
@@ -81,10 +81,12 @@ impl<'a> Turn<'a> {
 
     /// Values and densities of `bsdf`, that of the vertex. This is the only caller of `Bsdf::eval`.
     #[inline]
-    fn value(&self, bsdf: &Bsdf) -> &BsdfValue {
-        let Self { mode, wo, wi, .. } = self;
-        self.value
-            .get_or_init(|| bsdf.eval(wo.local, wi.local, *mode))
+    fn value(&self, bsdf: &Bsdf) -> BsdfValue {
+        self.value.get().unwrap_or_else(|| {
+            let value = bsdf.eval(self.wo.local, self.wi.local, self.mode);
+            self.value.set(Some(value));
+            value
+        })
     }
 
     /// The value of the vertex in the measurement contribution: scattering, emission or
@@ -189,7 +191,7 @@ impl Vertex {
             mode,
             wo: Side::new(self, wo),
             wi: Side::new(self, wi),
-            value: OnceCell::new(),
+            value: Cell::new(None),
         }
     }
 
