@@ -33,6 +33,20 @@ MATERIALS = [
         unit("samples_follow_the_density"),
     ),
     (
+        "a curve at the second cosine with the sums of the first",
+        "crates/bidir/src/bsdf/coat/curve.rs",
+        "sums.z + s[1] * sums.w",
+        "sums.x + s[1] * sums.y",
+        unit("a_curve_is_the_sum"),
+    ),
+    (
+        "odd polynomials of a curve summed like even ones",
+        "crates/bidir/src/bsdf/coat/curve.rs",
+        "Vec4::new(u[0], 1.0, u[1], 1.0)",
+        "Vec4::new(u[0], u[0], u[1], u[1])",
+        unit("a_curve_is_the_sum"),
+    ),
+    (
         "the way back from a varnish as likely as the way in",
         "crates/bidir/src/bsdf/coated_diffuse.rs",
         "pdf_reverse: pdf(1, wo)",

@@ -132,13 +132,21 @@ impl CoatedConductor {
     /// Layer and metal as light along `w` meets them.
     #[inline]
     fn seen(&self, w: Vec3) -> MetalSeen {
-        let coat = self.coat.interface(w);
-        MetalSeen {
-            coat,
-            inner: self.coat.refracted(w),
-            grazing: fresnel::schlick(w.z.abs()),
-            trapped: (1.0 - coat.reflected) * self.trapped.at(w.z.abs()).max(0.0),
-        }
+        let [seen, _] = self.seen_from([w; 2]);
+        seen
+    }
+
+    /// Layer and metal as light along each of two directions meets them.
+    #[inline]
+    fn seen_from(&self, w: [Vec3; 2]) -> [MetalSeen; 2] {
+        let coats = self.coat.interfaces(w);
+        let trapped = self.trapped.at_both(w.map(|w| w.z.abs()));
+        [0, 1].map(|i| MetalSeen {
+            coat: coats[i],
+            inner: self.coat.refracted(w[i]),
+            grazing: fresnel::schlick(w[i].z.abs()),
+            trapped: (1.0 - coats[i].reflected) * trapped[i].max(0.0),
+        })
     }
 
     /// About the part of light that each lobe scatters. It depends on |cosθ| alone.
@@ -194,7 +202,7 @@ impl CoatedConductor {
         if self.is_delta() || !same_hemisphere(wo, wi) {
             return BsdfValue::NONE;
         }
-        let seen = [wo, wi].map(|w| self.seen(w));
+        let seen = self.seen_from([wo, wi]);
         let shares = seen.each_ref().map(|seen| self.shares(seen));
         let (coat, of_coat) = self.coat.eval(wo, wi);
         let (metal, of_once) = self.eval_metal([wo, wi], &seen);

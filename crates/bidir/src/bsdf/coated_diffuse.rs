@@ -117,10 +117,11 @@ impl CoatedDiffuse {
         if !same_hemisphere(wo, wi) {
             return BsdfValue::NONE;
         }
-        let seen = [wo, wi].map(|w| self.coat.interface(w));
+        let seen = self.coat.interfaces([wo, wi]);
         let mut within = self.base * self.coat.attenuation(wo, wi);
         if !self.thrown.is_black() {
-            within += self.thrown * (INV_PI * self.thrown_shape(wo) * self.thrown_shape(wi));
+            let shapes = self.shape.at_both([wo, wi].map(|w| w.z.abs()));
+            within += self.thrown * (INV_PI * shapes[0].max(0.0) * shapes[1].max(0.0));
         }
         let (coat, densities) = self.coat.eval(wo, wi);
         let pdf = |from: usize, to: Vec3| {
@@ -135,11 +136,6 @@ impl CoatedDiffuse {
             pdf_reverse: pdf(1, wo),
             albedo_reverse: (reflected + entered).min(1.0),
         }
-    }
-
-    #[inline]
-    fn thrown_shape(&self, w: Vec3) -> f32 {
-        self.shape.at(w.z.abs()).max(0.0)
     }
 
     #[inline]

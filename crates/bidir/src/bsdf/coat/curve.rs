@@ -1,6 +1,7 @@
 //! Smooth functions of a cosine, as polynomials.
 
 use super::mean;
+use glam::Vec4;
 
 /// The least √μ that a curve is fitted for; it is constant below.
 const LEAST: f32 = 0.1;
@@ -59,15 +60,30 @@ impl<const N: usize> Curve<N> {
         self.steps.map(|steps| f32::from(steps) * self.unit)
     }
 
-    /// The value at `cos`, by Clenshaw's recurrence.
+    /// The value at `cos`.
     #[inline]
     pub(in crate::bsdf) fn at(self, cos: f32) -> f32 {
-        let s = (cos.sqrt().clamp(LEAST, 1.0) - LEAST) * (2.0 / (1.0 - LEAST)) - 1.0;
-        let (mut last, mut before) = (0.0, 0.0);
-        for &steps in self.steps[1..].iter().rev() {
-            (last, before) = (f32::from(steps) + 2.0 * s * last - before, last);
+        self.at_both([cos; 2])[0]
+    }
+
+    /// The values at two cosines, by Clenshaw's recurrence.
+    ///
+    /// With u = T_2(s), T_2k(s) = T_k(u) and T_2k+1(s) = s V_k(u), Chebyshev's polynomials of the third kind, which have
+    /// the same recurrence: even and odd coefficients at both cosines are four sums of half the length, one in each lane.
+    #[inline]
+    pub(in crate::bsdf) fn at_both(self, cos: [f32; 2]) -> [f32; 2] {
+        const { assert!(N.is_multiple_of(2), "each even coefficient has an odd one") };
+        let s = cos.map(|cos| (cos.sqrt().clamp(LEAST, 1.0) - LEAST) * (2.0 / (1.0 - LEAST)) - 1.0);
+        let u = s.map(|s| 2.0 * s * s - 1.0);
+        let twice = Vec4::new(u[0], u[0], u[1], u[1]) * 2.0;
+        let (mut last, mut before) = (Vec4::ZERO, Vec4::ZERO);
+        for pair in self.steps.as_chunks::<2>().0.iter().rev() {
+            let [even, odd] = pair.map(f32::from);
+            let coefficients = Vec4::new(even, odd, even, odd);
+            (last, before) = (coefficients - before + twice * last, last);
         }
-        (f32::from(self.steps[0]) + s * last - before) * self.unit
+        let sums = last - before * Vec4::new(u[0], 1.0, u[1], 1.0);
+        [sums.x + s[0] * sums.y, sums.z + s[1] * sums.w].map(|sum| sum * self.unit)
     }
 
     /// ∫ 2μ value dμ over `[0, 1]`.
@@ -105,4 +121,38 @@ impl<const N: usize> Curve<N> {
 /// θ of the zero number `i` of T_N, which is cosθ.
 fn angle<const N: usize>(i: usize) -> f32 {
     std::f32::consts::PI * (i as f32 + 0.5) / N as f32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Σ c_k cos(k arccos s), term by term.
+    #[track_caller]
+    fn check<const N: usize>(series: [f32; N], cos: f32) {
+        let s = (cos.sqrt().clamp(LEAST, 1.0) - LEAST) / (1.0 - LEAST) * 2.0 - 1.0;
+        let angle = f64::from(s.clamp(-1.0, 1.0)).acos();
+        let curve = Curve::of_series(series);
+        let term = |(k, c): (usize, f32)| f64::from(c) * (k as f64 * angle).cos();
+        let sum: f64 = curve.series().into_iter().enumerate().map(term).sum();
+        for found in [curve.at_both([cos, 0.3])[0], curve.at_both([0.8, cos])[1]] {
+            assert!(
+                (f64::from(found) - sum).abs() < 2e-6,
+                "{cos}: {found}, {sum}"
+            );
+        }
+    }
+
+    #[test]
+    fn a_curve_is_the_sum_of_its_series_at_either_cosine() {
+        for i in 0..=200 {
+            let cos = i as f32 / 200.0;
+            check(
+                [0.5, -0.3, 0.2, 0.1, -0.05, 0.04, 0.03, -0.02, 0.01, 0.005],
+                cos,
+            );
+            check([0.0, 0.0, 0.0, 1.0], cos);
+            check([1.0, -1.0], cos);
+        }
+    }
 }

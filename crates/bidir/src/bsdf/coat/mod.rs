@@ -104,12 +104,22 @@ impl<const R: usize, const L: usize> Coat<R, L> {
     /// The interface as light along `w` meets it.
     #[inline]
     pub(super) fn interface(&self, w: Vec3) -> Seen {
-        let reflected = self.reflectance(w);
-        let mut through = 1.0 - reflected;
+        self.interfaces([w; 2])[0]
+    }
+
+    /// The interface as light along each of two directions meets it.
+    #[inline]
+    pub(super) fn interfaces(&self, w: [Vec3; 2]) -> [Seen; 2] {
+        let reflected = w.map(|w| self.reflectance(w));
+        let mut through = reflected.map(|reflected| 1.0 - reflected);
         if !self.is_smooth() {
-            through = (through * self.ratio.at(w.z.abs())).clamp(0.0, 1.0);
+            let ratios = self.ratio.at_both(w.map(|w| w.z.abs()));
+            through = [0, 1].map(|i| (through[i] * ratios[i]).clamp(0.0, 1.0));
         }
-        Seen { reflected, through }
+        [0, 1].map(|i| Seen {
+            reflected: reflected[i],
+            through: through[i],
+        })
     }
 
     /// The direction within the layer, on the same side, as a smooth interface bends it. None: total
@@ -135,7 +145,8 @@ impl<const R: usize, const L: usize> Coat<R, L> {
         if self.depth.is_black() {
             return Spectrum::ONE;
         }
-        let both = self.length.at(wo.z.abs()) + self.length.at(wi.z.abs());
+        let [of_wo, of_wi] = self.length.at_both([wo, wi].map(|w| w.z.abs()));
+        let both = of_wo + of_wi;
         let left = |depth: f32| libm::expf(-depth * both.max(0.0));
         let first = left(self.depth[0]);
         // Most layers are grey.
