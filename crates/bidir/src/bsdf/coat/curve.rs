@@ -131,9 +131,9 @@ mod tests {
     #[track_caller]
     fn check<const N: usize>(series: [f32; N], cos: f32) {
         let s = (cos.sqrt().clamp(LEAST, 1.0) - LEAST) / (1.0 - LEAST) * 2.0 - 1.0;
-        let angle = f64::from(s.clamp(-1.0, 1.0)).acos();
+        let angle = libm::acos(f64::from(s.clamp(-1.0, 1.0)));
         let curve = Curve::of_series(series);
-        let term = |(k, c): (usize, f32)| f64::from(c) * (k as f64 * angle).cos();
+        let term = |(k, c): (usize, f32)| f64::from(c) * libm::cos(k as f64 * angle);
         let sum: f64 = curve.series().into_iter().enumerate().map(term).sum();
         for found in [curve.at_both([cos, 0.3])[0], curve.at_both([0.8, cos])[1]] {
             assert!(
