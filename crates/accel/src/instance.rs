@@ -127,7 +127,7 @@ impl Placement {
     }
 }
 
-/// A ray of the world, with all that its ways to instances have in common.
+/// A ray of the world, with the terms that it has in common for all instances.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Approach {
     origin: DVec3,
@@ -233,10 +233,10 @@ pub(crate) struct Object {
     sure: [f32; 2],
 }
 
-/// The part of itself by which a limit is moved outward: `4ε`.
+/// The relative distance by which limits are moved outward: `4ε`, with ε half of [`f32::EPSILON`].
 const OUTWARD: f64 = 2.0 * f32::EPSILON as f64;
 
-/// The limit `world` less `t₀`, moved by the part `outward` of itself.
+/// `world` - `t₀`, with `world` moved by `outward` times itself.
 #[inline(always)]
 fn moved(world: f32, start: f64, outward: f64) -> f32 {
     let world = f64::from(world);

@@ -94,7 +94,7 @@ impl Node {
         }
     }
 
-    /// The children, each with its box, without unused slots.
+    /// The children in use, each with its box.
     pub(crate) fn boxes(&self) -> Vec<(Aabb, Child)> {
         let slots = (0..WIDTH).filter(|&slot| self.children[slot] != Child::NOTHING);
         slots

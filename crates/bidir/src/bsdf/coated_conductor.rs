@@ -67,10 +67,10 @@ enum Lobe {
     Trapped,
 }
 
-/// Layer and metal as light along one direction meets them.
+/// The factors of f and of the lobes' shares that depend on one direction alone.
 struct MetalSeen {
     coat: Seen,
-    /// The direction within. None: total reflection.
+    /// The refracted direction within the layer. None: total reflection.
     inner: Option<Vec3>,
     /// (1-μ)⁵.
     grazing: f32,
@@ -129,14 +129,14 @@ impl CoatedConductor {
         trip.map(|trip| reflected + sqr(1.0 - reflected) * trip * all_orders(reflected * trip))
     }
 
-    /// Layer and metal as light along `w` meets them.
+    /// The factors of the direction `w`.
     #[inline]
     fn seen(&self, w: Vec3) -> MetalSeen {
         let [seen, _] = self.seen_from([w; 2]);
         seen
     }
 
-    /// Layer and metal as light along each of two directions meets them.
+    /// The factors of each of two directions.
     #[inline]
     fn seen_from(&self, w: [Vec3; 2]) -> [MetalSeen; 2] {
         let coats = self.coat.interfaces(w);
@@ -175,7 +175,7 @@ impl CoatedConductor {
         fresnel.map(|part| part + (1.0 - part) * more)
     }
 
-    /// The probabilities of drawing from each lobe. All zero: nothing is scattered.
+    /// The probabilities of drawing from each lobe. All are zero where nothing is scattered.
     #[inline]
     fn probs(shares: &[Spectrum; 3]) -> [f32; 3] {
         let shares = shares.map(Spectrum::max_lane);
@@ -183,7 +183,7 @@ impl CoatedConductor {
         shares.map(|share| if sum > 0.0 { share / sum } else { 0.0 })
     }
 
-    /// The albedo, given the shares.
+    /// The albedo: the sum of the shares, at most 1.
     #[inline]
     fn albedo_of([coat, once, trapped]: &[Spectrum; 3]) -> Spectrum {
         (*coat + *once + *trapped).map(|lane| lane.min(1.0))

@@ -94,7 +94,7 @@ impl CoatedDiffuse {
             .map(|part| (reflected + part * through).min(1.0))
     }
 
-    /// The part of light that the interface scatters, and that of the base's brightest lane.
+    /// About the part of light that the interface reflects, and the part that the base scatters in its brightest lane.
     #[inline]
     fn shares(&self, seen: Seen) -> [f32; 2] {
         [seen.reflected, self.entering.max_lane() * seen.through]

@@ -29,11 +29,11 @@ pub(super) enum Lobe {
     Transmission,
 }
 
-/// Refraction by facets, without what they let through.
+/// Refraction by the facets with one normal m, without their transmittance 1 - F.
 pub(super) struct Crossing {
-    /// D G₂ |wo·m| |wi·m| / (|cosθ_o cosθ_i| (wi·m + wo·m/η)²), without the scale of radiance. Unit: 1/sr.
+    /// D G₂ |wo·m| |wi·m| / (|cosθ_o cosθ_i| (wi·m + wo·m/η)²), without the factor 1/η² of radiance. Unit: 1/sr.
     pub(super) facets: f32,
-    /// The densities of drawing the facet and so wi for wo, and wo for wi: D_v(m) |dω_m / dω| [Walter07, eq. 17].
+    /// The densities of drawing wi for wo, and wo for wi, by a draw of m: D_v(m) |dω_m / dω| [Walter07, eq. 17].
     /// Measure: solid angle, 1/sr.
     pub(super) densities: [f32; 2],
 }

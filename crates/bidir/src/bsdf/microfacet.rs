@@ -156,8 +156,8 @@ mod tests {
     use super::*;
     use crate::math::warp;
 
-    /// Checks ∫ D(m) m_z dm = 1 and ∫ D_v(m) dm = 1, both by uniform directions on a fine grid, with D_v as reflection
-    /// has it.
+    /// Checks ∫ D(m) m_z dm = 1 and ∫ D_v(m) dm = 1, both by uniform directions on a fine grid. D_v is computed from the
+    /// density of reflection.
     #[track_caller]
     fn check_normalised(ggx: Ggx, v: Vec3) {
         let n = 1500;

@@ -6,8 +6,8 @@
 //! which of them the light comes from.
 //!
 //! - `sample(wo)` draws `wi`, and returns `weight = f·|cosθ_i| / density`.
-//! - `eval(wo, wi)` is f, without the cosine, and the densities of `sample` in both directions: a [`BsdfValue`],
-//!   as all of them have most terms in common. Zero for Dirac distributions.
+//! - `eval(wo, wi)` returns a [`BsdfValue`]: f, without the cosine, and the densities of `sample` in both directions,
+//!   which have most terms in common. Zero for Dirac distributions.
 //!
 //! Both describe the same distribution; the batteries in `bsdf/tests` prove it for every
 //! value of [`Bsdf::examples`].
@@ -19,8 +19,8 @@
 //! the η and θ of the sampled side. Ratios of the two are then the true ratios of densities, which is
 //! all that multiple importance sampling needs.
 //!
-//! **Mixed lobes.** A smooth coat reflects by a Dirac lobe, and its base does not. `eval` is that
-//! of the other lobes, densities with the probability of drawing them, and each sample is marked
+//! **Mixed lobes.** A smooth coat reflects by a Dirac lobe, and its base does not. `eval` is the sum
+//! of the other lobes; its densities include the probability of drawing them. Each sample is marked
 //! with its kind. Almost no path that the one kind makes is made by the other, so on every path the
 //! vertex is the one or the other (docs/derivations/mis-weights.md).
 //!
@@ -77,14 +77,14 @@ impl TransportMode {
 /// The scattering between two directions, without Dirac lobes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BsdfValue {
-    /// f for light that goes from one to the other. Unit: 1/sr.
+    /// f, the same for light in either direction but for η². Unit: 1/sr.
     pub f: Spectrum,
-    /// The density of drawing `wi` for `wo`: without Dirac lobes, but with the probability that they leave. Measure:
-    /// solid angle, 1/sr.
+    /// The density with which `sample(wo)` draws `wi`; it integrates to the probability of all lobes that are not Dirac.
+    /// Measure: solid angle, 1/sr.
     pub pdf: f32,
-    /// The density of drawing `wo` for `wi`.
+    /// The density with which `sample(wi)` draws `wo`.
     pub pdf_reverse: f32,
-    /// The largest lane of the albedo for `wi`, where anything is scattered.
+    /// The largest lane of `albedo(wi)`; 0 in [`Self::NONE`].
     pub albedo_reverse: f32,
 }
 
@@ -117,8 +117,8 @@ pub struct BsdfSample {
 }
 
 impl BsdfSample {
-    /// The mirrored direction, drawn with probability `prob` from a Dirac lobe of `reflectance` that
-    /// is as likely seen from there, as is the `albedo`.
+    /// The mirrored direction, drawn with probability `prob` from a Dirac lobe of `reflectance`. `prob` and `albedo`
+    /// are the same for `wo` and the mirrored direction.
     #[inline]
     fn mirror(wo: Vec3, reflectance: Spectrum, prob: f32, albedo: Spectrum) -> Self {
         let pdf = prob * wo.z.abs();
@@ -132,7 +132,7 @@ impl BsdfSample {
         }
     }
 
-    /// A direction with its value. None: where the density underflows.
+    /// The sample `wi` that was drawn for `wo`, where `value` is that of both. None: its density underflows.
     #[inline]
     fn of_value(wi: Vec3, value: &BsdfValue) -> Option<Self> {
         (value.pdf > 0.0 && wi.z != 0.0).then(|| Self {
@@ -170,7 +170,7 @@ pub enum Bsdf {
 impl Bsdf {
     /// f, densities and albedo for two directions, without Dirac lobes. `mode` is that of a walk that knows `wo`.
     ///
-    /// Paths have it by [`Turn`](crate::path::Turn) alone, which knows geometric normals, too.
+    /// Paths call [`Turn`](crate::path::Turn) instead, which corrects for shading normals.
     #[inline]
     pub fn eval(&self, wo: Vec3, wi: Vec3, mode: TransportMode) -> BsdfValue {
         match self {

@@ -1,5 +1,5 @@
-//! Choices in proportion to weights: p_i = w_i / Σ w, by inversion of the sums. A table of where to look shortens the
-//! search to a step or two \[Chen74\].
+//! Choices in proportion to weights: p_i = w_i / Σ w, by inversion of the sums. A guide table shortens the search to a
+//! step or two \[Chen74\].
 //!
 //! Densities are over the unit interval, square and cube; whoever stretches those to another
 //! domain divides by its measure.
@@ -7,7 +7,7 @@
 use super::ONE_MINUS_EPSILON;
 use glam::{Vec2, Vec3};
 
-/// So many cells are searched as fast as a table leads to one.
+/// Up to so many cells, a search without a guide table is as fast.
 const FEW: usize = 8;
 
 /// A piecewise-constant distribution over `[0, 1)`: also the choice of one of `n` things.
@@ -17,9 +17,11 @@ const FEW: usize = 8;
 pub struct Distribution1d {
     /// Sums of the first `i` weights, normalised: `n + 1` values from 0 to 1.
     cdf: Vec<f64>,
-    /// For each of 2^k equal parts of the interval the cell where it begins, and the last cell of any width.
+    /// The guide table: for each of 2^k equal parts of the interval the cell in which the part begins; then the last cell
+    /// of positive width.
     parts: Vec<u32>,
-    /// The largest power of two up to the most cells that a part goes on for; 0: every part ends in its first cell.
+    /// The first stride of the search: the largest power of two that is not above the number of cells between the ends
+    /// of the longest part; 0 where every part lies in one cell.
     stride: usize,
     /// The sum of the weights as they were given.
     total: f64,
@@ -64,8 +66,8 @@ impl Distribution1d {
         }
     }
 
-    /// The cells where equal parts of the interval begin: as many parts as cells, or up to twice as many; one, where
-    /// cells are [`FEW`].
+    /// The guide table. It has as many parts as there are cells, or up to twice as many; a single one for up to [`FEW`]
+    /// cells.
     fn parts_of(cdf: &[f64]) -> Vec<u32> {
         let cells = cdf.len() - 1;
         assert!(
@@ -77,7 +79,7 @@ impl Distribution1d {
         } else {
             1
         };
-        // Where rounding of a number near 1 must end.
+        // Rounding of a number near 1 must not lead beyond this cell.
         let has_width = |&i: &usize| cdf[i] < cdf[i + 1];
         let last = (0..cells).rev().find(has_width).unwrap_or(0);
         let mut cell = 0;
@@ -124,8 +126,8 @@ impl Distribution1d {
             0
         };
         let (mut i, last) = (self.parts[part] as usize, self.parts[part + 1] as usize);
-        // The last cell that begins at or before u; cells of no width are stepped over. As many steps for every u:
-        // their number would be hard to predict.
+        // The last cell that begins at or before u; cells of no width are stepped over. The number of steps is the same
+        // for every u, so that the processor predicts the end of the loop.
         let mut stride = self.stride;
         while stride > 0 {
             let next = (i + stride).min(last);

@@ -28,8 +28,8 @@ pub(super) struct Scattered {
 
 /// A vertex with the directions towards both of its neighbours on a path.
 ///
-/// `wo` is where a walk of `mode` came from and `wi` where it goes on; whatever is asked of the two shares
-/// their local coordinates, and the value of a BSDF, which is found when it is first asked for.
+/// A walk of `mode` came from `wo` and goes on along `wi`. All questions share the local coordinates of both, and the
+/// value of the BSDF, which is evaluated for the first of them that needs it.
 #[derive(Clone, Debug)]
 pub struct Turn<'a> {
     vertex: &'a Vertex,
@@ -79,7 +79,7 @@ impl<'a> Turn<'a> {
         self.vertex
     }
 
-    /// Values and densities of `bsdf`, that of the vertex. This is the only caller of `Bsdf::eval`.
+    /// The value of `bsdf`, which is the vertex's own. This is the only caller of `Bsdf::eval`.
     #[inline]
     fn value(&self, bsdf: &Bsdf) -> BsdfValue {
         self.value.get().unwrap_or_else(|| {
@@ -132,7 +132,7 @@ impl<'a> Turn<'a> {
     }
 
     /// Density of drawing `wo` by a walk that comes along -`wi`, in the measure of [`pdf`](Self::pdf), and the largest
-    /// lane of the albedo that it meets. Paths end at a camera or a light: none goes on there.
+    /// lane of the albedo that the walk meets. At a camera or a light the density is 0, as paths end there.
     #[inline]
     pub(super) fn reversed(&self) -> (f32, f32) {
         match &self.vertex.scattering {

@@ -50,12 +50,12 @@ pub(super) struct Coat<const R: usize, const L: usize> {
     length: Curve<L>,
 }
 
-/// An interface as light along one direction meets it.
+/// Reflectance and transmittance of an interface for light along one direction.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Seen {
-    /// About the part that it reflects; exact where it is smooth.
+    /// About the part of light that the interface reflects; exact where it is smooth.
     pub(super) reflected: f32,
-    /// T: the part that it lets through to the base.
+    /// T: the part that the interface lets through to the base.
     pub(super) through: f32,
 }
 
@@ -101,13 +101,13 @@ impl<const R: usize, const L: usize> Coat<R, L> {
         self.interface(w).through
     }
 
-    /// The interface as light along `w` meets it.
+    /// Reflectance and transmittance for light along `w`.
     #[inline]
     pub(super) fn interface(&self, w: Vec3) -> Seen {
         self.interfaces([w; 2])[0]
     }
 
-    /// The interface as light along each of two directions meets it.
+    /// Reflectance and transmittance for light along each of two directions.
     #[inline]
     pub(super) fn interfaces(&self, w: [Vec3; 2]) -> [Seen; 2] {
         let reflected = w.map(|w| self.reflectance(w));

@@ -86,18 +86,18 @@ struct Probs {
     sheen: f32,
 }
 
-/// What lies on the base, as light along one direction meets it.
+/// Albedos of the layers above the base for light along one direction.
 struct Layers {
     /// Ẽ of the coat, times how much it covers.
     coat: f32,
     /// Ẽ of the sheen's brightest lane.
     sheen: f32,
-    /// W̃ of the base's facets.
+    /// W̃: the weight of f₉₀ in the albedo of the base's facets.
     weight: f32,
 }
 
 impl Layers {
-    /// The part of light that coat and sheen leave.
+    /// The part of light that coat and sheen leave for the base.
     #[inline]
     fn below(&self) -> f32 {
         (1.0 - self.coat) * (1.0 - self.sheen)
@@ -141,7 +141,7 @@ impl Principled {
         self.sheen.max_lane() * under::sheen_albedo(w.z.abs(), self.sheen_alpha)
     }
 
-    /// What lies on the base, as light along `w` meets it.
+    /// Albedos of the layers for light along `w`.
     #[inline]
     fn layers(&self, w: Vec3) -> Layers {
         Layers {
@@ -224,7 +224,7 @@ impl Principled {
         self.probs_of(&self.shares(w, &self.layers(w)))
     }
 
-    /// The same, given the shares.
+    /// The probabilities of drawing from each lobe, given the shares.
     #[inline]
     fn probs_of(&self, shares: &[Spectrum; 4]) -> Option<Probs> {
         let mut shares = shares.map(Spectrum::max_lane);
@@ -262,7 +262,7 @@ impl Principled {
         Self::albedo_of(&self.shares(wo, &self.layers(wo)))
     }
 
-    /// The albedo, given the shares.
+    /// The albedo: the sum of the shares, in `[0, 1]`.
     #[inline]
     fn albedo_of([coat, facets, diffuse, sheen]: &[Spectrum; 4]) -> Spectrum {
         (*coat + *facets + *diffuse + *sheen).map(|lane| lane.clamp(0.0, 1.0))

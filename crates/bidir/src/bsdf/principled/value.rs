@@ -1,11 +1,11 @@
-//! The value of the scattering, and the density of drawing it: the sums over all lobes that are no Dirac distributions.
+//! Value and densities of the scattering: sums over all lobes that are not Dirac distributions.
 
 use super::{EVEN, Layers, Principled, Side, Wall, coat_fresnel, mirrored_below, sheen};
 use crate::bsdf::{BsdfValue, TransportMode, same_hemisphere};
 use crate::math::{Vec3, warp};
 use crate::spectrum::Spectrum;
 
-/// A lobe between two directions: f, and the densities of drawing each for the other.
+/// f of one lobe between two directions, and the densities of drawing each direction for the other.
 struct LobeValue {
     f: Spectrum,
     densities: [f32; 2],
@@ -56,7 +56,7 @@ impl Principled {
         }
     }
 
-    /// f of all lobes but the coat on one side, where `facets` is that of the base's facets.
+    /// f of reflection by all lobes but the coat; `facets` is f of the base's facets.
     #[inline]
     fn reflected(&self, [wo, wi]: [Vec3; 2], [o, i]: &[Layers; 2], facets: Spectrum) -> Spectrum {
         let mut base = facets;
@@ -71,7 +71,7 @@ impl Principled {
         base + self.sheen * (sheen::eval(wo, wi, self.sheen_alpha) * under_coat)
     }
 
-    /// f of all lobes through the surface, where `facets` is that of facets.
+    /// f of transmission by all lobes; `facets` is f of the base's facets.
     #[inline]
     fn crossed(&self, [o, i]: &[Layers; 2], facets: Spectrum) -> Spectrum {
         let diffuse = self.through * (self.uncovered(o) * self.uncovered(i));
@@ -92,7 +92,7 @@ impl Principled {
         }
     }
 
-    /// The facets that reflect, without the layers on them.
+    /// Reflection by the base's facets, without the layers above.
     #[inline]
     fn reflecting_facets(&self, [wo, wi]: [Vec3; 2]) -> LobeValue {
         if self.ggx.is_smooth() {
@@ -107,7 +107,7 @@ impl Principled {
         }
     }
 
-    /// The facets that let through.
+    /// Transmission by the base's facets, without the layers above.
     #[inline]
     fn crossing_facets(&self, [wo, wi]: [Vec3; 2], mode: TransportMode) -> LobeValue {
         if self.glass <= 0.0 || self.ggx.is_smooth() {

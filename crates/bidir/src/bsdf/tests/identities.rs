@@ -28,8 +28,8 @@ fn check_sample(bsdf: &Bsdf, wo: Vec3, mode: TransportMode, drawn: &BsdfSample, 
     check_spectra(drawn.weight, weight, case);
 }
 
-/// Checks that light flows alike in both directions, up to the radiance that crossing scales, and that what holds for
-/// a walk the other way is its own.
+/// Checks that f is symmetric, up to the η² of radiance, and that `pdf_reverse` and `albedo_reverse` are the density
+/// and the albedo of the exchanged directions.
 #[track_caller]
 fn check_reciprocity(bsdf: &Bsdf, wo: Vec3, wi: Vec3, case: &str) {
     let [forth, back] = [[wo, wi], [wi, wo]].map(|[a, b]| MODES.map(|mode| bsdf.eval(a, b, mode)));
