@@ -44,16 +44,16 @@ pub(super) const LEAST_ALBEDO: f32 = 1e-3;
 pub(super) const LEAST_SHARE: f64 = 1e-9;
 
 /// The cost of a ray of a camera walk whose vertices are connected with shared light subpaths. Unit of this
-/// and the next five, which fit the times of 29 scenes to 16 % (estimators 27): a ray of path tracing's walk.
-pub(super) const CONNECTED_CAMERA_RAY: f64 = 2.2;
+/// and the next five, which fit the times of 47 scenes to 10 % (estimators 31): a ray of path tracing's walk.
+pub(super) const CONNECTED_CAMERA_RAY: f64 = 1.8;
 /// The cost of a ray of a light walk, with the light that it begins on.
-pub(super) const LIGHT_RAY: f64 = 1.75;
+pub(super) const LIGHT_RAY: f64 = 1.6;
 /// The cost of a connection ray.
-pub(super) const CONNECTION_RAY: f64 = 0.55;
+pub(super) const CONNECTION_RAY: f64 = 0.5;
 /// The cost of a candidate.
-pub(super) const CANDIDATE: f64 = 0.45;
+pub(super) const CANDIDATE: f64 = 0.6;
 /// The cost of a candidate that is a connection of diffuse vertices, which are evaluated four at a time.
-pub(super) const DIFFUSE_CANDIDATE: f64 = 0.11;
+pub(super) const DIFFUSE_CANDIDATE: f64 = 0.15;
 /// The cost of a light image, with its ray.
 pub(super) const LIGHT_IMAGE: f64 = 1.0;
 
