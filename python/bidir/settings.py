@@ -196,7 +196,7 @@ class Lvc(_Bidirectional):
     #: ``"auto"`` leaves the numbers to the integrator.
     candidates: int | tuple[int, int] | Literal["auto", "suited"] | None = None
     #: Light samples of next-event estimation per camera vertex, likewise.
-    next_events: int | tuple[int, int] | None = None
+    next_events: int | tuple[int, int] | Literal["auto"] | None = None
     #: How candidates are drawn: uniformly, or as learned in training.
     proposal: Proposal | None = None
     #: How light subpaths choose their light: by power, or as learned in training.

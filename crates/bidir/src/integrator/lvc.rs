@@ -23,7 +23,7 @@ impl Default for LvcSettings {
     fn default() -> Self {
         Self {
             candidates: CandidateCount::DEFAULT,
-            next_events: CandidateCount::new(2, 1),
+            next_events: CandidateCount::NEXT_EVENTS,
             proposal: ProposalKind::default(),
             light_start: LightStart::default(),
             samples_per_subpath: SamplesPerSubpath::default(),
@@ -72,8 +72,10 @@ pub struct CandidateCount {
 impl CandidateCount {
     /// The most: candidates of a batch are in memory together, M for each camera vertex.
     pub const MAX: u16 = 4096;
-    /// The number that suits most scenes.
+    /// The number of candidates that suits most scenes.
     pub const DEFAULT: Self = Self::new(12, 1);
+    /// The number of light points that does.
+    pub const NEXT_EVENTS: Self = Self::new(2, 1);
 
     /// `first` and `deeper`, brought into the range.
     pub const fn new(first: u16, deeper: u16) -> Self {

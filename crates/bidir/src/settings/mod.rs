@@ -44,6 +44,7 @@ pub struct Settings {
 
 /// The settings that `auto` may change; the others it keeps.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[expect(clippy::struct_excessive_bools, reason = "one for each setting")]
 pub struct Open {
     /// [`PathSettings::roulette`].
     pub roulette: bool,
@@ -51,6 +52,8 @@ pub struct Open {
     pub shadow_rays: bool,
     /// [`LvcSettings::candidates`].
     pub candidates: bool,
+    /// [`LvcSettings::next_events`].
+    pub next_events: bool,
 }
 
 impl Default for Settings {
@@ -77,8 +80,8 @@ impl Settings {
         settings
     }
 
-    /// Takes an estimator, with the path roulette, the choice of shadow rays and the candidates that
-    /// suit it.
+    /// Takes an estimator, with the path roulette, the choice of shadow rays, and the numbers of candidates and light
+    /// points that suit it.
     pub fn set_integrator(&mut self, integrator: IntegratorKind) {
         let is_open = integrator == IntegratorKind::Auto;
         self.integrator = integrator;
@@ -86,10 +89,12 @@ impl Settings {
             roulette: is_open,
             shadow_rays: is_open,
             candidates: is_open,
+            next_events: is_open,
         };
         self.path.roulette = integrator.roulette();
         self.shadow_rays = integrator.shadow_rays();
         self.lvc.candidates = CandidateCount::DEFAULT;
+        self.lvc.next_events = CandidateCount::NEXT_EVENTS;
     }
 
     /// True where the estimator learns about connections before the first pass.

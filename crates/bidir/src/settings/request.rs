@@ -128,14 +128,16 @@ pub struct Request {
         arg(long, value_name = "M[,N]", help_heading = "Shared light subpaths")
     )]
     pub candidates: Option<Choice<CandidateCount>>,
-    /// Light samples per camera vertex: M at the first, N at later ones (lvc, auto) [default: 2,1].
+    /// Light samples per camera vertex: M at the first, N at later ones (lvc, auto) [default: the
+    /// integrator's].
     ///
-    /// Each from 1 to 4096; one number is for all vertices.
+    /// Each from 1 to 4096; one number is for all vertices; auto: the integrator's default. Defaults:
+    /// 2,1 for lvc, chosen by a survey for auto.
     #[cfg_attr(
         feature = "clap",
         arg(long, value_name = "M[,N]", help_heading = "Shared light subpaths")
     )]
-    pub next_events: Option<CandidateCount>,
+    pub next_events: Option<Choice<CandidateCount>>,
     /// How candidates are drawn: learned in training, or uniform (lvc, auto) [default: learned].
     ///
     /// Training is a short render before the first pass.
@@ -202,7 +204,7 @@ impl Request {
             seed: Some(*seed),
             shadow_rays: connecting.map(|_| Choice::new(open.shadow_rays, *shadow_rays)),
             candidates: shared.map(|lvc| Choice::new(open.candidates, lvc.candidates)),
-            next_events: shared.map(|lvc| lvc.next_events),
+            next_events: shared.map(|lvc| Choice::new(open.next_events, lvc.next_events)),
             proposal: shared.map(|lvc| lvc.proposal),
             light_start: shared.map(|lvc| lvc.light_start),
             samples_per_subpath: (*integrator == Lvc).then_some(lvc.samples_per_subpath),
@@ -249,7 +251,6 @@ impl Request {
         put(&mut path.strategies, strategies);
         put(&mut path.light_choice, light_choice);
         put(&mut path.light_point, light_point);
-        put(&mut lvc.next_events, next_events);
         put(&mut lvc.proposal, proposal);
         put(&mut lvc.light_start, light_start);
         put(&mut lvc.samples_per_subpath, samples_per_subpath);
@@ -264,6 +265,10 @@ impl Request {
         if let Some(choice) = candidates {
             open.candidates = choice.is_open(own.open.candidates);
             lvc.candidates = choice.or(own.lvc.candidates);
+        }
+        if let Some(choice) = next_events {
+            open.next_events = choice.is_open(own.open.next_events);
+            lvc.next_events = choice.or(own.lvc.next_events);
         }
         settings
     }

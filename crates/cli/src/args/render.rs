@@ -231,19 +231,14 @@ mod tests {
     fn the_help_has_the_defaults_of_the_library() {
         let of = |integrator| Request::of(&Settings::new(integrator)).texts();
         let of_lvc = of(IntegratorKind::Lvc);
-        let same = [
-            "next-events",
-            "samples-per-subpath",
-            "proposal",
-            "light-start",
-        ];
+        let same = ["samples-per-subpath", "proposal", "light-start"];
         for name in same
             .into_iter()
             .chain(["strategies", "mis", "light-point", "light-choice"])
         {
             check_default(name, &of_lvc[name]);
         }
-        for name in ["path-roulette", "candidates", "shadow-rays"] {
+        for name in ["path-roulette", "candidates", "next-events", "shadow-rays"] {
             let help = help_of(name);
             for (integrator, kind) in IntegratorKind::NAMES {
                 let default = of(kind).remove(name);

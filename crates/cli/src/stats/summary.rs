@@ -2,7 +2,7 @@
 
 use super::Course;
 use bidir::driver::{Budget, Plan, Session};
-use bidir::integrator::IntegratorKind;
+use bidir::integrator::{CandidateCount, IntegratorKind};
 use std::time::Duration;
 
 /// Below this number of passes the variance of a pixel is too uncertain for an error.
@@ -104,10 +104,12 @@ fn describe(plan: &Plan) -> String {
     let is_lvc = plan.integrator == IntegratorKind::Lvc;
     let (candidates, rays) = (plan.candidates, plan.shadow_rays);
     let samples = plan.samples_per_subpath.get();
+    let has_own_lights = is_lvc && plan.next_events != CandidateCount::NEXT_EVENTS;
     let has_own = plan.roulette != plan.integrator.roulette();
     let flags = [
         Some(format!("--integrator {name}")),
         is_lvc.then(|| format!("--candidates {candidates}")),
+        has_own_lights.then(|| format!("--next-events {}", plan.next_events)),
         is_lvc.then(|| format!("--shadow-rays {rays}")),
         is_lvc.then(|| format!("--samples-per-subpath {samples}")),
         has_own.then(|| format!("--path-roulette {}", plan.roulette)),

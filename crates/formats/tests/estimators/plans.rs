@@ -2,7 +2,7 @@
 //! as long.
 
 use crate::case::open;
-use bidir::driver::{Resources, Session, Settings};
+use bidir::driver::{Plan, Resources, Session, Settings};
 use bidir::integrator::{CandidateCount, IntegratorKind};
 use bidir::select::ShadowRays;
 use bidir::settings::{Choice, Request};
@@ -31,33 +31,54 @@ fn indirect_light_of_diffuse_walls_has_more_candidates() {
         ("narrow-spot.pbrt", CandidateCount::new(24, 1)),
         ("glass.pbrt", CandidateCount::DEFAULT),
     ] {
-        let loaded = open(name);
-        let session = session(&loaded, IntegratorKind::Auto, &Request::default());
-        let plan = session.training().and_then(|training| training.plan);
-        let plan = plan.expect("auto finds one");
+        let plan = plan_of(name);
         assert_eq!(plan.candidates, candidates, "{name}: {plan}");
     }
 }
 
-/// Default candidates are those of the plan or of the estimator, and explicit ones stay.
+/// Light from an image around the scene gains by light points, light through glass does not. The other number has a
+/// predicted cost that is 17 % higher or more.
+#[test]
+fn direct_light_has_more_light_points() {
+    for (name, next_events) in [
+        ("around-octahedron.pbrt", CandidateCount::new(4, 1)),
+        ("glass.pbrt", CandidateCount::NEXT_EVENTS),
+    ] {
+        let plan = plan_of(name);
+        assert_eq!(plan.next_events, next_events, "{name}: {plan}");
+    }
+}
+
+fn plan_of(name: &str) -> Plan {
+    let loaded = open(name);
+    let session = session(&loaded, IntegratorKind::Auto, &Request::default());
+    let plan = session.training().and_then(|training| training.plan);
+    plan.expect("auto finds one")
+}
+
+/// Default numbers of candidates and light points are those of the plan or of the estimator, and explicit ones stay.
 #[test]
 fn default_candidates_depend_on_the_estimator() {
     let loaded = open("narrow-spot.pbrt");
     for (name, integrator) in IntegratorKind::NAMES {
-        let choose = |candidates| {
+        let choose = |count| {
             let request = Request {
-                candidates,
+                candidates: count,
+                next_events: count,
                 ..Request::default()
             };
             session(&loaded, integrator, &request)
         };
         let named = CandidateCount::new(5, 2);
         let session = choose(Some(Choice::Fixed(named)));
-        assert_eq!(session.settings().lvc.candidates, named, "{name}");
+        let lvc = session.settings().lvc;
+        assert_eq!([lvc.candidates, lvc.next_events], [named; 2], "{name}");
         let session = choose(None);
         let plan = session.training().and_then(|training| training.plan);
-        let own = plan.map_or(CandidateCount::DEFAULT, |plan| plan.candidates);
-        assert_eq!(session.settings().lvc.candidates, own, "{name}");
+        let of_estimator = [CandidateCount::DEFAULT, CandidateCount::NEXT_EVENTS];
+        let own = plan.map_or(of_estimator, |plan| [plan.candidates, plan.next_events]);
+        let lvc = session.settings().lvc;
+        assert_eq!([lvc.candidates, lvc.next_events], own, "{name}");
     }
 }
 

@@ -35,8 +35,10 @@ pub(super) const PATH_ALLOWANCE: f64 = 1.35;
 /// to 0.9 are equally good in 39 scenes.
 pub(super) const BDPT_ALLOWANCE: f64 = 0.85;
 /// `lvc` with 24 candidates may cost so many times as much as with 12, as candidates of one camera vertex vary together:
-/// in five scenes it needs 0.91 to 1.02 of the time (docs/data/auto.csv), and by second moments and costs 0.76 to 0.89.
-pub(super) const MANY_ALLOWANCE: f64 = 0.95;
+/// in 46 scenes 0.9 makes `auto` as fast as 0.95 by pixels, and faster by blocks (docs/data/plan-gains.csv).
+pub(super) const MANY_ALLOWANCE: f64 = 0.9;
+/// With twice the light points of each first vertex as well, likewise: 0.8 to 0.85 are equally good.
+pub(super) const LIGHTS_ALLOWANCE: f64 = 0.82;
 /// The least albedo that a second moment is divided by: bounds rare dark paths.
 pub(super) const LEAST_ALBEDO: f32 = 1e-3;
 /// The least share of a path that a second moment is divided by: a missed path makes a plan very bad, not

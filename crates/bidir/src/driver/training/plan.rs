@@ -1,7 +1,7 @@
 //! The plans of `auto`, and the choice among them: the least product of second moment and cost, both by what the
 //! survey found (docs/derivations/choosing-a-plan.md).
 
-use super::constants::{BDPT_ALLOWANCE, MANY_ALLOWANCE, PATH_ALLOWANCE};
+use super::constants::{BDPT_ALLOWANCE, LIGHTS_ALLOWANCE, MANY_ALLOWANCE, PATH_ALLOWANCE};
 use super::moments::Counts;
 use super::survey::Survey;
 use super::{Settings, Task};
@@ -25,6 +25,8 @@ pub struct Plan {
     pub samples_per_subpath: SamplesPerSubpath,
     /// The candidates of camera vertices there.
     pub candidates: CandidateCount,
+    /// Their light points.
+    pub next_events: CandidateCount,
     /// Which connections are traced.
     pub shadow_rays: ShadowRays,
 }
@@ -35,6 +37,7 @@ pub(super) const PATH: Plan = Plan {
     roulette: PathRoulette::Albedo { start: 2 },
     samples_per_subpath: SamplesPerSubpath::power_of_two(0),
     candidates: CandidateCount::DEFAULT,
+    next_events: CandidateCount::NEXT_EVENTS,
     shadow_rays: ShadowRays::All,
 };
 
@@ -57,12 +60,19 @@ const LVC_OF_MANY: Plan = Plan {
     ..LVC
 };
 
+/// The same with twice the light points, for what lights give directly.
+const LVC_OF_MANY_LIGHTS: Plan = Plan {
+    next_events: CandidateCount::new(4, 1),
+    ..LVC_OF_MANY
+};
+
 /// The plans, with the allowances that their products of second moment and cost are divided by.
-const PLANS: [(Plan, f64); 4] = [
+const PLANS: [(Plan, f64); 5] = [
     (PATH, PATH_ALLOWANCE),
     (BDPT, BDPT_ALLOWANCE),
     (LVC, 1.0),
     (LVC_OF_MANY, MANY_ALLOWANCE),
+    (LVC_OF_MANY_LIGHTS, LIGHTS_ALLOWANCE),
 ];
 
 impl Plan {
@@ -100,6 +110,9 @@ impl Plan {
         if !settings.open.candidates {
             self.candidates = settings.lvc.candidates;
         }
+        if !settings.open.next_events {
+            self.next_events = settings.lvc.next_events;
+        }
         self
     }
 
@@ -111,6 +124,7 @@ impl Plan {
         settings.shadow_rays = self.shadow_rays;
         settings.lvc.samples_per_subpath = self.samples_per_subpath;
         settings.lvc.candidates = self.candidates;
+        settings.lvc.next_events = self.next_events;
         settings
     }
 
@@ -139,6 +153,10 @@ impl fmt::Display for Plan {
             let count = self.samples_per_subpath;
             write!(f, ", {count} samples for each light subpath")?;
         }
-        write!(f, ", {} candidates, {}", self.candidates, self.shadow_rays)
+        write!(f, ", {} candidates", self.candidates)?;
+        if self.next_events != CandidateCount::NEXT_EVENTS {
+            write!(f, ", {} next events", self.next_events)?;
+        }
+        write!(f, ", {}", self.shadow_rays)
     }
 }

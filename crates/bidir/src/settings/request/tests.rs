@@ -56,6 +56,7 @@ fn choices_are_made_or_left_open() {
     let fixed = [
         ("shadow-rays", "per-pair"),
         ("candidates", "5"),
+        ("next-events", "3"),
         ("path-roulette", "off"),
     ];
     let open = fixed.map(|(name, _)| (name, "auto"));
@@ -64,6 +65,7 @@ fn choices_are_made_or_left_open() {
         let settings = request(&fixed).apply(&own);
         assert_eq!(settings.open, Open::default(), "{name}");
         assert_eq!(settings.lvc.candidates, CandidateCount::of(5), "{name}");
+        assert_eq!(settings.lvc.next_events, CandidateCount::of(3), "{name}");
         let again = request(&open).apply(&settings);
         assert_eq!(Request::of(&again), Request::of(&own), "{name}");
     }

@@ -22,6 +22,7 @@ fn settings_that_are_named_stay() {
         path_roulette: Some(Choice::Fixed(PathRoulette::Off)),
         shadow_rays: Some(Choice::Fixed(ShadowRays::PerPair)),
         candidates: Some(Choice::Fixed(CandidateCount::of(5))),
+        next_events: Some(Choice::Fixed(CandidateCount::of(3))),
         ..Request::default()
     };
     let settings = request.apply(&open());
@@ -30,6 +31,7 @@ fn settings_that_are_named_stay() {
         assert_eq!(applied.path.roulette, PathRoulette::Off);
         assert_eq!(applied.shadow_rays, ShadowRays::PerPair);
         assert_eq!(applied.lvc.candidates, settings.lvc.candidates);
+        assert_eq!(applied.lvc.next_events, settings.lvc.next_events);
     }
 }
 
