@@ -376,6 +376,20 @@ PATHS = [
         unit("settings_that_are_named_stay"),
     ),
     (
+        "light points that are named left to the plan",
+        "crates/bidir/src/driver/training/plan.rs",
+        "if !settings.open.next_events {",
+        "if !settings.open.next_events && settings.open.roulette {",
+        unit("settings_that_are_named_stay"),
+    ),
+    (
+        "a plan whose light points are not taken",
+        "crates/bidir/src/driver/training/plan.rs",
+        "settings.lvc.next_events = self.next_events;",
+        "settings.lvc.next_events = settings.lvc.next_events;",
+        unit("plans_are_applied_where_nothing_is_named"),
+    ),
+    (
         "blocked connections counted as those that arrive",
         "crates/bidir/src/guide/proposals.rs",
         "*arrived += u32::from(has_arrived);",

@@ -242,7 +242,7 @@ fn several_light_points_for_each_camera_vertex() {
         ("red-light-blue-surfaces", &*RED_LIGHT, 1),
         ("separated", &separated, 2),
     ] {
-        for (first, deeper) in [(3, 1), (2, 4)] {
+        for (first, deeper) in [(4, 1), (2, 4)] {
             let result = world
                 .case()
                 .with_effort(effort)

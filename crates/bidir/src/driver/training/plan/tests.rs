@@ -12,6 +12,8 @@ fn plans_are_applied_where_nothing_is_named() {
         assert_eq!(plan.keeping(&open()), plan);
         let applied = plan.apply(&open());
         assert_eq!(applied.integrator, plan.integrator);
+        assert_eq!(applied.lvc.candidates, plan.candidates);
+        assert_eq!(applied.lvc.next_events, plan.next_events);
         assert_eq!(plan.keeping(&applied), plan);
     }
 }
