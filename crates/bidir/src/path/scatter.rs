@@ -2,7 +2,7 @@
 //! draw there, and their densities. Visibility and roulette are no part of it.
 
 use super::{PathContext, Scattering, Vertex};
-use crate::bsdf::{Bsdf, BsdfValue, TransportMode};
+use crate::bsdf::{BsdfValue, TransportMode};
 use crate::light::LightPoint;
 use crate::math::{Vec2, Vec3};
 use crate::medium::MediumScattering;
@@ -29,7 +29,7 @@ pub(super) struct Scattered {
 /// A vertex with the directions towards both of its neighbours on a path.
 ///
 /// A walk of `mode` came from `wo` and goes on along `wi`. All questions share the local coordinates of both, and the
-/// value of the BSDF, which is evaluated for the first of them that needs it.
+/// value of the BSDF or the medium, which is evaluated for the first of them that needs it.
 #[derive(Clone, Debug)]
 pub struct Turn<'a> {
     vertex: &'a Vertex,
@@ -79,11 +79,16 @@ impl<'a> Turn<'a> {
         self.vertex
     }
 
-    /// The value of `bsdf`, which is the vertex's own. This is the only caller of `Bsdf::eval`.
+    /// The value of a surface or of a medium. This is the only caller of `Bsdf::eval`.
     #[inline]
-    fn value(&self, bsdf: &Bsdf) -> BsdfValue {
+    fn value(&self) -> BsdfValue {
         self.value.get().unwrap_or_else(|| {
-            let value = bsdf.eval(self.wo.local, self.wi.local, self.mode);
+            let Self { wo, wi, .. } = self;
+            let value = match &self.vertex.scattering {
+                Scattering::Surface(bsdf) => bsdf.eval(wo.local, wi.local, self.mode),
+                Scattering::Medium(medium) => phase_value(medium, wo.world, wi.world),
+                Scattering::Camera | Scattering::Light => BsdfValue::NONE,
+            };
             self.value.set(Some(value));
             value
         })
@@ -102,7 +107,7 @@ impl<'a> Turn<'a> {
         let Self { vertex, wo, wi, .. } = self;
         match &vertex.scattering {
             Scattering::Camera | Scattering::Light => vertex.leaving(context, wi.world),
-            Scattering::Surface(bsdf) => {
+            Scattering::Surface(_) => {
                 if !wo.agrees() || !wi.agrees() {
                     return Spectrum::ZERO;
                 }
@@ -110,11 +115,9 @@ impl<'a> Turn<'a> {
                     TransportMode::Radiance => wi,
                     TransportMode::Importance => wo,
                 };
-                self.value(bsdf).f * from.normal_ratio()
+                self.value().f * from.normal_ratio()
             }
-            Scattering::Medium(medium) => {
-                medium.coefficient * medium.phase.eval(wo.world, wi.world)
-            }
+            Scattering::Medium(_) => self.value().f,
         }
     }
 
@@ -123,11 +126,11 @@ impl<'a> Turn<'a> {
     /// to the probability of the others.
     #[inline]
     pub fn pdf(&self, context: &PathContext<'_>) -> f32 {
-        let Self { vertex, wo, wi, .. } = self;
-        match &vertex.scattering {
-            Scattering::Camera | Scattering::Light => vertex.pdf_leaving(context, wi.world),
-            Scattering::Surface(bsdf) => self.value(bsdf).pdf,
-            Scattering::Medium(medium) => medium.phase.eval(wo.world, wi.world),
+        match &self.vertex.scattering {
+            Scattering::Camera | Scattering::Light => {
+                self.vertex.pdf_leaving(context, self.wi.world)
+            }
+            Scattering::Surface(_) | Scattering::Medium(_) => self.value().pdf,
         }
     }
 
@@ -136,16 +139,24 @@ impl<'a> Turn<'a> {
     #[inline]
     pub(super) fn reversed(&self) -> (f32, f32) {
         match &self.vertex.scattering {
-            Scattering::Surface(bsdf) => {
-                let value = self.value(bsdf);
+            Scattering::Surface(_) | Scattering::Medium(_) => {
+                let value = self.value();
                 (value.pdf_reverse, value.albedo_reverse)
-            }
-            Scattering::Medium(medium) => {
-                let pdf = medium.phase.eval(self.wi.world, self.wo.world);
-                (pdf, medium.albedo.max_lane())
             }
             Scattering::Camera | Scattering::Light => (0.0, 1.0),
         }
+    }
+}
+
+/// σ_s p and the densities of a medium, which are p in both directions.
+#[inline]
+fn phase_value(medium: &MediumScattering, wo: Vec3, wi: Vec3) -> BsdfValue {
+    let p = medium.phase.eval(wo, wi);
+    BsdfValue {
+        f: medium.coefficient * p,
+        pdf: p,
+        pdf_reverse: p,
+        albedo_reverse: medium.albedo.max_lane(),
     }
 }
 
