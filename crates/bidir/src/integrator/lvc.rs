@@ -74,7 +74,7 @@ impl CandidateCount {
     pub const MAX: u16 = 4096;
     /// The number of candidates that suits most scenes.
     pub const DEFAULT: Self = Self::new(12, 1);
-    /// The number of light points that does.
+    /// The number of light points that suits most scenes.
     pub const NEXT_EVENTS: Self = Self::new(2, 1);
 
     /// `first` and `deeper`, brought into the range.

@@ -79,7 +79,7 @@ impl<'a> Turn<'a> {
         self.vertex
     }
 
-    /// The value of a surface or of a medium. This is the only caller of `Bsdf::eval`.
+    /// The value of a surface or of a medium; cameras and lights have none. This is the only caller of `Bsdf::eval`.
     #[inline]
     fn value(&self) -> BsdfValue {
         self.value.get().unwrap_or_else(|| {

@@ -23,32 +23,27 @@ fn indirect_light_has_shared_subpaths() {
     check("narrow-spot.pbrt", IntegratorKind::Lvc);
 }
 
-/// Where light comes through glass, candidates gain little. Between diffuse vertices they gain most, and cost
-/// least. The other number has a predicted cost that is 9 % higher or more.
+/// Between diffuse vertices candidates gain most, and cost least; light points gain where an image around the scene lights
+/// it. Through glass both gain little. Other numbers have a predicted cost that is 9 % higher or more.
 #[test]
-fn indirect_light_of_diffuse_walls_has_more_candidates() {
-    for (name, candidates) in [
-        ("narrow-spot.pbrt", CandidateCount::new(24, 1)),
-        ("glass.pbrt", CandidateCount::DEFAULT),
+fn candidates_and_light_points_depend_on_the_light() {
+    let [many, four] = [24, 4].map(|first| CandidateCount::new(first, 1));
+    for (name, candidates, next_events) in [
+        ("narrow-spot.pbrt", many, CandidateCount::NEXT_EVENTS),
+        ("around-octahedron.pbrt", many, four),
+        (
+            "glass.pbrt",
+            CandidateCount::DEFAULT,
+            CandidateCount::NEXT_EVENTS,
+        ),
     ] {
         let plan = plan_of(name);
         assert_eq!(plan.candidates, candidates, "{name}: {plan}");
-    }
-}
-
-/// Light from an image around the scene gains by light points, light through glass does not. The other number has a
-/// predicted cost that is 17 % higher or more.
-#[test]
-fn direct_light_has_more_light_points() {
-    for (name, next_events) in [
-        ("around-octahedron.pbrt", CandidateCount::new(4, 1)),
-        ("glass.pbrt", CandidateCount::NEXT_EVENTS),
-    ] {
-        let plan = plan_of(name);
         assert_eq!(plan.next_events, next_events, "{name}: {plan}");
     }
 }
 
+/// The plan of `auto` in this scene.
 fn plan_of(name: &str) -> Plan {
     let loaded = open(name);
     let session = session(&loaded, IntegratorKind::Auto, &Request::default());

@@ -37,7 +37,8 @@ pub(super) const BDPT_ALLOWANCE: f64 = 0.85;
 /// `lvc` with 24 candidates may cost so many times as much as with 12, as candidates of one camera vertex vary together:
 /// in 46 scenes 0.9 makes `auto` as fast as 0.95 by pixels, and faster by blocks (docs/data/plan-gains.csv).
 pub(super) const MANY_ALLOWANCE: f64 = 0.9;
-/// With twice the light points of each first vertex as well, likewise: 0.8 to 0.85 are equally good.
+/// `lvc` with 24 candidates and four light points may cost so many times as much as with 12 and two, as light points of
+/// one camera vertex vary together, too: 0.8 to 0.85 choose the same plans in 46 scenes (docs/data/plan-gains.csv).
 pub(super) const LIGHTS_ALLOWANCE: f64 = 0.82;
 /// The least albedo that a second moment is divided by: bounds rare dark paths.
 pub(super) const LEAST_ALBEDO: f32 = 1e-3;

@@ -25,7 +25,7 @@ pub struct Plan {
     pub samples_per_subpath: SamplesPerSubpath,
     /// The candidates of camera vertices there.
     pub candidates: CandidateCount,
-    /// Their light points.
+    /// The light points of camera vertices there.
     pub next_events: CandidateCount,
     /// Which connections are traced.
     pub shadow_rays: ShadowRays,
@@ -60,7 +60,7 @@ const LVC_OF_MANY: Plan = Plan {
     ..LVC
 };
 
-/// The same with twice the light points, for what lights give directly.
+/// [`LVC_OF_MANY`] with twice the light points, which lower the noise of light that arrives directly.
 const LVC_OF_MANY_LIGHTS: Plan = Plan {
     next_events: CandidateCount::new(4, 1),
     ..LVC_OF_MANY
