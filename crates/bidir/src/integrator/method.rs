@@ -20,7 +20,7 @@ use crate::select::Selector;
 /// in a processor's cache, that there are some groups for every thread, and that pixels near each other
 /// are in different groups.
 pub(crate) fn group_size(pixels: u64) -> u64 {
-    (pixels / 64).next_power_of_two().clamp(64, 2048)
+    (pixels / 32).next_power_of_two().clamp(64, 2048)
 }
 
 /// An estimator of the image. Its expectation is the sum over all paths within the limit of length

@@ -27,19 +27,18 @@ pub(super) const BLOCKS_PER_SIDE: usize = 16;
 /// ε relative to the square of the image's mean: bounds what dark blocks count.
 pub(super) const DARK: f64 = 0.01;
 
-/// `path` may cost so many times as much as `lvc`, whose pixels share noise, and whose terms vary together with the
-/// camera vertex that they have in common. In eight of 46 scenes its product was 1.1 to 1.35 times that of `lvc`, and
-/// it needed 0.94 of the time by pixels and 0.76 by blocks (docs/data/plan-products.csv).
-pub(super) const PATH_ALLOWANCE: f64 = 1.35;
-/// `bdpt` may cost so many times as much as `lvc`, whose second moment lacks the gain by learned proposals: 0.8
-/// to 0.9 are equally good in 39 scenes.
+/// `path` may cost so many times as much as `lvc`. This and the next three are the best of a grid in 46 scenes
+/// (docs/data/plan-gains.csv): predicted variances lack the gain of `lvc` by learned proposals.
+pub(super) const PATH_ALLOWANCE: f64 = 0.9;
+/// `bdpt` may cost so many times as much as `lvc`.
 pub(super) const BDPT_ALLOWANCE: f64 = 0.85;
-/// `lvc` with 24 candidates may cost so many times as much as with 12, as candidates of one camera vertex vary together:
-/// in 46 scenes 0.9 makes `auto` as fast as 0.95 by pixels, and faster by blocks (docs/data/plan-gains.csv).
+/// `lvc` with 24 candidates may cost so many times as much as with 12, as candidates of one camera vertex vary together;
+/// with four light points, too.
 pub(super) const MANY_ALLOWANCE: f64 = 0.9;
-/// `lvc` with 24 candidates and four light points may cost so many times as much as with 12 and two, as light points of
-/// one camera vertex vary together, too: 0.8 to 0.85 choose the same plans in 46 scenes (docs/data/plan-gains.csv).
-pub(super) const LIGHTS_ALLOWANCE: f64 = 0.82;
+/// `lvc` with eight light points may cost so many times as much as with two: those of one camera vertex vary together.
+pub(super) const LIGHTS_ALLOWANCE: f64 = 0.8;
+/// The least variance of a plan, above errors of rounding: where nothing varies, cost decides. Unit: its second moment.
+pub(super) const LEAST_VARIANCE: f64 = 1e-6;
 /// The least albedo that a second moment is divided by: bounds rare dark paths.
 pub(super) const LEAST_ALBEDO: f32 = 1e-3;
 /// The least share of a path that a second moment is divided by: a missed path makes a plan very bad, not

@@ -4,6 +4,7 @@
 
 mod blocks;
 mod constants;
+mod cost;
 mod effort;
 mod emission;
 mod extent;

@@ -1,4 +1,4 @@
-//! Second moment and cost of a plan, by what the survey found.
+//! The variance of a plan, by what the survey found.
 //!
 //! A term of the survey has the value v = f / D, with D = Σ_j n_j p_j by the balance heuristic. A plan takes
 //! D_k of the same path, with its own numbers of samples and roulette, so that
@@ -8,25 +8,24 @@
 //! with m the mean of a pixel of the block and ε a part of the square of the image's. Covariances within a sample
 //! are left out.
 //!
-//! **Cost** is a sum over what was counted, with constant weights: the same on every machine.
+//! Variance is less by the square of the mean of each strategy. Means of blocks are known of s = 0 and s = 1, of which a
+//! path of n vertices has one strategy each; so light that the camera sees directly has little variance where it is even.
 
 use super::Settings;
 use super::blocks::{BLOCKS, Blocks};
-use super::constants::{
-    CANDIDATE, CONNECTED_CAMERA_RAY, CONNECTION_RAY, DARK, DIFFUSE_CANDIDATE, LEAST_ALBEDO,
-    LEAST_SHARE, LIGHT_IMAGE, LIGHT_RAY,
-};
+use super::constants::{DARK, LEAST_ALBEDO, LEAST_SHARE, LEAST_VARIANCE};
 use super::survey::Survey;
 use crate::contribution::Contribution;
 use crate::film::FilmSettings;
-use crate::integrator::{Batch, IntegratorKind};
-use crate::path::{Job, MisHeuristic, PathContext, PathRoulette, Shares};
-use crate::select::ShadowRays;
+use crate::integrator::IntegratorKind;
+use crate::path::{PathContext, PathRoulette, Shares};
 use crate::strategy::Strategy;
-use std::ops::AddAssign;
 
 /// The first surfaces at which the roulette of a plan may differ from that of the survey.
-const STARTS: usize = 3;
+pub(super) const STARTS: usize = 3;
+
+/// Paths of fewer vertices have means of their strategies; those of longer ones are small. Unit: vertices.
+const LENGTHS: usize = 16;
 
 /// A contribution to the image of the survey.
 #[derive(Clone, Copy, Debug)]
@@ -70,18 +69,28 @@ impl Term {
 
     /// f / D_k: what it is of the value of a pixel of `film` where the numbers of samples are `counts`.
     pub(super) fn value_by(&self, film: &FilmSettings, counts: &Counts) -> f64 {
-        self.of_mean_pixel(film) / counts.share(&self.shares)
+        self.of_mean_pixel(film) / counts.share(&self.shares).all
     }
+}
+
+/// A term, where the root of m² + ε is the unit of luminance.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct RelativeTerm {
+    block: usize,
+    /// What it adds to the mean of its block.
+    part: f64,
+    /// What it adds to the second moment of the survey.
+    square: f64,
 }
 
 /// The numbers of samples of each kind of strategy, relative to those of the survey. Pairs are of t = 2 and of
 /// t > 2.
 pub(super) struct Counts {
-    next_events: [f64; 2],
-    connections: [f64; 2],
-    light_images: f64,
+    pub(super) next_events: [f64; 2],
+    pub(super) connections: [f64; 2],
+    pub(super) light_images: f64,
     /// The first surface that may end walks.
-    start: usize,
+    pub(super) start: usize,
 }
 
 impl Counts {
@@ -117,122 +126,69 @@ impl Counts {
     }
 
     /// D_k / D of a path.
-    fn share(&self, shares: &Shares) -> f64 {
+    fn share(&self, shares: &Shares) -> Share {
         // Strategy j walks from the camera by surfaces 0 to n - 3 - j.
         let walked = |j: usize| {
             let surfaces = (usize::from(shares.vertices) - j).saturating_sub(2);
             longer(shares.albedos)[self.start.min(surfaces)]
         };
         let pair = |parts: [f32; 2], counts| dot(parts.map(f64::from), counts);
-        let share = f64::from(shares.hits) * walked(0)
-            + pair(shares.next_events, self.next_events) * walked(1)
-            + pair(shares.connections, self.connections)
+        let hits = f64::from(shares.hits) * walked(0);
+        let next_events = pair(shares.next_events, self.next_events) * walked(1);
+        let others = pair(shares.connections, self.connections)
             + f64::from(shares.light_images) * self.light_images;
-        share.max(LEAST_SHARE)
+        Share {
+            all: (hits + next_events + others).max(LEAST_SHARE),
+            hits,
+            next_events,
+        }
+    }
+}
+
+/// D_k / D of a path.
+struct Share {
+    all: f64,
+    /// The part of s = 0.
+    hits: f64,
+    /// The part of s = 1.
+    next_events: f64,
+}
+
+/// The mean of a block, which terms add to.
+#[derive(Clone, Copy, Default)]
+struct Mean {
+    sum: f64,
+    /// Of the terms.
+    squares: f64,
+}
+
+impl Mean {
+    fn add(&mut self, part: f64) {
+        self.sum += part;
+        self.squares += part * part;
+    }
+
+    /// The square of its expectation: the products of different terms. That of the sum has the noise of few terms.
+    fn square(&self) -> f64 {
+        self.sum * self.sum - self.squares
     }
 }
 
 /// The factors by which walks go on more often whose roulette begins at surface 0, 1 and 2, where the first two
 /// have these albedos.
-fn longer(albedos: [f32; 2]) -> [f64; STARTS] {
+pub(super) fn longer(albedos: [f32; 2]) -> [f64; STARTS] {
     let [a, b] = albedos.map(|albedo| f64::from(albedo.clamp(LEAST_ALBEDO, 1.0)));
     [1.0, 1.0 / a, 1.0 / (a * b)]
 }
 
-/// Counts of the survey's samples, with walks whose roulette begins at surface 0, 1 and 2.
-#[derive(Clone, Copy, Default)]
-pub(super) struct Work([WorkOf; STARTS]);
-
-/// Counts of samples; pairs are of t = 2 and of t > 2.
-#[derive(Clone, Copy, Default)]
-struct WorkOf {
-    /// Rays of camera walks.
-    camera_rays: f64,
-    /// Connections with light points.
-    next_events: [f64; 2],
-    /// Connections with light walks.
-    connections: [f64; 2],
-    /// Connections with light walks whose two vertices are diffuse, by the balance heuristic.
-    diffuse: [f64; 2],
-    /// Samples that have any connection.
-    connected: f64,
-}
-
-impl Work {
-    /// Adds the one sample of `batch`.
-    pub(super) fn add(&mut self, job: &Job<'_>, batch: &Batch) {
-        let walk = batch.camera.get(0);
-        let rays = walk.vertices.len() - 1 + usize::from(walk.escape.is_some());
-        let albedo = |i: usize| walk.vertices.get(i).map_or(1.0, |vertex| vertex.albedo_fwd);
-        let longer = longer([albedo(1), albedo(2)]);
-        for (start, work) in self.0.iter_mut().enumerate() {
-            let rays = (0..rays).map(|before| longer[before.min(start)]);
-            work.camera_rays += rays.sum::<f64>();
-            for candidate in &batch.candidates {
-                let Strategy { s, t } = candidate.term.strategy;
-                let (s, t) = (usize::from(s), usize::from(t));
-                let deeper = usize::from(t > 2);
-                if s < job.settings.light_point.first_walked() {
-                    work.next_events[deeper] += longer[(t - 2).min(start)];
-                } else {
-                    work.connections[deeper] += 1.0;
-                    work.diffuse[deeper] += f64::from(batch.is_diffuse(candidate));
-                }
-            }
-            work.connected += f64::from(!batch.candidates.is_empty());
-        }
-    }
-}
-
-impl AddAssign for Work {
-    fn add_assign(&mut self, more: Self) {
-        for (work, more) in self.0.iter_mut().zip(&more.0) {
-            work.camera_rays += more.camera_rays;
-            work.connected += more.connected;
-            for deeper in 0..2 {
-                work.next_events[deeper] += more.next_events[deeper];
-                work.connections[deeper] += more.connections[deeper];
-                work.diffuse[deeper] += more.diffuse[deeper];
-            }
-        }
-    }
-}
-
 /// a_0 b_0 + a_1 b_1.
-fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
+pub(super) fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
     a[0] * b[0] + a[1] * b[1]
 }
 
 impl Survey {
-    /// The cost of a sample by `settings`, with `counts` of these. Unit: rays of path tracing's walks.
-    pub(super) fn cost(&self, settings: &Settings, counts: &Counts) -> f64 {
-        let work = &self.work.0[counts.start];
-        let candidates =
-            dot(work.next_events, counts.next_events) + dot(work.connections, counts.connections);
-        let diffuse = match settings.path.mis {
-            MisHeuristic::Balance => dot(work.diffuse, counts.connections),
-            _ => 0.0,
-        };
-        let traced = match settings.shadow_rays {
-            ShadowRays::Budget(most) => candidates.min(f64::from(most) * work.connected),
-            _ => candidates,
-        };
-        let camera_ray = match settings.integrator {
-            IntegratorKind::Lvc => CONNECTED_CAMERA_RAY,
-            _ => 1.0,
-        };
-        let of_light = LIGHT_RAY * self.stats.rays.light as f64
-            + LIGHT_IMAGE * self.stats.rays.light_image as f64;
-        let all = camera_ray * work.camera_rays
-            + counts.light_images * of_light
-            + CONNECTION_RAY * traced
-            + CANDIDATE * (candidates - diffuse)
-            + DIFFUSE_CANDIDATE * diffuse;
-        all / self.samples()
-    }
-
-    /// v² / (m² + ε) of each term, as it counts in the mean of a pixel of its block. None: nothing was found.
-    pub(super) fn relative_squares(&self, film: &FilmSettings) -> Option<Vec<f64>> {
+    /// The terms relative to the means of their blocks. None: nothing was found.
+    pub(super) fn relative_terms(&self, film: &FilmSettings) -> Option<Vec<RelativeTerm>> {
         let blocks = Blocks::new(film.crop);
         let samples = blocks.samples(self.stats.samples);
         // The block of a term, and s of (4).
@@ -251,26 +207,44 @@ impl Survey {
             means[block] += f64::from(term.value) * scale;
         }
         let mean = means.iter().sum::<f64>() / BLOCKS as f64;
-        let square = |term: &Term| {
+        let relative = |term: &Term| {
             let (block, scale) = place(term);
-            let value = f64::from(term.value);
+            let norm = (means[block] * means[block] + DARK * mean * mean).sqrt();
+            let value = f64::from(term.value) / norm;
             let in_pass = if term.is_light_image() {
                 blocks.pixels()
             } else {
                 1.0
             };
-            let relative = value * value / (means[block] * means[block] + DARK * mean * mean);
-            relative * scale / in_pass
+            RelativeTerm {
+                block,
+                part: value * scale,
+                square: value * value * scale / in_pass,
+            }
         };
-        (mean > 0.0).then(|| self.terms.iter().map(square).collect())
+        (mean > 0.0).then(|| self.terms.iter().map(relative).collect())
     }
 
-    /// M_k, by [`relative_squares`](Self::relative_squares).
-    pub(super) fn moment(&self, squares: &[f64], counts: &Counts) -> f64 {
-        let terms = self.terms.iter().zip(squares);
-        terms
-            .map(|(term, square)| square / counts.share(&term.shares))
-            .sum()
+    /// M_k less the squares of means of strategies s = 0 and s = 1, by [`relative_terms`](Self::relative_terms).
+    pub(super) fn variance(&self, relative: &[RelativeTerm], counts: &Counts) -> f64 {
+        let (mut moment, mut means) = (0.0, vec![[[Mean::default(); 2]; BLOCKS]; LENGTHS]);
+        for (term, relative) in self.terms.iter().zip(relative) {
+            let share = counts.share(&term.shares);
+            moment += relative.square / share.all;
+            if let Some(means) = means.get_mut(usize::from(term.shares.vertices)) {
+                let [hits, next_events] = &mut means[relative.block];
+                hits.add(relative.part * share.hits / share.all);
+                next_events.add(relative.part * share.next_events / share.all);
+            }
+        }
+        let squares = means.iter().enumerate().map(|(vertices, means)| {
+            let light_points = counts.next_events[usize::from(vertices > 3)];
+            let square = |[hits, next_events]: &[Mean; 2]| {
+                hits.square() + next_events.square() / light_points
+            };
+            means.iter().map(square).sum::<f64>()
+        });
+        (moment - squares.sum::<f64>()).max(LEAST_VARIANCE * moment)
     }
 }
 
@@ -279,11 +253,9 @@ mod tests {
     use super::*;
     use crate::driver::training::{
         Effort, Task,
-        tests::{WHOLE, grey, room, room_with, view},
+        tests::{WHOLE, lamp, room, view},
     };
-    use crate::integrator::CandidateCount;
-    use crate::material::{ConductorIndex, Material, Roughness};
-    use crate::texture::{ColorTexture, FloatTexture};
+    use crate::film::PixelRect;
 
     impl Term {
         /// True where connections with light walks can make the path.
@@ -292,7 +264,7 @@ mod tests {
         }
     }
 
-    /// Second moment and cost of path tracing whose roulette begins at a surface, by a survey of these strategies.
+    /// Variance and cost of path tracing whose roulette begins at a surface, by a survey of these strategies.
     fn of_path(strategies: &str, surveyed: u32, start: u32) -> [f64; 2] {
         let (scene, view) = (room(), view(WHOLE));
         let mut settings = Settings::new(IntegratorKind::Bdpt);
@@ -308,70 +280,43 @@ mod tests {
         let mut path = Settings::new(IntegratorKind::Path);
         path.path.roulette = roulette;
         let counts = Counts::new(&path, surveyed, survey.light_vertices());
-        let squares = survey.relative_squares(view.film());
-        let moment = survey.moment(&squares.expect("a lamp"), &counts);
-        [moment, survey.cost(&path, &counts)]
+        let terms = survey.relative_terms(view.film()).expect("a lamp");
+        let variance = survey.variance(&terms, &counts);
+        [variance, survey.cost(&path, &counts)]
     }
 
     /// Its own strategies give the same without other numbers of samples, and with the roulette that it has.
     #[test]
-    fn all_strategies_tell_second_moment_and_cost_of_path_tracing() {
+    fn all_strategies_tell_variance_and_cost_of_path_tracing() {
         for start in 0..3 {
-            let [moment, cost] = of_path("all", 0, start);
-            let [own_moment, own_cost] = of_path("s0,s1", start, start);
-            let difference = (moment / own_moment - 1.0).abs();
-            assert!(difference < 0.04, "{start}: {moment} for {own_moment}");
+            let [variance, cost] = of_path("all", 0, start);
+            let [own_variance, own_cost] = of_path("s0,s1", start, start);
+            let difference = (variance / own_variance - 1.0).abs();
+            assert!(difference < 0.04, "{start}: {variance} for {own_variance}");
             let difference = (cost / own_cost - 1.0).abs();
             assert!(difference < 0.02, "{start}: {cost} for {own_cost}");
         }
     }
 
-    /// The part of first connections with light walks that are diffuse, and the mean price of twelve candidates more,
-    /// in a room with this ball.
-    fn diffuse_part_and_price(ball: Material, mis: MisHeuristic) -> [f64; 2] {
-        let (scene, view) = (room_with(ball), view(WHOLE));
-        let mut settings = Settings::new(IntegratorKind::Lvc);
-        settings.path.mis = mis;
+    #[test]
+    fn even_light_that_is_seen_directly_is_no_noise() {
+        let of_lamp = PixelRect {
+            min: [6; 2],
+            max: [10; 2],
+        };
+        let (scene, view) = (lamp(), view(of_lamp));
+        let settings = Settings::new(IntegratorKind::Bdpt);
         let task = Task {
             scene: &scene,
             view: &view,
-            settings: &settings.clone(),
+            settings: &settings,
         };
-        let survey = Survey::run(task, Effort::at_most(1024));
-        let mut cost = |count| {
-            settings.lvc.candidates = CandidateCount::new(count, 1);
-            let counts = Counts::new(&settings, settings.path.roulette, survey.light_vertices());
-            survey.cost(&settings, &counts)
-        };
-        let [few, many] = [12, 24].map(&mut cost);
-        let drawn = 12.0 / survey.light_vertices();
-        let work = &survey.work.0[0];
-        let made = work.connections[0] * drawn / survey.samples();
-        [work.diffuse[0] / work.connections[0], (many - few) / made]
-    }
-
-    #[test]
-    fn candidates_cost_least_between_diffuse_vertices() {
-        let metal = || Material::Conductor {
-            index: ConductorIndex::Reflectance(ColorTexture::Constant([0.9; 3])),
-            roughness: Roughness {
-                u: FloatTexture::Constant(0.5),
-                v: FloatTexture::Constant(0.5),
-                ..Roughness::SMOOTH
-            },
-        };
-        for (ball, mis, expected) in [
-            (grey(0.4), MisHeuristic::Balance, 1.0..=1.0),
-            (metal(), MisHeuristic::Balance, 0.5..=0.95),
-        ] {
-            let [part, price] = diffuse_part_and_price(ball, mis);
-            assert!(expected.contains(&part), "{part}");
-            let of_all = CANDIDATE + part * (DIFFUSE_CANDIDATE - CANDIDATE);
-            assert!((price - of_all).abs() < 1e-9, "{price} for {of_all}");
-        }
-        // Other heuristics evaluate each connection alone.
-        let [_, price] = diffuse_part_and_price(grey(0.4), MisHeuristic::Power);
-        assert!((price - CANDIDATE).abs() < 1e-9, "{price}");
+        let survey = Survey::run(task, Effort::WHOLE);
+        let terms = survey.relative_terms(view.film()).expect("a lamp");
+        let counts = Counts::new(&settings, settings.path.roulette, 1.0);
+        let moment: f64 = terms.iter().map(|term| term.square).sum();
+        let part = survey.variance(&terms, &counts) / moment;
+        assert!(part < 0.05, "{part}");
     }
 
     const SHARES: Shares = Shares {
@@ -388,7 +333,7 @@ mod tests {
         let share = |integrator| {
             let settings = Settings::new(integrator);
             let roulette = PathRoulette::Albedo { start: 0 };
-            Counts::new(&settings, roulette, 4.0).share(&SHARES)
+            Counts::new(&settings, roulette, 4.0).share(&SHARES).all
         };
         let (path, bdpt) = (0.05 / 0.5 + 0.25 / 0.5, 1.0);
         let lvc = 0.05 + 0.25 + 0.1 * 12.0 / 4.0 + 0.2 / 4.0 + 0.4 / 2.0;
@@ -419,7 +364,7 @@ mod tests {
             (1, 5, 0.3 / 0.5),
             (0, 5, 0.3),
         ] {
-            let found = settings(start).share(&Shares { vertices, ..SHARES });
+            let found = settings(start).share(&Shares { vertices, ..SHARES }).all;
             assert!(
                 (found - expected).abs() < 1e-6,
                 "{start}, {vertices}: {found}"

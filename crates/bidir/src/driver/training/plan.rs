@@ -1,4 +1,4 @@
-//! The plans of `auto`, and the choice among them: the least product of second moment and cost, both by what the
+//! The plans of `auto`, and the choice among them: the least product of variance and cost, both by what the
 //! survey found (docs/derivations/choosing-a-plan.md).
 
 use super::constants::{BDPT_ALLOWANCE, LIGHTS_ALLOWANCE, MANY_ALLOWANCE, PATH_ALLOWANCE};
@@ -54,33 +54,32 @@ pub(super) const LVC: Plan = Plan {
     ..BDPT
 };
 
-/// `lvc` with twice the candidates, which cost least between diffuse vertices.
-const LVC_OF_MANY: Plan = Plan {
-    candidates: CandidateCount::new(24, 1),
-    ..LVC
-};
+/// `lvc` with twice the candidates, which cost least between diffuse vertices, and so many light points, which lower the
+/// noise of light that arrives directly.
+const fn lvc_of_many(light_points: u16) -> Plan {
+    Plan {
+        candidates: CandidateCount::new(24, 1),
+        next_events: CandidateCount::new(light_points, 1),
+        ..LVC
+    }
+}
 
-/// [`LVC_OF_MANY`] with twice the light points, which lower the noise of light that arrives directly.
-const LVC_OF_MANY_LIGHTS: Plan = Plan {
-    next_events: CandidateCount::new(4, 1),
-    ..LVC_OF_MANY
-};
-
-/// The plans, with the allowances that their products of second moment and cost are divided by.
-const PLANS: [(Plan, f64); 5] = [
+/// The plans, with the allowances that their products of variance and cost are divided by.
+const PLANS: [(Plan, f64); 6] = [
     (PATH, PATH_ALLOWANCE),
     (BDPT, BDPT_ALLOWANCE),
     (LVC, 1.0),
-    (LVC_OF_MANY, MANY_ALLOWANCE),
-    (LVC_OF_MANY_LIGHTS, LIGHTS_ALLOWANCE),
+    (lvc_of_many(2), MANY_ALLOWANCE),
+    (lvc_of_many(4), MANY_ALLOWANCE),
+    (lvc_of_many(8), LIGHTS_ALLOWANCE),
 ];
 
 impl Plan {
-    /// The plan with the least product of second moment and cost. If the survey found no light: `lvc`, which
+    /// The plan with the least product of variance and cost. If the survey found no light: `lvc`, which
     /// makes most paths, or `path` if there are no lights.
     pub(super) fn best(task: Task<'_>, survey: &Survey) -> Self {
         let settings = task.settings;
-        let Some(squares) = survey.relative_squares(task.view.film()) else {
+        let Some(terms) = survey.relative_terms(task.view.film()) else {
             let has_lights = !task.scene.lights().is_empty();
             return if has_lights { LVC } else { PATH }.keeping(settings);
         };
@@ -91,7 +90,7 @@ impl Plan {
             let (roulette, vertices) = (settings.path.roulette, survey.light_vertices());
             let counts = Counts::new(&applied, roulette, vertices);
             let product =
-                survey.moment(&squares, &counts) * survey.cost(&applied, &counts) / allowance;
+                survey.variance(&terms, &counts) * survey.cost(&applied, &counts) / allowance;
             if product < least && plan.is_possible(task) {
                 (best, least) = (plan, product);
             }

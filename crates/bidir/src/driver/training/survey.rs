@@ -3,10 +3,11 @@
 
 use super::super::spread;
 use super::constants::{FIRST_SAMPLES, GROUPS};
+use super::cost::Work;
 use super::effort::{Effort, IsLate};
 use super::extent;
 use super::learning::Found;
-use super::moments::{Term, Work};
+use super::moments::Term;
 use super::{Settings, Task};
 use crate::integrator::{Batch, Entry, Link, Method, Sample};
 use crate::path::{Job, MisHeuristic, PathDensities};

@@ -1,0 +1,161 @@
+//! The cost of a plan, by what the survey counted: with constant weights, the same on every machine.
+
+use super::Settings;
+use super::constants::{
+    CANDIDATE, CONNECTED_CAMERA_RAY, CONNECTION_RAY, DIFFUSE_CANDIDATE, LIGHT_IMAGE, LIGHT_RAY,
+};
+use super::moments::{Counts, STARTS, dot, longer};
+use super::survey::Survey;
+use crate::integrator::{Batch, IntegratorKind};
+use crate::path::{Job, MisHeuristic};
+use crate::select::ShadowRays;
+use crate::strategy::Strategy;
+use std::ops::AddAssign;
+
+/// Counts of the survey's samples, with walks whose roulette begins at surface 0, 1 and 2.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Work([WorkOf; STARTS]);
+
+/// Counts of samples; pairs are of t = 2 and of t > 2.
+#[derive(Clone, Copy, Default)]
+struct WorkOf {
+    /// Rays of camera walks.
+    camera_rays: f64,
+    /// Connections with light points.
+    next_events: [f64; 2],
+    /// Connections with light walks.
+    connections: [f64; 2],
+    /// Connections with light walks whose two vertices are diffuse, by the balance heuristic.
+    diffuse: [f64; 2],
+    /// Samples that have any connection.
+    connected: f64,
+}
+
+impl Work {
+    /// Adds the one sample of `batch`.
+    pub(super) fn add(&mut self, job: &Job<'_>, batch: &Batch) {
+        let walk = batch.camera.get(0);
+        let rays = walk.vertices.len() - 1 + usize::from(walk.escape.is_some());
+        let albedo = |i: usize| walk.vertices.get(i).map_or(1.0, |vertex| vertex.albedo_fwd);
+        let longer = longer([albedo(1), albedo(2)]);
+        for (start, work) in self.0.iter_mut().enumerate() {
+            let rays = (0..rays).map(|before| longer[before.min(start)]);
+            work.camera_rays += rays.sum::<f64>();
+            for candidate in &batch.candidates {
+                let Strategy { s, t } = candidate.term.strategy;
+                let (s, t) = (usize::from(s), usize::from(t));
+                let deeper = usize::from(t > 2);
+                if s < job.settings.light_point.first_walked() {
+                    work.next_events[deeper] += longer[(t - 2).min(start)];
+                } else {
+                    work.connections[deeper] += 1.0;
+                    work.diffuse[deeper] += f64::from(batch.is_diffuse(candidate));
+                }
+            }
+            work.connected += f64::from(!batch.candidates.is_empty());
+        }
+    }
+}
+
+impl AddAssign for Work {
+    fn add_assign(&mut self, more: Self) {
+        for (work, more) in self.0.iter_mut().zip(&more.0) {
+            work.camera_rays += more.camera_rays;
+            work.connected += more.connected;
+            for deeper in 0..2 {
+                work.next_events[deeper] += more.next_events[deeper];
+                work.connections[deeper] += more.connections[deeper];
+                work.diffuse[deeper] += more.diffuse[deeper];
+            }
+        }
+    }
+}
+
+impl Survey {
+    /// The cost of a sample by `settings`, with `counts` of these. Unit: rays of path tracing's walks.
+    pub(super) fn cost(&self, settings: &Settings, counts: &Counts) -> f64 {
+        let work = &self.work.0[counts.start];
+        let candidates =
+            dot(work.next_events, counts.next_events) + dot(work.connections, counts.connections);
+        let diffuse = match settings.path.mis {
+            MisHeuristic::Balance => dot(work.diffuse, counts.connections),
+            _ => 0.0,
+        };
+        let traced = match settings.shadow_rays {
+            ShadowRays::Budget(most) => candidates.min(f64::from(most) * work.connected),
+            _ => candidates,
+        };
+        let camera_ray = match settings.integrator {
+            IntegratorKind::Lvc => CONNECTED_CAMERA_RAY,
+            _ => 1.0,
+        };
+        let of_light = LIGHT_RAY * self.stats.rays.light as f64
+            + LIGHT_IMAGE * self.stats.rays.light_image as f64;
+        let all = camera_ray * work.camera_rays
+            + counts.light_images * of_light
+            + CONNECTION_RAY * traced
+            + CANDIDATE * (candidates - diffuse)
+            + DIFFUSE_CANDIDATE * diffuse;
+        all / self.samples()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::driver::training::{
+        Effort, Task,
+        tests::{WHOLE, grey, room_with, view},
+    };
+    use crate::integrator::CandidateCount;
+    use crate::material::{ConductorIndex, Material, Roughness};
+    use crate::texture::{ColorTexture, FloatTexture};
+
+    /// The part of first connections with light walks that are diffuse, and the mean price of twelve candidates more,
+    /// in a room with this ball.
+    fn diffuse_part_and_price(ball: Material, mis: MisHeuristic) -> [f64; 2] {
+        let (scene, view) = (room_with(ball), view(WHOLE));
+        let mut settings = Settings::new(IntegratorKind::Lvc);
+        settings.path.mis = mis;
+        let task = Task {
+            scene: &scene,
+            view: &view,
+            settings: &settings.clone(),
+        };
+        let survey = Survey::run(task, Effort::at_most(1024));
+        let mut cost = |count| {
+            settings.lvc.candidates = CandidateCount::new(count, 1);
+            let counts = Counts::new(&settings, settings.path.roulette, survey.light_vertices());
+            survey.cost(&settings, &counts)
+        };
+        let [few, many] = [12, 24].map(&mut cost);
+        let drawn = 12.0 / survey.light_vertices();
+        let work = &survey.work.0[0];
+        let made = work.connections[0] * drawn / survey.samples();
+        [work.diffuse[0] / work.connections[0], (many - few) / made]
+    }
+
+    #[test]
+    fn candidates_cost_least_between_diffuse_vertices() {
+        let metal = || Material::Conductor {
+            index: ConductorIndex::Reflectance(ColorTexture::Constant([0.9; 3])),
+            roughness: Roughness {
+                u: FloatTexture::Constant(0.5),
+                v: FloatTexture::Constant(0.5),
+                ..Roughness::SMOOTH
+            },
+        };
+        for (ball, mis, expected) in [
+            (grey(0.4), MisHeuristic::Balance, 1.0..=1.0),
+            (metal(), MisHeuristic::Balance, 0.5..=0.95),
+        ] {
+            let [part, price] = diffuse_part_and_price(ball, mis);
+            assert!(expected.contains(&part), "{part}");
+            let of_all = CANDIDATE + part * (DIFFUSE_CANDIDATE - CANDIDATE);
+            assert!((price - of_all).abs() < 1e-9, "{price} for {of_all}");
+        }
+        // Other heuristics evaluate each connection alone.
+        let [_, price] = diffuse_part_and_price(grey(0.4), MisHeuristic::Power);
+        assert!((price - CANDIDATE).abs() < 1e-9, "{price}");
+    }
+}
