@@ -77,9 +77,9 @@ impl Term {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct RelativeTerm {
     block: usize,
-    /// What it adds to the mean of its block.
+    /// Its part of the mean of its block.
     part: f64,
-    /// What it adds to the second moment of the survey.
+    /// Its part of the second moment of the survey.
     square: f64,
 }
 
@@ -158,7 +158,7 @@ struct Share {
 #[derive(Clone, Copy, Default)]
 struct Mean {
     sum: f64,
-    /// Of the terms.
+    /// The sum of the squares of the terms.
     squares: f64,
 }
 
@@ -168,7 +168,8 @@ impl Mean {
         self.squares += part * part;
     }
 
-    /// The square of its expectation: the products of different terms. That of the sum has the noise of few terms.
+    /// The square of its expectation, by the products of different terms: the square of the sum counts the noise of few
+    /// terms as mean.
     fn square(&self) -> f64 {
         self.sum * self.sum - self.squares
     }
