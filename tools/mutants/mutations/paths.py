@@ -292,6 +292,20 @@ PATHS = [
         unit("even_light_that_is_seen_directly"),
     ),
     (
+        "the mean of several light points counted as that of one",
+        "crates/bidir/src/driver/training/moments.rs",
+        "hits.square() + next_events.square() / light_points",
+        "hits.square() + next_events.square() + 0.0 * light_points",
+        unit("light_points_divide_the_variance"),
+    ),
+    (
+        "means of direct light with the light points of later vertices",
+        "crates/bidir/src/driver/training/moments.rs",
+        "counts.next_events[usize::from(vertices > 3)]",
+        "counts.next_events[usize::from(vertices > 2)]",
+        unit("light_points_divide_the_variance"),
+    ),
+    (
         "means of blocks with the noise of their terms",
         "crates/bidir/src/driver/training/moments.rs",
         "self.sum * self.sum - self.squares",

@@ -17,7 +17,7 @@ use crate::path::Job;
 use crate::select::Selector;
 
 /// How many samples share light subpaths where so many pixels are rendered. So few that the subpaths stay
-/// in a processor's cache, that there are some groups for every thread, and that pixels near each other
+/// in a processor's cache, that threads share at least 16 groups of a film of 1024 pixels or more, and that pixels near each other
 /// are in different groups.
 pub(crate) fn group_size(pixels: u64) -> u64 {
     (pixels / 32).next_power_of_two().clamp(64, 2048)

@@ -27,8 +27,8 @@ pub(super) const BLOCKS_PER_SIDE: usize = 16;
 /// ε relative to the square of the image's mean: bounds what dark blocks count.
 pub(super) const DARK: f64 = 0.01;
 
-/// `path` may cost so many times as much as `lvc`. This and the next three are the best of a grid in 46 scenes
-/// (docs/data/plan-gains.csv): predicted variances lack the gain of `lvc` by learned proposals.
+/// `path` may cost so many times as much as `lvc`. This and the next three were chosen on a grid, by the mean
+/// and the worst of 46 scenes (docs/data/plan-gains.csv): predicted variances lack the gain of `lvc` by learned proposals.
 pub(super) const PATH_ALLOWANCE: f64 = 0.9;
 /// `bdpt` may cost so many times as much as `lvc`.
 pub(super) const BDPT_ALLOWANCE: f64 = 0.85;

@@ -73,7 +73,7 @@ impl Term {
     }
 }
 
-/// A term, where the root of m² + ε is the unit of luminance.
+/// A term of the survey, in units of the root of m² + ε of its block.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct RelativeTerm {
     block: usize,
@@ -257,6 +257,7 @@ mod tests {
         tests::{WHOLE, lamp, room, view},
     };
     use crate::film::PixelRect;
+    use crate::integrator::CandidateCount;
 
     impl Term {
         /// True where connections with light walks can make the path.
@@ -296,6 +297,33 @@ mod tests {
             assert!(difference < 0.04, "{start}: {variance} for {own_variance}");
             let difference = (cost / own_cost - 1.0).abs();
             assert!(difference < 0.02, "{start}: {cost} for {own_cost}");
+        }
+    }
+
+    #[test]
+    fn light_points_divide_the_variance_of_direct_light() {
+        for (max_depth, light_points) in
+            [(1, CandidateCount::new(8, 1)), (5, CandidateCount::of(8))]
+        {
+            let (scene, view) = (room(), view(WHOLE));
+            let mut settings = Settings::new(IntegratorKind::Lvc);
+            settings.path.strategies = "s1".parse().expect("a strategy");
+            settings.path.max_depth = Some(max_depth);
+            let task = Task {
+                scene: &scene,
+                view: &view,
+                settings: &settings.clone(),
+            };
+            let survey = Survey::run(task, Effort::WHOLE);
+            let terms = survey.relative_terms(view.film()).expect("a lamp");
+            let [one, many] = [CandidateCount::of(1), light_points].map(|count| {
+                settings.lvc.next_events = count;
+                survey.variance(&terms, &Counts::new(&settings, settings.path.roulette, 1.0))
+            });
+            assert!(
+                (one / many - 8.0).abs() < 1e-3,
+                "{max_depth}: {one}, {many}"
+            );
         }
     }
 
