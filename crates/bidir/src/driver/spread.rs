@@ -43,8 +43,8 @@ pub(super) mod tests {
     use super::*;
     use crate::integrator::group_size;
 
-    /// Sizes of films; those from the seventh on are small or narrow.
-    pub(in crate::driver) const SIZES: [[u32; 2]; 10] = [
+    /// Sizes of films; those from the seventh on are small or narrow, or have little more than 16 groups.
+    pub(in crate::driver) const SIZES: [[u32; 2]; 13] = [
         [2560, 1440],
         [920, 680],
         [720, 480],
@@ -55,6 +55,9 @@ pub(super) mod tests {
         [37, 31],
         [1024, 5],
         [3, 2000],
+        [34, 32],
+        [64, 65],
+        [220, 150],
     ];
 
     /// The group of each pixel, in row order.

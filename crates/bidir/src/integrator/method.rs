@@ -16,11 +16,11 @@ use super::{Batch, CandidateCount, IntegratorKind, LvcSettings};
 use crate::path::Job;
 use crate::select::Selector;
 
-/// How many samples share light subpaths where so many pixels are rendered. So few that the subpaths stay
-/// in a processor's cache, that threads share at least 16 groups of a film of 1024 pixels or more, and that pixels near each other
-/// are in different groups.
+/// How many samples share light subpaths where so many pixels are rendered. So few that the subpaths stay in a
+/// processor's cache, and that a film of 1088 pixels or more has 17 groups at least: pixels two apart are then in
+/// different ones (`driver::spread`).
 pub(crate) fn group_size(pixels: u64) -> u64 {
-    (pixels / 32).next_power_of_two().clamp(64, 2048)
+    1 << (pixels / 17).clamp(64, 2048).ilog2()
 }
 
 /// An estimator of the image. Its expectation is the sum over all paths within the limit of length

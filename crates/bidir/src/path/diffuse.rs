@@ -69,8 +69,8 @@ impl DiffuseEnd {
     };
 
     /// `vertex` of a walk of `mode`, with the sums there, which hold for all of its connections. [None](Self::NONE)
-    /// where it is not diffuse, where nothing is scattered, where rays from it may go through media, or where weights are
-    /// not those of the balance heuristic with one roulette for paths of any length.
+    /// where it is not diffuse, where nothing is scattered, where rays from it may go through media, or where weights
+    /// are not those of the balance heuristic with one roulette for paths of any length.
     pub(super) fn new(
         context: &PathContext<'_>,
         vertex: &Vertex,

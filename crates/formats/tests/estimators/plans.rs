@@ -1,5 +1,5 @@
-//! The plans that `auto` chooses in clear cases: at 80 x 60, the best plan of another estimator takes twice
-//! as long.
+//! The plans that `auto` chooses in clear cases: at 80 x 60, the best plan of another estimator takes half as long
+//! again or more.
 
 use crate::case::open;
 use bidir::driver::{Plan, Resources, Session, Settings};
@@ -23,8 +23,8 @@ fn indirect_light_has_shared_subpaths() {
     check("narrow-spot.pbrt", IntegratorKind::Lvc);
 }
 
-/// Candidates gain most between diffuse vertices, where they cost least, and little through glass. The other number has a
-/// predicted product that is 16 % higher or more.
+/// Candidates gain most between diffuse vertices, where they cost least, and little through glass. The other number has
+/// a predicted product that is 16 % higher or more.
 #[test]
 fn candidates_depend_on_the_surfaces() {
     for (name, candidates) in [("narrow-spot.pbrt", 24), ("glass.pbrt", 12)] {

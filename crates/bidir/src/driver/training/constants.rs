@@ -4,7 +4,7 @@
 /// The most samples of the survey: the mean luminance is then within a few percent in most scenes, and four
 /// times as many change variances by 3 % at most. Unit: samples, a power of two.
 pub(super) const MOST_SAMPLES: u64 = 1 << 14;
-/// The most samples for each pixel of films for which these are [`ENOUGH_SAMPLES`]. Unit: samples.
+/// The most samples for each pixel, where that gives at least [`ENOUGH_SAMPLES`] in all. Unit: samples.
 pub(super) const MOST_OF_PIXEL: u64 = 16;
 /// Small films have at least as many, if work allows it. Unit: samples, a power of two.
 pub(super) const ENOUGH_SAMPLES: u64 = 1 << 10;
@@ -27,8 +27,8 @@ pub(super) const BLOCKS_PER_SIDE: usize = 16;
 /// ε relative to the square of the image's mean: bounds what dark blocks count.
 pub(super) const DARK: f64 = 0.01;
 
-/// `path` may cost so many times as much as `lvc`. This and the next three were chosen on a grid, by the mean
-/// and the worst of 46 scenes (docs/data/plan-gains.csv): predicted variances lack the gain of `lvc` by learned proposals.
+/// `path` may cost so many times as much as `lvc`. This and the next three were chosen on a grid, by the mean and the
+/// worst of 46 scenes (docs/data/auto-46.csv): predicted variances lack the gain of `lvc` by learned proposals.
 pub(super) const PATH_ALLOWANCE: f64 = 0.9;
 /// `bdpt` may cost so many times as much as `lvc`.
 pub(super) const BDPT_ALLOWANCE: f64 = 0.85;
@@ -37,7 +37,8 @@ pub(super) const BDPT_ALLOWANCE: f64 = 0.85;
 pub(super) const MANY_ALLOWANCE: f64 = 0.9;
 /// `lvc` with eight light points may cost so many times as much as with two: those of one camera vertex vary together.
 pub(super) const LIGHTS_ALLOWANCE: f64 = 0.8;
-/// The least variance of a plan, above errors of rounding: where nothing varies, cost decides. Unit: its second moment.
+/// The least variance of a plan, as estimates may be negative: where nothing varies, cost decides. Unit: its second
+/// moment.
 pub(super) const LEAST_VARIANCE: f64 = 1e-6;
 /// The least albedo that a second moment is divided by: bounds rare dark paths.
 pub(super) const LEAST_ALBEDO: f32 = 1e-3;

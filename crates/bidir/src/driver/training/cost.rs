@@ -12,17 +12,14 @@ use crate::select::ShadowRays;
 use crate::strategy::Strategy;
 use std::ops::AddAssign;
 
-/// Counts of the survey's samples, with walks whose roulette begins at surface 0, 1 and 2.
+/// Counts of the survey's samples. Walks have a roulette that begins at surface 0, 1 or 2; pairs are of t = 2 and of
+/// t > 2.
 #[derive(Clone, Copy, Default)]
-pub(super) struct Work([WorkOf; STARTS]);
-
-/// Counts of samples; pairs are of t = 2 and of t > 2.
-#[derive(Clone, Copy, Default)]
-struct WorkOf {
-    /// Rays of camera walks.
-    camera_rays: f64,
-    /// Connections with light points.
-    next_events: [f64; 2],
+pub(super) struct Work {
+    /// Rays of camera walks, by the start of the roulette.
+    camera_rays: [f64; STARTS],
+    /// Connections with light points, by the start of the roulette.
+    next_events: [[f64; 2]; STARTS],
     /// Connections with light walks.
     connections: [f64; 2],
     /// Connections with light walks whose two vertices are diffuse, by the balance heuristic.
@@ -38,52 +35,62 @@ impl Work {
         let rays = walk.vertices.len() - 1 + usize::from(walk.escape.is_some());
         let albedo = |i: usize| walk.vertices.get(i).map_or(1.0, |vertex| vertex.albedo_fwd);
         let longer = longer([albedo(1), albedo(2)]);
-        for (start, work) in self.0.iter_mut().enumerate() {
-            let rays = (0..rays).map(|before| longer[before.min(start)]);
-            work.camera_rays += rays.sum::<f64>();
-            for candidate in &batch.candidates {
-                let Strategy { s, t } = candidate.term.strategy;
-                let (s, t) = (usize::from(s), usize::from(t));
-                let deeper = usize::from(t > 2);
-                if s < job.settings.light_point.first_walked() {
-                    work.next_events[deeper] += longer[(t - 2).min(start)];
-                } else {
-                    work.connections[deeper] += 1.0;
-                    work.diffuse[deeper] += f64::from(batch.is_diffuse(candidate));
-                }
-            }
-            work.connected += f64::from(!batch.candidates.is_empty());
+        for (start, camera_rays) in self.camera_rays.iter_mut().enumerate() {
+            *camera_rays += (0..rays)
+                .map(|before| longer[before.min(start)])
+                .sum::<f64>();
         }
+        for candidate in &batch.candidates {
+            let Strategy { s, t } = candidate.term.strategy;
+            let (s, t) = (usize::from(s), usize::from(t));
+            let deeper = usize::from(t > 2);
+            if s < job.settings.light_point.first_walked() {
+                for (start, next_events) in self.next_events.iter_mut().enumerate() {
+                    next_events[deeper] += longer[(t - 2).min(start)];
+                }
+            } else {
+                self.connections[deeper] += 1.0;
+                self.diffuse[deeper] += f64::from(batch.is_diffuse(candidate));
+            }
+        }
+        self.connected += f64::from(!batch.candidates.is_empty());
     }
 }
 
 impl AddAssign for Work {
     fn add_assign(&mut self, more: Self) {
-        for (work, more) in self.0.iter_mut().zip(&more.0) {
-            work.camera_rays += more.camera_rays;
-            work.connected += more.connected;
-            for deeper in 0..2 {
-                work.next_events[deeper] += more.next_events[deeper];
-                work.connections[deeper] += more.connections[deeper];
-                work.diffuse[deeper] += more.diffuse[deeper];
+        let add = |sums: &mut [f64], more: &[f64]| {
+            for (sum, more) in sums.iter_mut().zip(more) {
+                *sum += more;
             }
-        }
+        };
+        add(&mut self.camera_rays, &more.camera_rays);
+        add(
+            self.next_events.as_flattened_mut(),
+            more.next_events.as_flattened(),
+        );
+        add(&mut self.connections, &more.connections);
+        add(&mut self.diffuse, &more.diffuse);
+        self.connected += more.connected;
     }
 }
 
 impl Survey {
     /// The cost of a sample by `settings`, with `counts` of these. Unit: rays of path tracing's walks.
     pub(super) fn cost(&self, settings: &Settings, counts: &Counts) -> f64 {
-        let work = &self.work.0[counts.start];
-        let candidates =
-            dot(work.next_events, counts.next_events) + dot(work.connections, counts.connections);
+        let work = &self.work;
+        let candidates = dot(work.next_events[counts.start], counts.next_events)
+            + dot(work.connections, counts.connections);
         let diffuse = match settings.path.mis {
             MisHeuristic::Balance => dot(work.diffuse, counts.connections),
             _ => 0.0,
         };
-        let traced = match settings.shadow_rays {
-            ShadowRays::Budget(most) => candidates.min(f64::from(most) * work.connected),
-            _ => candidates,
+        // The other rules trace all at most.
+        let most = match settings.shadow_rays {
+            _ if !settings.integrator.has_candidates() => f64::INFINITY,
+            ShadowRays::Budget(rays) => f64::from(rays) * work.connected,
+            ShadowRays::PerPair => work.connected,
+            _ => f64::INFINITY,
         };
         let camera_ray = match settings.integrator {
             IntegratorKind::Lvc => CONNECTED_CAMERA_RAY,
@@ -91,9 +98,9 @@ impl Survey {
         };
         let of_light = LIGHT_RAY * self.stats.rays.light as f64
             + LIGHT_IMAGE * self.stats.rays.light_image as f64;
-        let all = camera_ray * work.camera_rays
+        let all = camera_ray * work.camera_rays[counts.start]
             + counts.light_images * of_light
-            + CONNECTION_RAY * traced
+            + CONNECTION_RAY * candidates.min(most)
             + CANDIDATE * (candidates - diffuse)
             + DIFFUSE_CANDIDATE * diffuse;
         all / self.samples()
@@ -111,8 +118,8 @@ mod tests {
     use crate::material::{ConductorIndex, Material, Roughness};
     use crate::texture::{ColorTexture, FloatTexture};
 
-    /// The part of first connections with light walks that are diffuse, and the mean price of twelve candidates more,
-    /// in a room with this ball.
+    /// The part of first connections with light walks that are diffuse, and the mean price of one of twelve
+    /// candidates more, in a room with this ball.
     fn diffuse_part_and_price(ball: Material, mis: MisHeuristic) -> [f64; 2] {
         let (scene, view) = (room_with(ball), view(WHOLE));
         let mut settings = Settings::new(IntegratorKind::Lvc);
@@ -130,7 +137,7 @@ mod tests {
         };
         let [few, many] = [12, 24].map(&mut cost);
         let drawn = 12.0 / survey.light_vertices();
-        let work = &survey.work.0[0];
+        let work = &survey.work;
         let made = work.connections[0] * drawn / survey.samples();
         [work.diffuse[0] / work.connections[0], (many - few) / made]
     }

@@ -1,6 +1,6 @@
 //! The number of samples of training: 2¹⁴ where a sample costs no more than it usually does, and
-//! fewer where subpaths are long. With w the mean work of a sample and w₀ the usual one, it is the power of
-//! two just below
+//! fewer where subpaths are long. With w the mean work of a sample and w₀ the usual one, it is the
+//! largest power of two that is at most
 //!
 //! 2¹⁴ (w₀ / w)²,
 //!

@@ -28,6 +28,7 @@ use crate::scene::Scene;
 use crate::stats::RayCounts;
 use crate::view::View;
 use constants::MOST_CACHED;
+use moments::of_connections;
 use survey::Survey;
 
 /// The results of a short render before the first pass: a pure function of scene, settings and its number of
@@ -130,12 +131,8 @@ impl Training {
 
     /// The counts of the strategies of `lvc`, with `light_subpaths` subpaths in a pass.
     pub(super) fn counts(&self, settings: LvcSettings, light_subpaths: u64) -> SampleCounts {
-        let each = |count: u16| match self.light_vertices {
-            0.0 => 1.0,
-            vertices => f64::from(count) / vertices,
-        };
         SampleCounts {
-            connections: settings.candidates.get().map(each),
+            connections: of_connections(settings.candidates, self.light_vertices),
             next_events: settings.next_events.get().map(f64::from),
             light_subpaths: light_subpaths as f64,
         }

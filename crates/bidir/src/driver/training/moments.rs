@@ -8,8 +8,9 @@
 //! with m the mean of a pixel of the block and ε a part of the square of the image's. Covariances within a sample
 //! are left out.
 //!
-//! Variance is less by the square of the mean of each strategy. Means of blocks are known of s = 0 and s = 1, of which a
-//! path of n vertices has one strategy each; so light that the camera sees directly has little variance where it is even.
+//! The variance of a strategy with N samples is its second moment less the square of its mean over N. Only the means of
+//! s = 0 and s = 1 are estimated, for each length of paths and each block: even light that the camera sees directly
+//! then has little variance.
 
 use super::Settings;
 use super::blocks::{BLOCKS, Blocks};
@@ -17,7 +18,7 @@ use super::constants::{DARK, LEAST_ALBEDO, LEAST_SHARE, LEAST_VARIANCE};
 use super::survey::Survey;
 use crate::contribution::Contribution;
 use crate::film::FilmSettings;
-use crate::integrator::IntegratorKind;
+use crate::integrator::{CandidateCount, IntegratorKind};
 use crate::path::{PathContext, PathRoulette, Shares};
 use crate::strategy::Strategy;
 
@@ -98,13 +99,13 @@ impl Counts {
     /// connected on average, and walks of the survey had the roulette `surveyed`.
     pub(super) fn new(settings: &Settings, surveyed: PathRoulette, light_vertices: f64) -> Self {
         let lvc = &settings.lvc;
-        let each = |candidates: u16| f64::from(candidates) / light_vertices.max(LEAST_SHARE);
         let (next_events, connections, light_images) = match settings.integrator {
-            IntegratorKind::Path | IntegratorKind::Light => ([1.0; 2], [0.0; 2], 0.0),
+            IntegratorKind::Path => ([1.0; 2], [0.0; 2], 0.0),
+            IntegratorKind::Light => ([0.0; 2], [0.0; 2], 1.0),
             IntegratorKind::Bdpt => ([1.0; 2], [1.0; 2], 1.0),
             IntegratorKind::Lvc | IntegratorKind::Auto => (
                 lvc.next_events.get().map(f64::from),
-                lvc.candidates.get().map(each),
+                of_connections(lvc.candidates, light_vertices),
                 1.0 / f64::from(lvc.samples_per_subpath.get()),
             ),
         };
@@ -169,10 +170,19 @@ impl Mean {
     }
 
     /// The square of its expectation, by the products of different terms: the square of the sum counts the noise of few
-    /// terms as mean.
+    /// terms as mean. Too small by the part that products of a sample with itself would have.
     fn square(&self) -> f64 {
         self.sum * self.sum - self.squares
     }
+}
+
+/// The numbers of samples of a connection with a light walk, M / κ, for t = 2 and t > 2. Where no light vertex can be
+/// connected they do not matter.
+pub(super) fn of_connections(candidates: CandidateCount, light_vertices: f64) -> [f64; 2] {
+    candidates.get().map(|count| match light_vertices {
+        0.0 => 1.0,
+        vertices => f64::from(count) / vertices,
+    })
 }
 
 /// The factors by which walks go on more often whose roulette begins at surface 0, 1 and 2, where the first two
@@ -190,30 +200,17 @@ pub(super) fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
 impl Survey {
     /// The terms relative to the means of their blocks. None: nothing was found.
     pub(super) fn relative_terms(&self, film: &FilmSettings) -> Option<Vec<RelativeTerm>> {
-        let blocks = Blocks::new(film.crop);
-        let samples = blocks.samples(self.stats.samples);
-        // The block of a term, and s of (4).
-        let place = |term: &Term| {
-            let block = blocks.of(term.pixel as usize);
-            let count = if term.is_light_image() {
-                self.samples() * blocks.size(block)
-            } else {
-                samples[block]
-            };
-            (block, 1.0 / count)
-        };
+        let places = self.places(film);
         let mut means = [0.0; BLOCKS];
-        for term in &self.terms {
-            let (block, scale) = place(term);
+        for (term, &(block, scale)) in self.terms.iter().zip(&places) {
             means[block] += f64::from(term.value) * scale;
         }
-        let mean = means.iter().sum::<f64>() / BLOCKS as f64;
-        let relative = |term: &Term| {
-            let (block, scale) = place(term);
+        let mean = self.luminance / self.samples();
+        let relative = |(term, (block, scale)): (&Term, (usize, f64))| {
             let norm = (means[block] * means[block] + DARK * mean * mean).sqrt();
             let value = f64::from(term.value) / norm;
             let in_pass = if term.is_light_image() {
-                blocks.pixels()
+                film.light_paths() as f64
             } else {
                 1.0
             };
@@ -223,7 +220,23 @@ impl Survey {
                 square: value * value * scale / in_pass,
             }
         };
-        (mean > 0.0).then(|| self.terms.iter().map(relative).collect())
+        (mean > 0.0).then(|| self.terms.iter().zip(places).map(relative).collect())
+    }
+
+    /// The block of each term, and the factor of its value in the mean of the block.
+    fn places(&self, film: &FilmSettings) -> Vec<(usize, f64)> {
+        let blocks = Blocks::new(film.crop);
+        let samples = blocks.samples(self.stats.samples);
+        let place = |term: &Term| {
+            let block = blocks.of(term.pixel as usize);
+            let count = if term.is_light_image() {
+                self.samples() * blocks.size(block)
+            } else {
+                samples[block]
+            };
+            (block, 1.0 / count)
+        };
+        self.terms.iter().map(place).collect()
     }
 
     /// M_k less the squares of means of strategies s = 0 and s = 1, by [`relative_terms`](Self::relative_terms).
@@ -257,7 +270,6 @@ mod tests {
         tests::{WHOLE, lamp, room, view},
     };
     use crate::film::PixelRect;
-    use crate::integrator::CandidateCount;
 
     impl Term {
         /// True where connections with light walks can make the path.

@@ -54,8 +54,8 @@ pub(super) const LVC: Plan = Plan {
     ..BDPT
 };
 
-/// `lvc` with twice the candidates, which cost least between diffuse vertices, and this number of light points for the first
-/// vertex, which lower the noise of light that arrives directly.
+/// `lvc` with twice the candidates, which cost least between diffuse vertices, and this number of light points for the
+/// first vertex, which lower the noise of light that arrives directly.
 const fn lvc_of_many(light_points: u16) -> Plan {
     Plan {
         candidates: CandidateCount::new(24, 1),
