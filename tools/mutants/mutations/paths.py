@@ -327,6 +327,20 @@ PATHS = [
         unit("walks_go_on_at_the_first_surfaces"),
     ),
     (
+        "groups of one part in 16 of the pixels",
+        "crates/bidir/src/integrator/method.rs",
+        "(pixels / 18)",
+        "(pixels / 16)",
+        unit("neighbours_and_pixels_two_apart"),
+    ),
+    (
+        "path tracing charged by a rule for candidates",
+        "crates/bidir/src/driver/training/cost.rs",
+        "_ if !settings.integrator.has_candidates()",
+        "_ if settings.integrator == IntegratorKind::Light",
+        unit("rules_bound_the_rays"),
+    ),
+    (
         "camera rays of walks that go on counted as those of the survey",
         "crates/bidir/src/driver/training/cost.rs",
         "longer[before.min(start)]).sum::<f64>();",

@@ -24,8 +24,8 @@ pub(super) fn point(crop: &PixelRect, i: u64) -> [u32; 2] {
 /// All pixels of a crop once, by their positions in row order, sorted by the fraction of x/ρ + y/ρ².
 ///
 /// A run of one part in n of them lies on the film like the points of a lattice. Pixels no more than
-/// two columns and two rows apart differ by 0.06 or more, so that none of them are in the same run
-/// where n is 17 or more. The crop has at most 2³² - 1 pixels.
+/// two columns and two rows apart differ by 0.06 or more, so that none of them are in the same run where n is
+/// 18 or more: not 17, as fractions of few pixels are not quite even. The crop has at most 2³² - 1 pixels.
 pub(super) fn permutation(crop: &PixelRect) -> Vec<u32> {
     let fraction = |i: u32| {
         let [x, y] = crop.pixel(i as usize).map(u64::from);
@@ -43,8 +43,9 @@ pub(super) mod tests {
     use super::*;
     use crate::integrator::group_size;
 
-    /// Sizes of films; those from the seventh on are small or narrow, or have little more than 16 groups.
-    pub(in crate::driver) const SIZES: [[u32; 2]; 13] = [
+    /// Sizes of films; those from the seventh on are small or narrow, or have little more than 18 groups, or 16 of twice
+    /// the size.
+    pub(in crate::driver) const SIZES: [[u32; 2]; 14] = [
         [2560, 1440],
         [920, 680],
         [720, 480],
@@ -55,7 +56,8 @@ pub(super) mod tests {
         [37, 31],
         [1024, 5],
         [3, 2000],
-        [34, 32],
+        [36, 32],
+        [64, 72],
         [64, 65],
         [220, 150],
     ];

@@ -17,10 +17,10 @@ use crate::path::Job;
 use crate::select::Selector;
 
 /// How many samples share light subpaths where so many pixels are rendered. So few that the subpaths stay in a
-/// processor's cache, and that a film of 1088 pixels or more has 17 groups at least: pixels two apart are then in
+/// processor's cache, and that a film of 1152 pixels or more has at least 18 groups: pixels two apart are then in
 /// different ones (`driver::spread`).
 pub(crate) fn group_size(pixels: u64) -> u64 {
-    1 << (pixels / 17).clamp(64, 2048).ilog2()
+    1 << (pixels / 18).clamp(64, 2048).ilog2()
 }
 
 /// An estimator of the image. Its expectation is the sum over all paths within the limit of length

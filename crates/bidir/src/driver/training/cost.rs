@@ -116,6 +116,7 @@ mod tests {
     };
     use crate::integrator::CandidateCount;
     use crate::material::{ConductorIndex, Material, Roughness};
+    use crate::path::PathRoulette;
     use crate::texture::{ColorTexture, FloatTexture};
 
     /// The part of first connections with light walks that are diffuse, and the mean price of one of twelve
@@ -164,5 +165,33 @@ mod tests {
         // Other heuristics evaluate each connection alone.
         let [_, price] = diffuse_part_and_price(grey(0.4), MisHeuristic::Power);
         assert!((price - CANDIDATE).abs() < 1e-9, "{price}");
+    }
+
+    #[test]
+    fn rules_bound_the_rays_of_estimators_with_candidates() {
+        let (scene, view) = (room_with(grey(0.4)), view(WHOLE));
+        let settings = Settings::new(IntegratorKind::Bdpt);
+        let task = Task {
+            scene: &scene,
+            view: &view,
+            settings: &settings,
+        };
+        let survey = Survey::run(task, Effort::at_most(1024));
+        let cost = |integrator, shadow_rays| {
+            let mut settings = Settings::new(integrator);
+            settings.shadow_rays = shadow_rays;
+            survey.cost(&settings, &Counts::new(&settings, PathRoulette::Off, 1.0))
+        };
+        let rules = [ShadowRays::All, ShadowRays::PerPair, ShadowRays::Budget(1)];
+        let [all, pair, one] = rules.map(|rule| cost(IntegratorKind::Bdpt, rule));
+        assert!(
+            pair < 0.8 * all && (pair - one).abs() < 1e-9,
+            "{pair} {one} {all}"
+        );
+        let [all, pair, one] = rules.map(|rule| cost(IntegratorKind::Path, rule));
+        assert!(
+            (pair - all).abs() + (one - all).abs() < 1e-9,
+            "{pair} {one} {all}"
+        );
     }
 }
