@@ -38,7 +38,7 @@ doc:
 fmt:
     cargo fmt --all
 
-# What no compiler checks.
+# Checks texts, names and sizes, which no compiler does.
 tidy:
     tools/tidy
 
@@ -63,7 +63,7 @@ pictures:
 scenes:
     python3 tools/make_scenes
 
-# What the exact film costs.
+# Measures the cost of the exact film.
 bench-film:
     cargo bench -p bidir-formats --bench film
 
@@ -77,16 +77,16 @@ bench-scaling *FLAGS:
     cargo build --release
     python3 tools/bench_scaling {{FLAGS}}
 
-# What it costs a render to be watched in the browser, also by a client that never reads.
+# Measures the cost of being watched in the browser, also by a client that never reads.
 bench-view *FLAGS:
     cargo build --release
     python3 tools/bench_view {{FLAGS}}
 
-# What `auto` takes to the same noise, beside what it chooses from; needs the Python package.
+# Measures the time of `auto` and of its plans to the same noise; needs the Python package.
 bench-auto *FLAGS:
     python3 tools/bench_auto {{FLAGS}}
 
-# What a render over Ray costs beside the same without, in time and memory; needs the Python package.
+# Measures the time and memory of a render over Ray, beside one without; needs the Python package.
 bench-ray *FLAGS:
     python3 tools/bench_ray {{FLAGS}}
 
@@ -100,7 +100,7 @@ verify-peers *FLAGS:
     cargo build --release
     python3 tools/peers verify {{FLAGS}}
 
-# What rays cost, beside the crate obvhs and Embree where there is one: BIDIR_EMBREE is the path of its library.
+# Measures the time of rays, beside the crate obvhs and Embree where there is one: BIDIR_EMBREE is the path of its library.
 bench-rays *ARGS:
     cargo bench -p bidir-accel --features bench-peers --bench rays -- {{ARGS}}
 

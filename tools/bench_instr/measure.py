@@ -4,7 +4,6 @@ import json
 import os
 import re
 import subprocess
-from collections import Counter
 from typing import NamedTuple
 
 import callgrind
@@ -128,11 +127,8 @@ def stages(profile, samples):
 
 def functions(profile, samples, most=16):
     """The functions with the most instructions of their own: (name, own, inclusive) per sample."""
-    own = Counter()
-    for name, count in profile.own.items():
-        own[name] = count
     return [(short(name), count / samples, profile.inclusive(name) / samples)
-            for name, count in own.most_common(most)]
+            for name, count in profile.own.most_common(most)]
 
 
 def short(name):

@@ -196,7 +196,7 @@ impl Bvh {
         self.placements.len()
     }
 
-    /// The object of instance `i`, by index, and the inverse of its map as rays are mapped by it.
+    /// The index of the object of instance `i`, and the map that takes rays to the object's space.
     pub fn instance(&self, i: usize) -> (u32, &DAffine3) {
         let placement = &self.placements[i];
         (placement.object, placement.object_from_world())

@@ -77,9 +77,14 @@ impl Child {
     /// The first of the triangle blocks that it is, and how many they are.
     #[inline(always)]
     pub(crate) fn as_triangles(self) -> Option<(usize, usize)> {
+        (self.0 >> Self::KIND_SHIFT == 1).then_some(self.elements())
+    }
+
+    /// The first element of a leaf, and how many they are.
+    #[inline(always)]
+    fn elements(self) -> (usize, usize) {
         let length = (self.0 >> Self::LENGTH_SHIFT) as usize % Self::MAX_LEAF + 1;
-        let first = self.0 as usize % Self::MAX_ELEMENTS;
-        (self.0 >> Self::KIND_SHIFT == 1).then_some((first, length))
+        (self.0 as usize % Self::MAX_ELEMENTS, length)
     }
 
     #[inline(always)]
@@ -94,8 +99,7 @@ impl Child {
         if kind == 0 {
             return Target::Node(self.0 as usize);
         }
-        let first = self.0 as usize % Self::MAX_ELEMENTS;
-        let length = (self.0 >> Self::LENGTH_SHIFT) as usize % Self::MAX_LEAF + 1;
+        let (first, length) = self.elements();
         match kind {
             1 => Target::Triangles(first..first + length),
             2 => Target::Quadrics(first..first + length),

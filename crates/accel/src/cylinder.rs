@@ -4,7 +4,7 @@ use glam::{Affine3A, DVec2, DVec3, Vec3Swizzles};
 
 use crate::aabb::Aabb;
 use crate::primitive::{box_bounds, ellipsoid_bounds};
-use crate::quadric::{LocalLine, Roots, azimuth, azimuth_limit};
+use crate::quadric::{LocalLine, Roots, azimuth, azimuth_limit, chord};
 
 /// The points at `radius` from the z axis of its local space with `z_min ≤ z ≤ z_max` and an
 /// azimuth of at most `phi_max`; the conventions are those of pbrt-v4.
@@ -81,8 +81,10 @@ impl CylinderTest {
         let t_closest = -origin.dot(direction) / square;
         let closest: DVec2 = origin + t_closest * direction;
         let distance = closest.length();
-        let half_chord = ((self.radius - distance) * (self.radius + distance) / square).sqrt();
-        [t_closest - half_chord, t_closest + half_chord]
+        chord(
+            t_closest,
+            (self.radius - distance) * (self.radius + distance) / square,
+        )
     }
 
     /// `u` and `v` of a point on the cylinder. None: it is cut away.

@@ -52,7 +52,9 @@ impl fmt::Display for InstanceError {
         f.write_str(match self {
             Self::NoObject => "refers to an object that does not exist",
             Self::Nested => "is of an object that has instances itself",
-            Self::NotInvertible => "has a transformation without inverse, or nearly so",
+            Self::NotInvertible => {
+                "has a transformation without inverse, or nearly so, or reaches too far"
+            }
         })
     }
 }

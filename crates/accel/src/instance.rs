@@ -29,7 +29,7 @@
 use glam::{DAffine3, DVec3};
 
 use crate::aabb::Aabb;
-use crate::primitive::outward;
+use crate::primitive::{abs_times, outward};
 use crate::ray::{Hit, Ray};
 
 /// A place of an object.
@@ -62,7 +62,7 @@ const _: () = assert!(size_of::<Placement>() <= 128);
 
 impl Placement {
     /// Places an object with these bounds, and returns the bounds of the place. `parts`: boxes that together contain the
-    /// object, and are more than one if its own box has empty corners.
+    /// object; small ones make the bounds tight.
     ///
     /// None: the map has no inverse, or is so close to having none that the rounding of rays exceeds
     /// the instance, or something overflows.
@@ -127,7 +127,7 @@ impl Placement {
     }
 }
 
-/// A ray of the world, with the terms that it has in common for all instances.
+/// A ray of the world, with the terms that are the same for all instances.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Approach {
     origin: DVec3,
@@ -171,12 +171,6 @@ fn mapped(map: &DAffine3, parts: &[Aabb]) -> (DVec3, DVec3) {
     })
 }
 
-/// A bound of `|M p|` for `|p| ≤ extent`, without the translation.
-fn abs_times(map: &DAffine3, extent: DVec3) -> DVec3 {
-    let m = map.matrix3;
-    m.x_axis.abs() * extent.x + m.y_axis.abs() * extent.y + m.z_axis.abs() * extent.z
-}
-
 /// How far rounding moves a local line within the ball: `e` of the module's page.
 fn local_error(object_from_world: &DAffine3, local_center: DVec3, radius: f64) -> DVec3 {
     let rows = object_from_world.matrix3.transpose();
@@ -197,7 +191,7 @@ pub(crate) trait Space {
     /// The world's hit for a local one. None: it is beyond the limits.
     fn world_hit(&self, local: Hit) -> Option<Hit>;
 
-    /// The limit of world hits, as queries shorten it, with that of local ones.
+    /// Lets `shorten` lower the limit of world hits, and lowers that of local hits to match.
     fn limit<R>(&mut self, ray: &mut Ray, shorten: impl FnOnce(&mut f32) -> R) -> R;
 }
 

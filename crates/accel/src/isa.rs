@@ -22,17 +22,16 @@ pub enum Isa {
 }
 
 impl Isa {
-    /// All sets that have a name, slowest first.
+    /// All sets that have a name, from the narrowest to the newest.
     pub const ALL: [Self; 4] = [Self::Scalar, Self::Sse2, Self::Avx2, Self::Avx512];
 
-    /// The sets of this machine, slowest first.
+    /// The sets of this machine, from the narrowest to the newest.
     pub fn supported() -> impl DoubleEndedIterator<Item = Self> {
         Self::ALL.into_iter().filter(|isa| isa.is_supported())
     }
 
-    /// The fastest set of this machine.
-    ///
-    /// Never AVX-512, whose kernels were as fast as those of AVX2 or slower in most measurements.
+    /// The set that rays use where none is named: the fastest, but not AVX-512, which gains nothing over AVX2 in most
+    /// scenes (docs/performance.md).
     pub fn detect() -> Self {
         let mut by_speed = [Self::Avx2, Self::Sse2].into_iter();
         by_speed

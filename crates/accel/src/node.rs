@@ -9,8 +9,8 @@
 //! entry is too late by at most `3ε` of it (reciprocal, product, difference), an exit too early by `4ε`;
 //! multiplying the exit by `1 + 16ε` makes up for both [Ize13].
 //!
-//! **Rays parallel to a plane, or nearly.** All that can be hit lies within `s` of the world's center, along
-//! each axis, hence at `t ≤ T = (s + |o|)/max|d|`. If `|d| < δ/T`, the ray stays within `δ` of its
+//! **Rays parallel to a plane, or nearly.** All that can be hit lies within `s` of the origin, along each
+//! axis, hence at `t ≤ T = (s + |o|)/max|d|`. If `|d| < δ/T`, the ray stays within `δ` of its
 //! origin's plane all the while: such a component counts as `±δ/T`, entries are `T` earlier and exits `T`
 //! later. Then a slab that the ray is in stays open until `T`, and one that is `2δ` away is missed. The
 //! code takes `2⁻²³·(s + |o|)` for `δ`.

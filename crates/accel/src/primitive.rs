@@ -85,10 +85,14 @@ pub(crate) fn ellipsoid_bounds(
 /// Bounds in world space of a box in the space of `local_from_world`.
 pub(crate) fn box_bounds(local_from_world: &glam::Affine3A, center: DVec3, half: DVec3) -> Aabb {
     let world_from_local: DAffine3 = to_f64(local_from_world).inverse();
-    let matrix = world_from_local.matrix3;
-    let reach =
-        matrix.x_axis.abs() * half.x + matrix.y_axis.abs() * half.y + matrix.z_axis.abs() * half.z;
+    let reach = abs_times(&world_from_local, half);
     padded(world_from_local.transform_point3(center), reach)
+}
+
+/// A bound of `|M p|` for `|p| ≤ extent`, without the translation.
+pub(crate) fn abs_times(map: &DAffine3, extent: DVec3) -> DVec3 {
+    let m = map.matrix3;
+    m.x_axis.abs() * extent.x + m.y_axis.abs() * extent.y + m.z_axis.abs() * extent.z
 }
 
 /// The box of `center ± reach`, rounded outward after widening by a millionth of its size: more

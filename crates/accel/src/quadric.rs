@@ -114,6 +114,13 @@ pub(crate) fn to_f64(map: &glam::Affine3A) -> DAffine3 {
     )
 }
 
+/// The ends of a chord whose middle is at `t_middle`, by the square of its half length in `t`.
+#[inline]
+pub(crate) fn chord(t_middle: f64, square: f64) -> Roots {
+    let half = square.sqrt();
+    [t_middle - half, t_middle + half]
+}
+
 /// The largest azimuth in `f64`; an angle that is 2π up to rounding becomes 2π, lest a seam remain open.
 pub(crate) fn azimuth_limit(phi_max: f32) -> f64 {
     let phi_max = f64::from(phi_max);

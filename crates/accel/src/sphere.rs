@@ -4,7 +4,7 @@ use glam::{Affine3A, DVec3};
 
 use crate::aabb::Aabb;
 use crate::primitive::{box_bounds, ellipsoid_bounds};
-use crate::quadric::{LocalLine, Roots, azimuth, azimuth_limit};
+use crate::quadric::{LocalLine, Roots, azimuth, azimuth_limit, chord};
 
 /// The points of a sphere around the origin of its local space with `z_min ≤ z ≤ z_max` and
 /// an azimuth of at most `phi_max`; the conventions are those of pbrt-v4.
@@ -79,8 +79,10 @@ impl SphereTest {
         let square = line.direction.length_squared();
         let t_closest = -line.origin.dot(line.direction) / square;
         let distance = line.at(t_closest).length();
-        let half_chord = ((self.radius - distance) * (self.radius + distance) / square).sqrt();
-        [t_closest - half_chord, t_closest + half_chord]
+        chord(
+            t_closest,
+            (self.radius - distance) * (self.radius + distance) / square,
+        )
     }
 
     /// `u` and `v` of a point on the sphere. None: it is cut away.

@@ -9,8 +9,8 @@ use crate::child::{Child, Target};
 use crate::node::WIDTH;
 
 impl Bvh {
-    /// Walks the whole tree and checks every invariant that queries rely on; `Err` describes the
-    /// first violation. For tests and for suspicion: a tree that was built is valid.
+    /// Walks the whole tree and checks its nodes, boxes and leaves; `Err` describes the first
+    /// violation. For tests and for suspicion: a tree that was built is valid.
     pub fn validate(&self) -> Result<(), String> {
         let mut walk = Walk {
             bvh: self,
@@ -51,7 +51,9 @@ fn all_visited(what: &str, visited: &[bool]) -> Result<(), String> {
     visited
         .iter()
         .position(|&seen| !seen)
-        .map_or(Ok(()), |index| Err(format!("{what} {index} is in no leaf")))
+        .map_or(Ok(()), |index| {
+            Err(format!("{what} {index} is not reached"))
+        })
 }
 
 /// The eight corners of a box.
@@ -199,14 +201,17 @@ mod tests {
     #[test]
     fn corrupted_trees_are_refused() {
         check_refused(|bvh| bvh.tree.bounds.max.x += 1.0, "the tree has bounds");
-        check_refused(|bvh| bvh.primitive_count += 1, "primitive 70 is in no leaf");
+        check_refused(
+            |bvh| bvh.primitive_count += 1,
+            "primitive 70 is not reached",
+        );
         check_refused(
             |bvh| bvh.primitive_count -= 1,
             "primitive 69 does not exist",
         );
         check_refused(
             |bvh| bvh.tree.blocks.push(bvh.tree.blocks[0]),
-            "is in no leaf",
+            "is not reached",
         );
         check_refused(
             |bvh| bvh.tree.blocks[1] = bvh.tree.blocks[0],

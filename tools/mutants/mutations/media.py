@@ -191,6 +191,13 @@ MEDIA = [
         formats("nanovdb::"),
     ),
     (
+        "boundaries in one place in the order of their hits",
+        "crates/bidir/src/scene/passage.rs",
+        "by_place.then(a.surface.cmp(&b.surface))",
+        "by_place",
+        unit("boundaries_in_one_place"),
+    ),
+    (
         "parts of a NanoVDB tree without a child left empty",
         "crates/formats/src/nanovdb/tree.rs",
         "self.fill(range, bytes.f32(entry)?);",

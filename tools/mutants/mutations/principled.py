@@ -1,6 +1,6 @@
 """Faults in the principled material and in what glTF files say."""
 
-from .tests import gltf, materials, unit
+from .tests import formats, unit
 
 MODEL = "crates/bidir/src/bsdf/principled/mod.rs"
 VALUE = "crates/bidir/src/bsdf/principled/value.rs"
@@ -56,13 +56,13 @@ PRINCIPLED = [
         "crates/formats/src/gltf/mesh.rs",
         "Vec2::new(s, 1.0 - t)",
         "Vec2::new(s, t)",
-        gltf("textures_are_the_right_way_up"),
+        formats("textures_are_the_right_way_up"),
     ),
     (
         "mirrored nodes keep their winding",
         "crates/formats/src/gltf/mesh/placing.rs",
         "let orientation = if is_mirrored {",
         "let orientation = if !is_mirrored && is_mirrored {",
-        gltf("mirrored_nodes_turn_the_winding"),
+        formats("mirrored_nodes_turn_the_winding"),
     ),
 ]

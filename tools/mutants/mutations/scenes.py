@@ -1,8 +1,15 @@
 """Faults in what scenes are made of, in random numbers and in rays."""
 
-from .tests import ESTIMATORS, SUITE, layers, reader, unit
+from .tests import ESTIMATORS, SUITE, formats, layers, unit
 
 SCENES = [
+    (
+        "lamps without triangles taken for lights",
+        "crates/bidir/src/scene/builder.rs",
+        "shape.primitive_count() > 0 && check_shape",
+        "check_shape",
+        formats("lamps_without_triangles"),
+    ),
     # --- where a scene is rendered --------------------------------------------------------
     (
         "distant scenes are rendered where they are",
@@ -16,7 +23,7 @@ SCENES = [
         "crates/bidir/src/scene/space.rs",
         "(f64::from(intensity) / (self.unit * self.unit)) as f32",
         "(f64::from(intensity) / self.unit) as f32",
-        reader("tests::places"),
+        formats("tests::places"),
     ),
     (
         "positions are those of the space that is rendered in",

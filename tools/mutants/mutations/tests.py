@@ -39,11 +39,6 @@ def relief(filter_):
     return ("bidir", SUITE, "relief::" + filter_)
 
 
-def reader(filter_):
-    """The unit tests of the `formats` crate whose names contain `filter_`."""
-    return ("bidir-formats", "--lib", filter_)
-
-
 def lab(filter_):
     """The unit tests of the `lab` crate whose names contain `filter_`."""
     return ("bidir-lab", "--lib", filter_)
@@ -62,11 +57,6 @@ def formats(filter_):
 def coverage(filter_):
     """Tests of surfaces that are not all there."""
     return ("bidir-formats", SUITE, f"coverage::{filter_}")
-
-
-def gltf(filter_):
-    """Tests of files in glTF."""
-    return ("bidir-formats", "--lib", filter_)
 
 
 def estimators(filter_):

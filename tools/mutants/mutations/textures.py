@@ -1,6 +1,6 @@
 """Faults in textures and in relief."""
 
-from .tests import reader, relief, unit
+from .tests import formats, relief, unit
 
 MAP = "crates/bidir/src/texture/map.rs"
 RELIEF = "crates/bidir/src/material/relief/mod.rs"
@@ -61,6 +61,6 @@ TEXTURES = [
         "crates/formats/src/pbrt/build/imagemap.rs",
         "encoding: Some(Encoding::Linear),",
         "encoding: None,",
-        reader("materials_have_heights_or_normals"),
+        formats("materials_have_heights_or_normals"),
     ),
 ]

@@ -56,7 +56,7 @@ impl Ours {
         }
     }
 
-    /// The same tree for each instruction set of the machine, fastest first.
+    /// The same tree for each instruction set of the machine, the newest first.
     pub(crate) fn for_each_isa(&self) -> impl Iterator<Item = (Isa, Self)> {
         Isa::supported().rev().map(|isa| {
             let bvh = Bvh::clone(&self.bvh).with_isa(isa).expect("supported");

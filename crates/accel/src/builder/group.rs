@@ -161,8 +161,11 @@ pub(super) struct Group<'a> {
     split: Option<Split>,
 }
 
-/// Lanes of the largest leaf. One block less than a [`Child`] can say.
+/// Lanes of the largest leaf, and those that an instance counts as. One block less than a [`Child`] can say, so that
+/// 32 bits count the lanes of any number of instances.
 const MAX_LEAF_LANES: u32 = ((Child::MAX_LEAF - 1) * LANES) as u32;
+
+const _: () = assert!(Child::MAX_ELEMENTS as u64 * MAX_LEAF_LANES as u64 <= u32::MAX as u64);
 
 impl<'a> Group<'a> {
     /// Groups at least one reference; `totals` are theirs.

@@ -69,7 +69,9 @@ pub enum SceneError {
         shape: usize,
     },
     /// An instance has a map without inverse, or nearly without, or reaches too far.
-    #[error("the transformation of the instance cannot be inverted")]
+    #[error(
+        "the transformation of the instance has no inverse, or nearly none, or reaches too far"
+    )]
     Instance {
         /// The instance, in the order of addition.
         instance: usize,
@@ -80,8 +82,8 @@ pub enum SceneError {
         /// How many.
         count: usize,
     },
-    /// There are more primitives than the intersector counts.
-    #[error("the scene has too many primitives: {0}")]
+    /// The intersector refuses the scene: too many primitives, or instructions that the machine lacks.
+    #[error("the scene cannot be traced: {0}")]
     Intersector(String),
 }
 
@@ -152,9 +154,10 @@ impl SceneBuilder {
         emission: Option<Emission>,
     ) -> usize {
         let index = self.shapes.len();
-        // A broken mesh is found when the scene is built; until then it must not be measured.
-        let valid = check_shape(index, &shape).is_ok();
-        let light = emission.filter(|_| valid).map(|emission| {
+        // A broken mesh is found when the scene is built; until then it must not be measured. One without triangles
+        // has no point that could emit.
+        let emits = shape.primitive_count() > 0 && check_shape(index, &shape).is_ok();
+        let light = emission.filter(|_| emits).map(|emission| {
             let mut light = AreaLight::new(index, &shape, emission.radiance, emission.sides);
             if let Some(pattern) = emission.pattern {
                 light.set_pattern(&shape, pattern);
@@ -176,8 +179,8 @@ impl SceneBuilder {
         self.shapes.push(shape);
     }
 
-    /// Adds a medium, and a light of the [`DEFAULT_GROUP`] if it glows; equal media share a number. It is where the [sides](Self::sides) of shapes say, or
-    /// [around a point](Self::medium_at).
+    /// Adds a medium, and a light of the [`DEFAULT_GROUP`] if it glows. Equal media share a number. The medium fills the
+    /// places that the [sides](Self::sides) of shapes name, or lies [around a point](Self::medium_at).
     pub fn medium(&mut self, medium: Medium) -> MediumId {
         let known = self.media.iter().position(|known| *known == medium);
         let index = known.unwrap_or_else(|| {

@@ -11,7 +11,6 @@ use crate::spectrum::{Spectrum, Wavelengths};
 use accel::{Hit, Ray};
 use smallvec::SmallVec;
 use std::cell::RefCell;
-use std::cmp::Ordering;
 use std::ops::ControlFlow;
 
 /// The place that a ray of a walk comes to.
@@ -69,6 +68,8 @@ struct Crossing {
     t: f32,
     /// True where the ray leaves the inside of the shape.
     leaves: bool,
+    /// The boundary, by instance and primitive.
+    surface: (u32, u32),
     from: MediumId,
     into: MediumId,
 }
@@ -159,12 +160,13 @@ impl Passage {
     fn new(start: MediumId, crossings: impl IntoIterator<Item = Crossing>, end: f32) -> Self {
         let crossings = crossings.into_iter().filter(|crossing| crossing.t < end);
         let mut crossings: SmallVec<_> = crossings.collect();
-        // Where two shapes touch, the one is left before the other is entered.
-        let order = |a: &Crossing, b: &Crossing| match a.t.total_cmp(&b.t) {
-            Ordering::Equal => b.leaves.cmp(&a.leaves),
-            order => order,
+        // Where two shapes touch, the one is left before the other is entered. Hits arrive in any order.
+        let order = |a: &Crossing, b: &Crossing| {
+            let by_side = b.leaves.cmp(&a.leaves);
+            let by_place = a.t.total_cmp(&b.t).then(by_side);
+            by_place.then(a.surface.cmp(&b.surface))
         };
-        crossings.sort_by(order);
+        crossings.sort_unstable_by(order);
         Self { start, crossings }
     }
 
@@ -401,6 +403,7 @@ impl Scene {
         Some(Crossing {
             t: hit.t,
             leaves,
+            surface: (hit.instance, hit.primitive),
             from: sides.toward(if leaves { -1.0 } else { 1.0 }),
             into: sides.toward(if leaves { 1.0 } else { -1.0 }),
         })

@@ -35,8 +35,8 @@ pub struct Request {
     ///
     /// path: path tracing. light: light tracing. bdpt: bidirectional path tracing. lvc: the same with
     /// light subpaths shared by many samples (light vertex cache). auto: takes path, bdpt or lvc, by
-    /// the variance × cost that a few samples of bdpt predict, counted in rays. A glTF file names no integrator
-    /// and is rendered with auto.
+    /// the variance × cost that a few samples of bdpt predict, a count of rays and candidates. A glTF file names no
+    /// integrator and is rendered with auto.
     #[cfg_attr(
         feature = "clap",
         arg(long, env = "BIDIR_INTEGRATOR", value_name = "NAME")

@@ -144,6 +144,7 @@ impl<P: Clone> Assembly<P> {
         place: &P,
     ) {
         let first_light = self.builder.next_light();
+        let emits = parts.iter().any(|(_, emission)| emission.is_some());
         for (part, emission) in parts {
             let number = match skin.material {
                 Some(material) => {
@@ -154,8 +155,8 @@ impl<P: Clone> Assembly<P> {
             };
             self.note_shape(number, skin, place);
         }
-        let lights = first_light..self.builder.next_light();
-        if !lights.is_empty() {
+        if emits {
+            let lights = first_light..self.builder.next_light();
             self.lamps.push((place.clone(), lights));
         }
     }

@@ -16,7 +16,7 @@ pub struct Lamp {
     pub light: u32,
 }
 
-/// The place of a lamp, and its lights by index: several if each triangle is a light of its own.
+/// The place of a lamp, and its lights by index: several if each triangle is a light of its own, none if it has none.
 pub(crate) type Placed<P> = (P, Range<u32>);
 
 /// Returns the first of `lamps` that no ray can hit, with the texts of their places.
@@ -40,7 +40,7 @@ pub(crate) fn unhittable<P>(
 pub(crate) fn dark_warning(scene: &Scene, lights: Range<u32>) -> Option<String> {
     let lights = &scene.lights()[lights.start as usize..lights.end as usize];
     let context = scene.light_context();
-    let kind = lights.first()?.kind();
+    let kind = lights.first().map_or("area", Light::kind);
     let is_dark = |light: &Light| light.power(&context) <= 0.0;
     if !lights.iter().all(is_dark) {
         return None;

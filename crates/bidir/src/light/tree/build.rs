@@ -11,9 +11,9 @@ use super::node::{Child, Node, WIDTH, is_narrow, radius2};
 use crate::math::{PI, Vec3};
 use accel::Aabb;
 
-/// Places to divide at along each axis, and one.
+/// Bins along each axis, between which it is divided.
 const BINS: usize = 16;
-/// Below this level emitters are divided in halves: four of them fit 32 levels of a path.
+/// From this level on emitters are divided in halves by number: 20 levels of quarters suffice, and a path holds 32.
 const HEURISTIC_LEVELS: u32 = 12;
 
 /// An emitter by its number.
@@ -149,7 +149,7 @@ impl Plane {
     }
 }
 
-/// The plane of least cost. None: all centres are one point.
+/// The plane of least cost. None: all centres are one point, or all costs overflow.
 fn best_plane(items: &[Item]) -> Option<Plane> {
     let centres = items.iter().fold(Aabb::EMPTY, |bounds, item| {
         let p = item.around.bounds.center();

@@ -20,7 +20,7 @@
 //! I knows nothing of what is in the way, nor of lights at infinity. For both there is the part a, in
 //! which emitters are chosen by power alone. It bounds what ignorance costs: next-event estimation
 //! has at most 1/a times the second moment that choosing by power has. Without lights at infinity a
-//! is 1/16, which costs as much of the tree's; with them it is 1/2, so that neither the sky nor the
+//! is 1/16, so a sixteenth of the samples ignores the tree; with them it is 1/2, so that neither the sky nor the
 //! lamps can cost more than twice what they must.
 //!
 //! Below a child that is at least eight radii away, and whose emitters send their light in much the

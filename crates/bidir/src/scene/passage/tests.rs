@@ -128,3 +128,20 @@ fn densities_are_those_of_closed_forms() {
         check_close(density(&scene, t), expected, 1e-4, &format!("t = {t}"));
     }
 }
+
+/// The intersector reports hits in any order, which depends on its instructions.
+#[test]
+fn boundaries_in_one_place_have_one_order() {
+    let crossing = |primitive: u32| Crossing {
+        t: 1.0,
+        leaves: false,
+        surface: (0, primitive),
+        from: MediumId::VACUUM,
+        into: MediumId::new(primitive as usize).expect("few media"),
+    };
+    let [a, b] = [3, 5].map(crossing);
+    for crossings in [[a, b], [b, a]] {
+        let last = Passage::new(MediumId::VACUUM, crossings, 2.0).last();
+        assert_eq!(last, b.into);
+    }
+}

@@ -181,6 +181,10 @@ fn lamps_that_give_no_light_cause_warnings() {
             &format!("{emits} \"float power\" 5\n{flat} AttributeEnd"),
             "area light has no area",
         ),
+        (
+            &format!("{emits}\n{} AttributeEnd", flat.replace("[0 1 2]", "[]")),
+            "area light has no area",
+        ),
     ] {
         let light = "LightSource \"point\"";
         let loaded = load_text(&format!("WorldBegin {light}\n{lamp}"), &STRICT);
@@ -196,6 +200,14 @@ fn lamps_that_give_no_light_cause_warnings() {
         .replace("[0 1 2]", "[0 1 2 0 1 3]");
     let partly = format!("WorldBegin {emits} \"float power\" 5 {partly} AttributeEnd");
     assert!(load_text(&partly, &STRICT).warnings.is_empty());
+}
+
+#[test]
+fn lamps_without_triangles_are_no_lights() {
+    let mesh = "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 1 1 2 2 2] \"integer indices\" []";
+    let lamp = format!("AttributeBegin AreaLightSource \"diffuse\" {mesh} AttributeEnd");
+    let scene = load_text(&format!("WorldBegin {lamp}"), &STRICT).scene;
+    assert!(scene.lights().is_empty());
 }
 
 #[test]

@@ -80,7 +80,7 @@ fn singular_places_are_errors() {
     let flat = "ConcatTransform [1 0 0 0 1 1e-9 0 0 0 0 1 0 0 0 0 1]";
     check_world(
         &format!("{object}\n{flat}\nObjectInstance \"o\""),
-        "s.pbrt:4:16: the transformation of the instance cannot be inverted",
+        "s.pbrt:4:16: the transformation of the instance has no inverse, or nearly none, or reaches too far",
     );
     check_world(
         &format!("{object}\nTranslate 0 0 1e25\nObjectInstance \"o\""),
