@@ -43,8 +43,7 @@ pub(super) mod tests {
     use super::*;
     use crate::integrator::group_size;
 
-    /// Sizes of films; those from the seventh on are small or narrow, or have little more than 18 groups, or 16 of twice
-    /// the size.
+    /// Sizes of films; those from the seventh on are small, narrow, or near a number of pixels at which groups double.
     pub(in crate::driver) const SIZES: [[u32; 2]; 14] = [
         [2560, 1440],
         [920, 680],

@@ -1,7 +1,7 @@
 //! h(x, y) = h_x(x) h_y(y) with ∫∫ h = 1: the pixel filter, 1/pixel².
 //!
-//! Offsets and pixels are drawn by |h|, offsets of a table nearly so, and where h is negative their weight is too. The
-//! box and the triangle have closed forms, all others are tables. The cubic is that of \[Mitchell88\].
+//! Pixels are drawn by |h|, and so, but for the steps of tables, are offsets; where h is negative their weight is too.
+//! The box and the triangle have closed forms, all others are tables. The cubic is that of \[Mitchell88\].
 
 use crate::math::{Distribution1d, ONE_MINUS_EPSILON, PI, Vec2, safe_sqrt, sqr};
 
@@ -64,7 +64,7 @@ impl Filter {
         self.x.eval(offset.x) * self.y.eval(offset.y)
     }
 
-    /// Draws an offset from the pixel's centre, about by |h|: the offset, and h divided by its density.
+    /// Draws an offset from the pixel's centre by |h|, or nearly so: the offset, and h divided by its density.
     #[inline]
     pub fn sample(&self, u: Vec2) -> (Vec2, f32) {
         let (x, weight_x) = self.x.sample(u.x);

@@ -6,8 +6,8 @@
 //! commutative: the film has the same bits for any number of threads, any order, and any split of
 //! the passes.
 //!
-//! A pixel's value is ∫ h(x - q) L(x) dx with ∫ h = 1 ([`Filter`]). Camera samples are drawn about by
-//! |h|; a splat goes to one pixel drawn by |h|, so that neighbouring pixels stay uncorrelated and
+//! A pixel's value is ∫ h(x - q) L(x) dx with ∫ h = 1 ([`Filter`]). Camera samples are drawn by |h|,
+//! or nearly so; a splat goes to one pixel drawn by |h|, so that neighbouring pixels stay uncorrelated and
 //! filters may be negative.
 //!
 //! A [`Film`] collects whole passes and knows which ([`PassSet`]), so that films of different passes

@@ -85,7 +85,7 @@ impl Survey {
             MisHeuristic::Balance => dot(work.diffuse, counts.connections),
             _ => 0.0,
         };
-        // The other rules trace all at most.
+        // The other rules may trace every candidate.
         let most = match settings.shadow_rays {
             _ if !settings.integrator.has_candidates() => f64::INFINITY,
             ShadowRays::Budget(rays) => f64::from(rays) * work.connected,

@@ -170,7 +170,7 @@ impl Mean {
     }
 
     /// The square of its expectation, by the products of different terms: the square of the sum counts the noise of few
-    /// terms as mean. Too small by the part that products of a sample with itself would have.
+    /// terms as mean. With n samples of the block the expectation of this is about 1 - 1/n of the square.
     fn square(&self) -> f64 {
         self.sum * self.sum - self.squares
     }
