@@ -1,7 +1,8 @@
 """Compares the time of `auto` to the same noise with that of the estimators that it chooses from.
 
     python3 tools/bench_auto                                  the project's own scenes, in Markdown
-    python3 tools/bench_auto SCENE.pbrt ... --size 160x120    others, or larger; also folders of scenes
+    python3 tools/bench_auto SCENE.pbrt ... --size 256x144    others, or larger; also folders of scenes
+    python3 tools/bench_auto --worlds FOLDER                  scenes of daylight, glass and fog, written there
 
 Needs the Python package: pip install . The figure is the variance of a pixel per sample, relative to the
 square of its mean (plus 0.01), times microseconds of a thread per sample: lower is better, and half of it
@@ -20,6 +21,7 @@ from pathlib import Path
 
 import figures
 import measure
+import worlds
 
 SCENES = Path(__file__).resolve().parents[2] / "scenes"
 
@@ -31,7 +33,8 @@ def arguments():
     )
     add = parser.add_argument
     add("scenes", nargs="*", type=Path, metavar="SCENE", help="files, or folders of them [scenes]")
-    add("--size", default=(80, 60), type=size, metavar="WxH", help="pixels of each film [80x60]")
+    add("--worlds", type=Path, metavar="FOLDER", help="write the scenes of worlds.py there, and measure them")
+    add("--size", default=(192, 108), type=size, metavar="WxH", help="pixels of each film [192x108]")
     add("--spp", type=int, default=16, help="samples per pixel [%(default)s]")
     add("--seeds", type=int, default=6, help="renders of each estimator, at least 2 [%(default)s]")
     add("--sampler", default="independent", choices=["independent", "sobol"], help="[%(default)s]")
@@ -39,6 +42,9 @@ def arguments():
     args = parser.parse_args()
     if args.seeds < 2:
         parser.error("--seeds: a variance needs 2")
+    if args.worlds:
+        args.worlds.mkdir(parents=True, exist_ok=True)
+        args.scenes += worlds.write(args.worlds)
     return args
 
 
