@@ -12,7 +12,7 @@ from types import TracebackType
 from typing import Any, Protocol, TypeAlias
 
 from bidir import _bidir
-from bidir.errors import FilmError, RenderInterruptedError, SettingsError
+from bidir.errors import FilmError, RenderError, RenderInterruptedError, SettingsError
 from bidir.film import Film
 from bidir.image import Image
 from bidir.scene import Scene, StrPath, load
@@ -149,7 +149,7 @@ class Session:
         strategy_layers: int = 0,
         threads: int = 0,
         training: int | None = None,
-        _time: float | None = None,
+        _limits: tuple[float | None, float | None] = (None, None),
     ) -> None:
         """Start a render; only training, if the integrator has any, is done here.
 
@@ -175,14 +175,14 @@ class Session:
             raise SettingsError(f"threads: {threads} is below 0")
         if training is not None and training < 0:
             raise SettingsError(f"training: {training} is below 0")
-        # Training takes at most a tenth of the time of a render.
-        self._native = _bidir.Session(self.scene._native, native, threads, training, _time)
+        # The time of a render, of which training takes at most a tenth, and the time until its end.
+        self._native = _bidir.Session(self.scene._native, native, threads, training, _limits)
         self._stopping = "fixed"
 
     def step(self, passes: int = 1) -> None:
         """Render the next passes, each with one sample per pixel.
 
-        Errors: :class:`KeyboardInterrupt`; finished passes stay.
+        Errors: :class:`KeyboardInterrupt`, within a second; complete passes stay.
         """
         for _ in range(passes):
             self._native.step()
@@ -277,16 +277,17 @@ def render(
         integrator: The integrator, such as ``bidir.Bdpt(shadow_rays="per-pair")``; None is the
             scene's, or ``auto`` for glTF.
         spp: Samples per pixel; None is the scene's, or unlimited with ``time`` or ``noise``.
-        time: Stop within this time; at least one pass is rendered. Unit: seconds.
+        time: Stop within this time; a pass that would be late is left. Unit: seconds.
         noise: Stop at this error relative to the mean; checked from 16 passes on.
         seed, layers, light_groups, strategy_layers, threads: As for :class:`Session`.
         progress: ``tqdm``, a progress bar, or a function of finished and all passes.
         checkpoint: A film file to continue from, if it exists, and to write repeatedly.
         checkpoint_every: Time between checkpoints. Unit: seconds.
 
-    Errors: those of :class:`Session`; :class:`bidir.RenderInterruptedError` on Ctrl-C, with the image of the
-    finished passes, which ``checkpoint`` contains too; :class:`bidir.FilmError` if ``checkpoint`` belongs
-    to another render.
+    Errors: those of :class:`Session`; :class:`bidir.RenderError` if no pass is complete within ``time``, and
+    ``checkpoint`` is then unchanged; :class:`bidir.RenderInterruptedError` on Ctrl-C, with the image of the
+    complete passes, which ``checkpoint`` contains too; :class:`bidir.FilmError` if ``checkpoint`` belongs to
+    another render.
     """
     scene = scene if isinstance(scene, Scene) else load(scene)
     open_end = time is not None or noise is not None
@@ -295,6 +296,10 @@ def render(
         raise SettingsError(f"spp: {limit} is below 1")
     begin = clock.monotonic()
     earlier = _earlier(checkpoint)
+
+    def left() -> float | None:
+        return None if time is None else time - (clock.monotonic() - begin)
+
     session = Session(
         scene,
         integrator,
@@ -304,7 +309,7 @@ def render(
         strategy_layers=strategy_layers,
         threads=threads,
         training=None if earlier is None else _training(earlier),
-        _time=time if earlier is None else None,
+        _limits=(time if earlier is None else None, left()),
     )
     limits = {"spp": limit, "time": time, "noise": noise}
     keeper = _Keeper(session, checkpoint, earlier, checkpoint_every, limit)
@@ -312,7 +317,9 @@ def render(
     with Reporter(progress, limit, session.next_pass) as reporter:
         try:
             while not (end := session._native.reached(limits, rendered, clock.monotonic() - begin)):
-                session.step()
+                if not session._native.step(left()):
+                    end = "time"
+                    break
                 rendered += 1
                 reporter.advance(1)
                 keeper.now_and_then()
@@ -322,6 +329,8 @@ def render(
             image = session.snapshot() if session.passes else None
             done = session.next_pass
             raise RenderInterruptedError(f"stopped after {done} passes", image) from error
+    if end == "time" and rendered == 0:
+        raise RenderError(f"no pass was complete after {time:g} s: give it more time, or make the image smaller")
     session._stopping = end
     keeper.save()
     return session.snapshot()

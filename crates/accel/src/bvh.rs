@@ -11,12 +11,11 @@ use crate::builder::{MAX_PRIMITIVES, Tree};
 use crate::error::{BuildError, InstanceError};
 use crate::instance::{Instance, Placement};
 use crate::isa::Isa;
-use crate::lockstep::AreBlocked;
 use crate::node::Node;
 use crate::primitive::{Primitive, Primitives};
-use crate::query::{AnyHit, Anything, ClosestHit, EachHit, Query};
+use crate::query::AnyHit;
 use crate::ray::{Hit, Ray};
-use crate::traverse::Ask;
+use crate::stop::Stop;
 use crate::triangle::TriangleBlock;
 
 /// How to build a [`Bvh`].
@@ -120,9 +119,7 @@ impl Bvh {
     /// `accept` must be a pure function of the hit: it is asked in any order, about any hits.
     #[inline]
     pub fn closest<F: Fn(&Hit) -> bool>(&self, ray: &Ray, accept: F) -> Option<Hit> {
-        let mut query = ClosestHit::new(accept);
-        self.ask(ray, &mut query);
-        query.best
+        self.until(Stop::NEVER).closest(ray, accept)
     }
 
     /// True if there is any hit for which `accept` holds: the same as `closest(..).is_some()`,
@@ -130,28 +127,20 @@ impl Bvh {
     #[inline]
     pub fn occluded<F: Fn(&Hit) -> bool>(&self, ray: &Ray, accept: F) -> bool {
         let mut query = AnyHit::new(accept);
-        self.ask(ray, &mut query);
+        self.until(Stop::NEVER).ask(ray, &mut query);
         query.found
     }
 
     /// True if there is any hit: the same as `occluded(ray, accept_all)`, but faster.
     #[inline]
     pub fn is_blocked(&self, ray: &Ray) -> bool {
-        let mut query = Anything { found: false };
-        self.ask(ray, &mut query);
-        query.found
+        self.until(Stop::NEVER).is_blocked(ray)
     }
 
     /// Sets `blocked` to what [`is_blocked`](Self::is_blocked) says of each of `rays`. With dozens of rays in a large
     /// tree this is faster.
     pub fn are_blocked(&self, rays: &[Ray], blocked: &mut Vec<bool>) {
-        blocked.clear();
-        blocked.resize(rays.len(), false);
-        self.isa.call(AreBlocked {
-            bvh: self,
-            rays,
-            blocked,
-        });
+        self.until(Stop::NEVER).are_blocked(rays, blocked);
     }
 
     /// Calls `found` with every hit of the ray, each once and in any order, until it breaks off.
@@ -162,18 +151,7 @@ impl Bvh {
         ray: &Ray,
         found: F,
     ) -> ControlFlow<()> {
-        let mut query = EachHit::new(found);
-        self.ask(ray, &mut query);
-        query.flow
-    }
-
-    #[inline]
-    fn ask(&self, ray: &Ray, query: &mut impl Query) {
-        self.isa.call(Ask {
-            bvh: self,
-            ray,
-            query,
-        });
+        self.until(Stop::NEVER).each_hit(ray, found)
     }
 
     /// A box around all primitives and instances; [`Aabb::EMPTY`] if there are none.
@@ -203,6 +181,7 @@ impl Bvh {
     }
 
     /// The instructions that rays are traced with.
+    #[inline]
     pub fn isa(&self) -> Isa {
         self.isa
     }

@@ -19,6 +19,7 @@ use crate::node::{BoxRay, WIDTH, widen};
 use crate::query::Anything;
 use crate::ray::Ray;
 use crate::simd::{F32x8, Kernel, Simd};
+use crate::stop::Stop;
 use crate::traverse::{Ask, Leaves, VisitInstance, clean};
 use crate::triangle::TriangleRay;
 
@@ -36,6 +37,7 @@ pub(crate) struct AreBlocked<'a> {
     pub(crate) bvh: &'a Bvh,
     pub(crate) rays: &'a [Ray],
     pub(crate) blocked: &'a mut [bool],
+    pub(crate) stop: Stop<'a>,
 }
 
 impl Kernel for AreBlocked<'_> {
@@ -43,20 +45,38 @@ impl Kernel for AreBlocked<'_> {
 
     #[inline(always)]
     fn run<S: Simd>(self) {
-        let Self { bvh, rays, blocked } = self;
+        let Self {
+            bvh,
+            rays,
+            blocked,
+            stop,
+        } = self;
         let tree = &bvh.tree;
         if tree.nodes.is_empty() {
             return;
         }
         if !S::Eight::PACKS_FAST {
             for (ray, blocked) in rays.iter().zip(blocked) {
+                if stop.is_asked() {
+                    return;
+                }
                 let query = &mut Anything { found: false };
-                Ask { bvh, ray, query }.run::<S>();
+                let ask = Ask {
+                    bvh,
+                    ray,
+                    query,
+                    stop,
+                };
+                ask.run::<S>();
                 *blocked = query.found;
             }
             return;
         }
-        let mut waiting = Waiting { rays, next: 0 };
+        let mut waiting = Waiting {
+            rays,
+            next: 0,
+            stop,
+        };
         let mut active = [const { None }; RAYS];
         let mut stacks: [_; RAYS] = from_fn(|_| NodeStack::new());
         for (ray, stack) in active.iter_mut().zip(&mut stacks) {
@@ -71,7 +91,7 @@ impl Kernel for AreBlocked<'_> {
                     }
                 }
             }
-            let found = leaves.visit_all::<S>(bvh, &active);
+            let found = leaves.visit_all::<S>((bvh, stop), &active);
             for (number, (ray, stack)) in active.iter_mut().zip(&mut stacks).enumerate() {
                 let is_blocked = found >> number & 1 == 1;
                 if let Some(done) = ray
@@ -89,13 +109,17 @@ impl Kernel for AreBlocked<'_> {
 struct Waiting<'a> {
     rays: &'a [Ray],
     next: usize,
+    stop: Stop<'a>,
 }
 
 impl Waiting<'_> {
-    /// The next ray that may hit something, and the root on its stack.
+    /// The next ray that may hit something, and the root on its stack. None: there is none, or nobody waits for it.
     #[inline(always)]
     fn start(&mut self, tree: &Tree, stack: &mut NodeStack) -> Option<ActiveRay> {
         stack.clear();
+        if self.stop.is_asked() {
+            return None;
+        }
         while let Some(ray) = self.rays.get(self.next) {
             let number = self.next;
             self.next += 1;
@@ -148,7 +172,7 @@ impl ActiveRay {
 
     /// True if the ray hits something in the leaf `child`.
     #[inline(always)]
-    fn is_blocked_in<S: Simd>(&self, bvh: &Bvh, child: Child) -> bool {
+    fn is_blocked_in<S: Simd>(&self, (bvh, stop): (&Bvh, Stop<'_>), child: Child) -> bool {
         let (mut ray, mut query) = (self.ray, Anything { found: false });
         if let Some((first, count)) = child.as_triangles() {
             let triangle_ray = self.triangle_ray.lanes::<S::Four>();
@@ -171,6 +195,7 @@ impl ActiveRay {
                     approach: &Approach::new(&ray),
                     ray,
                     query: &mut query,
+                    stop,
                 };
                 // SAFETY: this is a kernel of the same set, so the machine has it.
                 unsafe { S::call(visit) }
@@ -293,7 +318,11 @@ impl LeafQueue {
 
     /// Visits all leaves, and empties the queue. Returns for each ray in step a bit that says whether it is blocked.
     #[inline(always)]
-    fn visit_all<S: Simd>(&mut self, bvh: &Bvh, active: &[Option<ActiveRay>; RAYS]) -> u32 {
+    fn visit_all<S: Simd>(
+        &mut self,
+        (bvh, stop): (&Bvh, Stop<'_>),
+        active: &[Option<ActiveRay>; RAYS],
+    ) -> u32 {
         self.load_ahead(&bvh.tree);
         let mut blocked = 0_u32;
         for index in 0..self.len {
@@ -305,7 +334,7 @@ impl LeafQueue {
             let place = usize::from(place) % RAYS;
             if blocked >> place & 1 == 0
                 && let Some(ray) = &active[place]
-                && ray.is_blocked_in::<S>(bvh, Child::from_bits(leaf))
+                && ray.is_blocked_in::<S>((bvh, stop), Child::from_bits(leaf))
             {
                 blocked |= 1 << place;
             }

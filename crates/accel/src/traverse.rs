@@ -14,6 +14,7 @@ use crate::query::Query;
 use crate::ray::{Hit, Ray};
 use crate::simd::{F32x4, Kernel, Simd};
 use crate::stack::{Stack, bits};
+use crate::stop::Stop;
 use crate::triangle::{TriangleBlock, TriangleLanes, TriangleRay};
 
 /// Offers `query` every hit of `ray` that it could care for.
@@ -21,6 +22,7 @@ pub(crate) struct Ask<'a, Q> {
     pub(crate) bvh: &'a Bvh,
     pub(crate) ray: &'a Ray,
     pub(crate) query: &'a mut Q,
+    pub(crate) stop: Stop<'a>,
 }
 
 impl<Q: Query> Kernel for Ask<'_, Q> {
@@ -28,7 +30,12 @@ impl<Q: Query> Kernel for Ask<'_, Q> {
 
     #[inline(always)]
     fn run<S: Simd>(self) {
-        let Self { bvh, ray, query } = self;
+        let Self {
+            bvh,
+            ray,
+            query,
+            stop,
+        } = self;
         let Some(ray) = clean(ray) else { return };
         if !bvh.tree.nodes.is_empty() {
             let mut walk = Walk {
@@ -45,6 +52,7 @@ impl<Q: Query> Kernel for Ask<'_, Q> {
                     approach: approach.get_or_insert_with(|| Approach::new(&ray)),
                     ray,
                     query,
+                    stop,
                 };
                 // SAFETY: this is a kernel of the same set, so the machine has it.
                 unsafe { S::call(visit) }
@@ -53,14 +61,15 @@ impl<Q: Query> Kernel for Ask<'_, Q> {
     }
 }
 
-/// Follows the ray through the object of instance number `index`, and returns its new `t_max`. A kernel
-/// of its own, so that trees without instances do not carry it in their loop.
+/// Follows the ray through the object of instance number `index`, and returns its new `t_max`, or breaks off when it
+/// is asked to stop. A kernel of its own, so that trees without instances do not carry it in their loop.
 pub(crate) struct VisitInstance<'a, Q> {
     pub(crate) bvh: &'a Bvh,
     pub(crate) index: usize,
     pub(crate) ray: Ray,
     pub(crate) approach: &'a Approach,
     pub(crate) query: &'a mut Q,
+    pub(crate) stop: Stop<'a>,
 }
 
 impl<Q: Query> Kernel for VisitInstance<'_, Q> {
@@ -68,6 +77,9 @@ impl<Q: Query> Kernel for VisitInstance<'_, Q> {
 
     #[inline(always)]
     fn run<S: Simd>(self) -> Self::Output {
+        if self.stop.is_asked() {
+            return ControlFlow::Break(());
+        }
         let placement = &self.bvh.placements[self.index];
         let (local, space) = placement.view(&self.ray, self.approach, self.index as u32 + 1);
         let Some(local) = clean(&local) else {

@@ -6,16 +6,12 @@ use crate::exit::{Exit, Failure};
 use crate::progress::write_openjd;
 use crate::scene_io::{FilmHeader, LoadedScene};
 use crate::signals::Signals;
-use bidir::driver::{Effort, Resources, Session, SessionError, Settings};
+use bidir::driver::{Effort, Resources, Session, SessionError, Settings, Stop};
 use std::sync::Arc;
-use std::sync::mpsc::{self, Receiver, RecvTimeoutError};
-use std::thread;
 use std::time::{Duration, Instant};
 
-/// Interval between checks for signals.
-const GAP: Duration = Duration::from_millis(100);
-/// Number of intervals after which a message says that training is running.
-const LONG: u32 = 20;
+/// The time after which a message says that training is running.
+const LONG: Duration = Duration::from_secs(2);
 /// The limits of training.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct TrainingLimits {
@@ -41,17 +37,7 @@ impl TrainingLimits {
     }
 }
 
-/// The result of starting a render.
-pub(crate) enum Started {
-    /// A trained session.
-    Session(Box<Session<'static>>),
-    /// A signal arrived during training; the command ends with this exit.
-    Stopped(Exit),
-}
-
-/// Creates and trains the session of a render.
-///
-/// A signal stops training at once: no pass is lost by that, and training may take minutes.
+/// Creates and trains the session of a render. None: a signal or the end of the time came first.
 pub(crate) fn session(
     args: &RenderArgs,
     loaded: &LoadedScene,
@@ -59,62 +45,34 @@ pub(crate) fn session(
     signals: &Signals,
     limits: TrainingLimits,
     console: Console,
-) -> Result<Started, Failure> {
+) -> Result<Option<Box<Session<'static>>>, Failure> {
     let (scene, view) = (Arc::clone(&loaded.scene), loaded.view.clone());
     let settings = settings.clone();
-    let resources = resources(args);
+    let (resources, stop) = (resources(args), signals.stop_flag());
     let train = move || {
         let effort = Effort {
             samples: limits.samples,
             is_late: &|| limits.end.is_some_and(|end| Instant::now() >= end),
+            stop: Stop::when(&stop),
         };
         Session::with_effort(scene, &view, settings, &resources, effort).map(Box::new)
     };
-    let (sender, receiver) = mpsc::channel();
-    let in_thread = train.clone();
-    // After a signal, the thread ends with the process.
-    let thread = thread::Builder::new().name("training".to_owned());
-    let session = match thread.spawn(move || sender.send(in_thread())) {
-        Ok(_) => match wait(&receiver, signals, display(args, console))? {
-            Waited::Session(session) => session,
-            Waited::Stopped(exit) => return Ok(Started::Stopped(exit)),
-        },
-        // Without a thread, signals are checked after training.
-        Err(_) => train(),
+    let (begun, mut is_said) = (Instant::now(), false);
+    let tick = || {
+        if !is_said && begun.elapsed() >= LONG {
+            is_said = true;
+            say_training(display(args, console));
+        }
+    };
+    let session = match signals.wait_for(train, tick) {
+        Some(Err(SessionError::Stopped)) | None => return Ok(None),
+        Some(session) => session,
     };
     let session = session.map_err(|error| failure(args, loaded, &error))?;
     if let Some(shortage) = session.shortage() {
         console.warning(shortage);
     }
-    Ok(Started::Session(session))
-}
-
-/// The event that came first: the session, or a signal.
-enum Waited {
-    Session(Result<Box<Session<'static>>, SessionError>),
-    Stopped(Exit),
-}
-
-/// Waits for the session that another thread trains, or for a signal.
-fn wait(
-    receiver: &Receiver<Result<Box<Session<'static>>, SessionError>>,
-    signals: &Signals,
-    display: Display,
-) -> Result<Waited, Failure> {
-    let mut waited = 0;
-    loop {
-        match (receiver.recv_timeout(GAP), signals.exit()) {
-            (Ok(session), _) => return Ok(Waited::Session(session)),
-            (Err(RecvTimeoutError::Timeout), None) => waited += 1,
-            (Err(RecvTimeoutError::Timeout), Some(exit)) => return Ok(Waited::Stopped(exit)),
-            (Err(RecvTimeoutError::Disconnected), _) => {
-                return Err(Failure::new(Exit::RenderFailed, "the training failed"));
-            }
-        }
-        if waited == LONG {
-            say_training(display);
-        }
-    }
+    Ok(Some(session))
 }
 
 /// Returns the form of progress. A replay as JSON has stdout to itself.

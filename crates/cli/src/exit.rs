@@ -21,17 +21,19 @@ pub(crate) enum Exit {
     FilmMismatch,
     /// A check did not hold.
     Validation,
+    /// The time ended before a pass was complete.
+    NoPass,
     /// Stopped early, with a checkpoint to continue from.
     Checkpoint,
-    /// Stopped by Ctrl-C; the image has the finished passes.
+    /// Stopped by Ctrl-C; the image has the complete passes.
     Interrupted,
-    /// Stopped by SIGTERM; the image has the finished passes.
+    /// Stopped by SIGTERM; the image has the complete passes.
     Terminated,
 }
 
 impl Exit {
     /// Every exit with its meaning, in the order of the help text.
-    const ALL: [(Self, &'static str); 10] = [
+    const ALL: [(Self, &'static str); 11] = [
         (Self::Done, "success"),
         (Self::RenderFailed, "the render failed"),
         (
@@ -57,16 +59,20 @@ impl Exit {
              is refused",
         ),
         (
+            Self::NoPass,
+            "`render --time` ended before a pass was complete; nothing was written",
+        ),
+        (
             Self::Checkpoint,
             "stopped early by a signal; the same command continues from its checkpoint or records",
         ),
         (
             Self::Interrupted,
-            "stopped by Ctrl-C; the image has the finished passes",
+            "stopped by Ctrl-C; the image has the complete passes, and there is none without any",
         ),
         (
             Self::Terminated,
-            "stopped by SIGTERM; the image has the finished passes",
+            "stopped by SIGTERM; the image has the complete passes, and there is none without any",
         ),
     ];
 
@@ -80,6 +86,7 @@ impl Exit {
             Self::InputOutput => 4,
             Self::FilmMismatch => 5,
             Self::Validation => 6,
+            Self::NoPass => 7,
             Self::Checkpoint => 75,
             Self::Interrupted => 130,
             Self::Terminated => 143,

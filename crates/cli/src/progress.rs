@@ -7,12 +7,12 @@ use crate::args::{self, TalkArgs};
 use crate::console::{Display, LineFormat, print, say};
 use crate::exit::Failure;
 use crate::signals::Signals;
-use bidir::driver::{Budget, Progress};
+use bidir::driver::{Budget, Progress, Stop};
 use formats::printable;
 use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
 use std::sync::Mutex;
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -51,8 +51,6 @@ pub(crate) struct Reporter<'a> {
     /// Samples of earlier runs.
     before: AtomicU64,
     samples: AtomicU64,
-    /// True once a message has said that the running pass is the last.
-    has_said_stop: AtomicBool,
     channel: Channel,
 }
 
@@ -87,7 +85,6 @@ impl<'a> Reporter<'a> {
             clock,
             before: AtomicU64::new(0),
             samples: AtomicU64::new(0),
-            has_said_stop: AtomicBool::new(false),
             channel,
         }
     }
@@ -147,12 +144,17 @@ impl<'a> Reporter<'a> {
         }
     }
 
-    /// Says once that the running pass is the last.
-    fn say_stop(&self) {
-        if self.signals.exit().is_none() || self.has_said_stop.swap(true, Ordering::Relaxed) {
-            return;
-        }
-        let text = "stopping after the running pass; a second signal stops at once";
+    /// Returns the time that a pass takes, by the part of one that was done in `rendering`. None: too little of it.
+    pub(crate) fn pass_time(&self, rendering: Duration) -> Option<Duration> {
+        let samples = self.samples.load(Ordering::Relaxed) - self.before.load(Ordering::Relaxed);
+        let done = self.passes(samples);
+        let time = || Duration::try_from_secs_f64(rendering.as_secs_f64() / done).ok();
+        (done >= 1e-3).then(time).flatten()
+    }
+
+    /// Says that a signal ended the render.
+    pub(crate) fn say_stop(&self) {
+        let text = "stopping; a second signal stops at once";
         match &self.channel {
             Channel::Silent => {}
             Channel::Bar(bar) => bar.println(text),
@@ -179,7 +181,6 @@ impl<'a> Reporter<'a> {
 impl Progress for Reporter<'_> {
     fn advance(&self, samples: u64) {
         self.samples.fetch_add(samples, Ordering::Relaxed);
-        self.say_stop();
         match &self.channel {
             Channel::Silent => {}
             Channel::Bar(bar) => {
@@ -198,6 +199,10 @@ impl Progress for Reporter<'_> {
                 }
             }
         }
+    }
+
+    fn stop(&self) -> Stop<'_> {
+        self.signals.stop()
     }
 
     fn nanoseconds(&self) -> u64 {

@@ -26,7 +26,10 @@ pub(crate) fn run(args: &ReferenceArgs, console: Console) -> Result<Exit, Failur
     let earlier = earlier.transpose().map_err(failure)?;
     check_folder(&folder)?;
     let film = earlier.as_ref().map(film_of);
-    let loaded = scene_io::load(&args.scene, Some(film.as_ref().unwrap_or(&args.film)))?;
+    let film = film.as_ref().unwrap_or(&args.film);
+    let Some(loaded) = scene_io::load_until(&signals, &args.scene, Some(film))? else {
+        return Ok(signals.exit().unwrap_or(Exit::Interrupted));
+    };
     loaded.print_warnings(&args.scene, 0, console)?;
     if let Some(earlier) = &earlier {
         let same = earlier.check(&folder, &loaded.digest, loaded.view.film());

@@ -1,7 +1,7 @@
 //! `bidir render`: renders a scene to an image.
 
-use crate::args::RenderArgs;
-use crate::begin::{self, Started, TrainingLimits};
+use crate::args::{self, RenderArgs};
+use crate::begin::{self, TrainingLimits};
 use crate::checkpoint::{Checkpoint, CheckpointWriter};
 use crate::console::{Console, json, say};
 use crate::denoise::Filter;
@@ -17,7 +17,7 @@ use crate::signals::Signals;
 use crate::stats::{Course, Report, Summary, listed};
 use crate::threads;
 use bidir::analysis::blind_spots;
-use bidir::driver::{Limit, Session, Settings, Spent};
+use bidir::driver::{Budget, Limit, Session, Settings, Spent};
 use bidir::integrator::IntegratorKind;
 use std::time::{Duration, Instant};
 use viewer::web::Server;
@@ -25,7 +25,6 @@ use viewer::{RenderMonitor, RequestQueue, Status};
 
 /// Renders a scene, or repeats one of its samples.
 pub(crate) fn run(args: &RenderArgs, console: Console) -> Result<Exit, Failure> {
-    // First, so that a signal during loading does not kill the process.
     let signals = Signals::watch()?;
     threads::start_for_render(args.threads.count, console);
     // Checks that need no scene come before loading, which may take long.
@@ -40,7 +39,10 @@ pub(crate) fn run(args: &RenderArgs, console: Console) -> Result<Exit, Failure> 
     };
     let listener = args.serve.map(serve::listen).transpose()?;
     let start = Instant::now();
-    let loaded = scene_io::load(&args.scene, Some(&args.film))?;
+    let Some(loaded) = scene_io::load_until(&signals, &args.scene, Some(&args.film))? else {
+        let is_resumed = checkpoint.is_some_and(|checkpoint| checkpoint.is_resumed());
+        return Ok(stopped(&signals, is_resumed, console));
+    };
     let load = start.elapsed();
     let mut settings = args.estimator.apply(&loaded.settings);
     let own = loaded.settings.layers.aovs();
@@ -52,10 +54,9 @@ pub(crate) fn run(args: &RenderArgs, console: Console) -> Result<Exit, Failure> 
     if let Some(target) = args.replay {
         replay::check_apart(args, &loaded.inputs)?;
         let limits = TrainingLimits::new(None, None);
-        return match begin::session(args, &loaded, &settings, &signals, limits, console)? {
-            Started::Session(session) => replay::run(args, &session, target),
-            Started::Stopped(exit) => Ok(exit),
-        };
+        let session = begin::session(args, &loaded, &settings, &signals, limits, console)?;
+        let ended = session.map(|session| replay::run(args, session, target, &signals));
+        return ended.unwrap_or_else(|| Ok(exit_of(&signals)));
     }
     let outputs = Outputs::new(args, loaded.output.as_deref())?;
     outputs.check(args, &loaded.inputs)?;
@@ -75,6 +76,22 @@ pub(crate) fn run(args: &RenderArgs, console: Console) -> Result<Exit, Failure> 
         signals: &signals,
     }
     .run(checkpoint, load, server)
+}
+
+/// Says that nothing was written because of a signal before the first pass, and returns the exit: with a film to
+/// continue from, the same command continues.
+fn stopped(signals: &Signals, is_resumed: bool, console: Console) -> Exit {
+    console.warning("stopped before the first pass: nothing was written");
+    if is_resumed {
+        Exit::Checkpoint
+    } else {
+        exit_of(signals)
+    }
+}
+
+/// Returns the exit after a signal.
+fn exit_of(signals: &Signals) -> Exit {
+    signals.exit().unwrap_or(Exit::Interrupted)
 }
 
 /// A render whose arguments are checked: only a signal, a full disk or a bug can prevent its image.
@@ -106,6 +123,9 @@ impl Job<'_> {
         let earlier = checkpoint.as_ref().and_then(Checkpoint::earlier);
         let limits = TrainingLimits::new(budget.time, earlier);
         let start = Instant::now();
+        if let Some(time) = budget.time {
+            self.signals.set_alarm(time)?;
+        }
         let started = begin::session(
             self.args,
             self.loaded,
@@ -114,10 +134,11 @@ impl Job<'_> {
             limits,
             self.console,
         );
-        let mut session = match started? {
-            Started::Session(session) => *session,
-            Started::Stopped(_) if is_resumed => return Ok(self.stopped(Exit::Checkpoint)),
-            Started::Stopped(exit) => return Ok(self.stopped(exit)),
+        let Some(mut session) = started? else {
+            return match (self.signals.exit(), budget.time) {
+                (None, Some(time)) => Err(self.no_pass(time, is_resumed, None)),
+                _ => Ok(stopped(self.signals, is_resumed, self.console)),
+            };
         };
         session.start_at(budget.first);
         let header = header(session.training());
@@ -132,14 +153,18 @@ impl Job<'_> {
             start,
             first_pass: Instant::now(),
         };
-        let end = self.render(&mut session, clock, &mut writer, &mut show);
+        let (end, pass_time) = self.render(&mut session, clock, &mut writer, &mut show);
         let course = Course {
             load,
             render: start.elapsed(),
             stopping: end.stopping(),
         };
-        if let (End::Signal(exit), true) = (end, session.film().passes().is_empty()) {
-            return Ok(self.stopped(exit));
+        match end {
+            End::Signal(_) if session.film().passes().is_empty() => {
+                return Ok(stopped(self.signals, false, self.console));
+            }
+            End::NoPass(time) => return Err(self.no_pass(time, is_resumed, pass_time)),
+            End::Signal(_) | End::Limit(_) => {}
         }
         let header = writer.header(&session, course.stopping);
         let saved = writer.write(&session, &header);
@@ -158,15 +183,22 @@ impl Job<'_> {
         self.print_end(&summary, &report, &writer, end);
         Ok(match end {
             End::Signal(exit) => self.exit(exit),
-            End::Limit(_) => Exit::Done,
+            End::Limit(_) | End::NoPass(_) => Exit::Done,
         })
     }
 
-    /// Says that nothing was written because of a signal before the first pass, and returns `exit`.
-    fn stopped(&self, exit: Exit) -> Exit {
-        self.console
-            .warning("stopped before the first pass: nothing was written");
-        exit
+    /// Returns the failure of a run whose `time` ended before one of its passes did, each of which takes `pass_time`,
+    /// if that is known.
+    fn no_pass(&self, time: Duration, is_resumed: bool, pass_time: Option<Duration>) -> Failure {
+        let further = if is_resumed { "further " } else { "" };
+        let time = args::Duration(time);
+        let message = format!("no {further}pass was complete after {time}: nothing was written");
+        let more = "give it more --time, or make the image smaller with --size or --crop";
+        let hint = match pass_time {
+            Some(pass) => format!("a pass takes about {}: {more}", args::Duration(pass)),
+            None => more.to_owned(),
+        };
+        Failure::new(Exit::NoPass, message).with_hint(hint)
     }
 
     /// Returns the exit after a signal that came after the first pass: with a film file, the same command
@@ -178,14 +210,15 @@ impl Job<'_> {
         }
     }
 
-    /// Renders pass by pass until the budget is used up or a signal arrives.
+    /// Renders pass by pass until the budget is used up or a signal arrives. Returns the end, and the time of a pass, if
+    /// that is known.
     fn render(
         &self,
         session: &mut Session<'_>,
         clock: Clock,
         writer: &mut CheckpointWriter,
         show: &mut Show,
-    ) -> End {
+    ) -> (End, Option<Duration>) {
         let budget = clock.budget;
         let display = self.console.display(self.args.output.talk);
         let before = (session.next_pass() - budget.first) * clock.samples_per_pass;
@@ -205,7 +238,9 @@ impl Job<'_> {
                 break End::Signal(exit);
             }
             let begun = Instant::now();
-            session.step(&reporter);
+            if !session.step(&reporter) {
+                break self.broken_off(budget, rendered);
+            }
             rendered += 1;
             show.add_pass(session, begun.elapsed(), &|| {
                 writer.header(session, Stopping::Time)
@@ -213,11 +248,22 @@ impl Job<'_> {
             self.write_if_due(session, writer);
         };
         show.end(session, &|| writer.header(session, end.stopping()));
-        if !matches!(end, End::Signal(_)) {
-            reporter.complete();
+        match end {
+            End::Limit(_) => reporter.complete(),
+            End::Signal(_) => reporter.say_stop(),
+            End::NoPass(_) => {}
         }
         reporter.finish();
-        end
+        (end, reporter.pass_time(clock.first_pass.elapsed()))
+    }
+
+    /// Returns the end of a run that left a pass, after it had `rendered` others.
+    fn broken_off(&self, budget: Budget, rendered: u64) -> End {
+        match (self.signals.exit(), budget.time) {
+            (Some(exit), _) => End::Signal(exit),
+            (None, Some(time)) if rendered == 0 => End::NoPass(time),
+            (None, _) => End::Limit(Limit::Time),
+        }
     }
 
     /// Writes the film file if it is due, and also the image if a signal requests it. The render continues
@@ -315,13 +361,15 @@ enum End {
     Limit(Limit),
     /// A signal arrived; the command ends with this exit.
     Signal(Exit),
+    /// This time ended before the first pass of the run did.
+    NoPass(Duration),
 }
 
 impl End {
     fn stopping(self) -> Stopping {
         match self {
             Self::Limit(limit) => limit.into(),
-            Self::Signal(_) => Stopping::Time,
+            Self::Signal(_) | Self::NoPass(_) => Stopping::Time,
         }
     }
 }

@@ -5,6 +5,7 @@ use crate::console::{print, print_json, say};
 use crate::exit::{Exit, Failure};
 use crate::output;
 use crate::scene_io;
+use crate::signals::Signals;
 use bidir::driver::Session;
 use lab::sample::SampleReport;
 use std::path::PathBuf;
@@ -28,13 +29,18 @@ pub(crate) fn check_apart(args: &RenderArgs, inputs: &[PathBuf]) -> Result<(), F
     scene_io::check_apart(inputs, drawing.as_slice())
 }
 
-/// Repeats a sample and prints its report.
+/// Repeats a sample and prints its report, unless a signal ends that.
 pub(crate) fn run(
     args: &RenderArgs,
-    session: &Session<'_>,
+    session: Box<Session<'static>>,
     target: ReplayTarget,
+    signals: &Signals,
 ) -> Result<Exit, Failure> {
-    let replay = session.replay(target.pixel, target.pass).ok_or_else(|| {
+    let repeat = move || (session.replay(target.pixel, target.pass), session);
+    let Some((replay, session)) = signals.wait_for(repeat, || ()) else {
+        return Ok(signals.exit().unwrap_or(Exit::Interrupted));
+    };
+    let replay = replay.ok_or_else(|| {
         let [x, y] = target.pixel;
         let crop = session.view().film().crop;
         let ([x0, y0], [x1, y1]) = (crop.min, crop.max);
@@ -42,7 +48,7 @@ pub(crate) fn run(
             format!("the render has the pixels from {x0},{y0} up to, not including, {x1},{y1}");
         Failure::usage(format!("the pixel {x},{y} is not rendered")).with_hint(hint)
     })?;
-    let report = SampleReport::new(session, target.pixel, target.pass, &replay);
+    let report = SampleReport::new(&session, target.pixel, target.pass, &replay);
     let printed = if args.json {
         print_json(&report)
     } else {
@@ -52,7 +58,7 @@ pub(crate) fn run(
         return printed;
     };
     let name = args.scene.scene.display().to_string();
-    formats::file::replace(path, report.drawing(session, &name).as_bytes())?;
+    formats::file::replace(path, report.drawing(&session, &name).as_bytes())?;
     if !args.output.talk.quiet {
         say(format_args!("wrote {}", path.display()));
     }

@@ -3,6 +3,7 @@
 use crate::args::{FilmArgs, SceneArgs};
 use crate::console::Console;
 use crate::exit::{Exit, Failure};
+use crate::signals::Signals;
 use bidir::driver::{Settings, Training};
 use bidir::film::FilmSettings;
 use bidir::scene::Scene;
@@ -75,6 +76,17 @@ pub(crate) fn load(args: &SceneArgs, film: Option<&FilmArgs>) -> Result<LoadedSc
         digest: loaded.digest.to_string(),
         inputs: loaded.inputs,
     })
+}
+
+/// Does the same unless a signal comes first. None: it came.
+pub(crate) fn load_until(
+    signals: &Signals,
+    args: &SceneArgs,
+    film: Option<&FilmArgs>,
+) -> Result<Option<LoadedScene>, Failure> {
+    let (args, film) = (args.clone(), film.cloned());
+    let loaded = signals.wait_for(move || load(&args, film.as_ref()), || ());
+    loaded.transpose()
 }
 
 impl LoadedScene {

@@ -1,11 +1,21 @@
-//! Signals: the first Ctrl-C or SIGTERM stops after the running pass, the second at once. SIGUSR1 requests
-//! that files are written.
+//! Signals: the first Ctrl-C or SIGTERM leaves what is running, and the command ends with what is complete; the
+//! second ends it at once. SIGUSR1 requests that files are written.
 
 use crate::exit::{Exit, Failure};
+use bidir::driver::Stop;
 use signal_hook::consts::{SIGABRT, SIGINT, SIGTERM};
 use signal_hook::flag;
-use std::sync::Arc;
+use std::panic;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::mpsc::{self, RecvTimeoutError};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread;
+use std::time::Duration;
+
+/// The interval between two looks at the flag.
+const GAP: Duration = Duration::from_millis(50);
+/// The stack of a thread that does what the main thread would do. Unit: bytes.
+const STACK: usize = 8 << 20;
 
 /// The signals that end a render, each with its exit.
 const SIGNALS: [(i32, Exit); 2] = [(SIGINT, Exit::Interrupted), (SIGTERM, Exit::Terminated)];
@@ -15,6 +25,8 @@ const SIGNALS: [(i32, Exit); 2] = [(SIGINT, Exit::Interrupted), (SIGTERM, Exit::
 pub(crate) struct Signals {
     received: Arc<AtomicUsize>,
     write: Arc<AtomicBool>,
+    /// Set by the first signal, and at the end of the time that an alarm was set to.
+    stop: Arc<AtomicBool>,
 }
 
 impl Signals {
@@ -22,17 +34,76 @@ impl Signals {
     pub(crate) fn watch() -> Result<Self, Failure> {
         let received = Arc::new(AtomicUsize::new(0));
         let again = Arc::new(AtomicBool::new(false));
+        let stop = Arc::new(AtomicBool::new(false));
         for (signal, exit) in SIGNALS {
             // The order matters: `again` is still unset when the first signal arrives.
             flag::register_conditional_shutdown(signal, exit.code().into(), Arc::clone(&again))
                 .and_then(|_| flag::register(signal, Arc::clone(&again)))
                 .and_then(|_| flag::register_usize(signal, Arc::clone(&received), signal as usize))
+                .and_then(|_| flag::register(signal, Arc::clone(&stop)))
                 .map_err(unwatched)?;
         }
         let write = Arc::new(AtomicBool::new(false));
         #[cfg(unix)]
         flag::register(signal_hook::consts::SIGUSR1, Arc::clone(&write)).map_err(unwatched)?;
-        Ok(Self { received, write })
+        Ok(Self {
+            received,
+            write,
+            stop,
+        })
+    }
+
+    /// Asks to leave what is running, after the first signal or at the end of the time.
+    pub(crate) fn stop(&self) -> Stop<'_> {
+        Stop::when(&self.stop)
+    }
+
+    /// Returns the flag of [`Self::stop`].
+    pub(crate) fn stop_flag(&self) -> Arc<AtomicBool> {
+        Arc::clone(&self.stop)
+    }
+
+    /// Sets the flag after this time, too.
+    pub(crate) fn set_alarm(&self, after: Duration) -> Result<(), Failure> {
+        let stop = self.stop_flag();
+        let ring = move || {
+            thread::sleep(after);
+            stop.store(true, Ordering::Relaxed);
+        };
+        let thread = thread::Builder::new().name("alarm".to_owned());
+        thread.spawn(ring).map(drop).map_err(|error| {
+            let message = format!("cannot start a thread for the time limit: {error}");
+            Failure::new(Exit::RenderFailed, message)
+        })
+    }
+
+    /// Does `work` that does not look at the flag in a thread of its own. `tick` is called meanwhile. None: the flag
+    /// was set before it ended; the thread ends with the process.
+    pub(crate) fn wait_for<T: Send + 'static>(
+        &self,
+        work: impl FnOnce() -> T + Send + 'static,
+        mut tick: impl FnMut(),
+    ) -> Option<T> {
+        let work = Arc::new(Mutex::new(Some(work)));
+        let (sender, receiver) = mpsc::channel();
+        let in_thread = Arc::clone(&work);
+        let thread = thread::Builder::new().stack_size(STACK);
+        let Ok(thread) = thread.spawn(move || sender.send(done(&in_thread))) else {
+            // Without a thread, the flag is looked at afterwards.
+            return done(&work);
+        };
+        loop {
+            match receiver.recv_timeout(GAP) {
+                Ok(done) => return done,
+                Err(RecvTimeoutError::Timeout) if self.stop().is_asked() => return None,
+                Err(RecvTimeoutError::Timeout) => tick(),
+                // It panicked.
+                Err(RecvTimeoutError::Disconnected) => match thread.join() {
+                    Ok(_) => return None,
+                    Err(panic) => panic::resume_unwind(panic),
+                },
+            }
+        }
     }
 
     /// Returns true if SIGUSR1 arrived since the last call.
@@ -46,6 +117,12 @@ impl Signals {
         let of = |&&(signal, _): &&(i32, Exit)| signal as usize == received;
         SIGNALS.iter().find(of).map(|&(_, exit)| exit)
     }
+}
+
+/// Returns the result of `work`. None: it was done before.
+fn done<T>(work: &Mutex<Option<impl FnOnce() -> T>>) -> Option<T> {
+    let work = work.lock().unwrap_or_else(PoisonError::into_inner).take();
+    work.map(|work| work())
 }
 
 /// Ends the command with an exit code of its own when the system refuses memory.

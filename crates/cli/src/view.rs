@@ -28,7 +28,9 @@ pub(crate) fn run(args: &ViewArgs, console: Console) -> Result<Exit, Failure> {
     threads::start(args.threads.count, console);
     // Errors that need no scene come before one is read.
     let listener = listen(args)?;
-    let loaded = scene_io::load(&args.scene, Some(&args.film))?;
+    let Some(loaded) = scene_io::load_until(&signals, &args.scene, Some(&args.film))? else {
+        return Ok(signals.exit().unwrap_or(Exit::Interrupted));
+    };
     let settings = args.estimator.apply(&loaded.settings);
     // Every flag may have influence: estimators are switched.
     let lost = settings::check_strategies("--strategies", &loaded, &settings, console)?;

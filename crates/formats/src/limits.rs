@@ -73,6 +73,9 @@ pub(crate) const FURTHER_WARNINGS: &str = "further warnings, of other kinds";
 pub(crate) const MOST_PRIMITIVES: u64 = 1 << 28;
 /// Number of subdivision steps, each of which quadruples the triangles.
 pub(crate) const MOST_LEVELS: u32 = 10;
+/// Number of cells of a grid along an axis: a ray may cross all of them, and 32-bit coordinates within a cell
+/// need the bits that the number leaves.
+pub(crate) const LONGEST_GRID: usize = 1 << 14;
 /// Depth of nested textures.
 pub(crate) const DEEPEST_TEXTURE: usize = 32;
 /// Number of textures that one texture combines.
@@ -167,6 +170,7 @@ mod tests {
             ("file of glTF", gib(LARGEST_GLTF)),
             ("spectrum file", format!("{} MiB", LARGEST_SPECTRUM >> 20)),
             ("clouds of noise", MOST_CLOUDS.to_string()),
+            ("cells of a grid along an axis", LONGEST_GRID.to_string()),
             (
                 "distinct warnings",
                 format!("{MOST_WARNINGS}, then one for all others"),

@@ -103,7 +103,7 @@ pub(crate) fn render_block<'py>(
     let reference = pixels(py, reference.0, &reference.1)?;
     let files = Files::only(in_memory(files));
     let silent = |_: Python<'_>, _: Message| Ok(());
-    let done = wait(py, silent, |stop, sender| {
+    let done = wait(py, None, silent, |stop, sender| {
         let mut reporter = Reporter::new(stop, sender);
         let experiment = &experiment.experiment;
         experiment::render_block(experiment, &block, &files, &reference, &mut reporter)

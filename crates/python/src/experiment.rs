@@ -8,6 +8,8 @@ use lab::experiment::{self, Event, Observer, Outcome, Setup, Start};
 use lab::results::{Machine, Results};
 use pyo3::prelude::*;
 use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 use std::sync::mpsc::Sender;
 use std::time::Instant;
 
@@ -68,6 +70,10 @@ impl Observer for Reporter<'_> {
     fn should_stop(&mut self) -> bool {
         self.stop.is_set()
     }
+
+    fn stop_flag(&self) -> Arc<AtomicBool> {
+        Arc::clone(self.stop.flag())
+    }
 }
 
 /// Converts the results to JSON. None: there are none yet.
@@ -124,7 +130,7 @@ impl Experiment {
     ) -> PyResult<(Option<String>, String)> {
         let setup = self.setup(py, folder, restart, machine)?;
         let pass_on = |py: Python<'_>, message: Message| pass_on(py, hear.as_ref(), message);
-        let outcome = wait(py, pass_on, |stop, sender| {
+        let outcome = wait(py, None, pass_on, |stop, sender| {
             let mut reporter = Reporter::new(stop, sender);
             experiment::run(&self.experiment, &setup, &mut reporter)
         })?;
@@ -153,7 +159,7 @@ impl Experiment {
     ) -> PyResult<Option<Prepared>> {
         let setup = self.setup(py, folder, restart, Some(machine))?;
         let pass_on = |py: Python<'_>, message: Message| pass_on(py, hear.as_ref(), message);
-        let prepared = wait(py, pass_on, |stop, sender| {
+        let prepared = wait(py, None, pass_on, |stop, sender| {
             let mut reporter = Reporter::new(stop, sender);
             experiment::prepare(&self.experiment, &setup, &mut reporter)
         })?;

@@ -80,7 +80,7 @@ impl Scene {
         } else {
             Files::over_disk(memory)
         };
-        let loaded = wait_silently(py, |_| load_from(&path, &options, &files))?;
+        let loaded = wait_silently(py, None, |_| load_from(&path, &options, &files))?;
         let loaded = loaded.map_err(|error| of_file(py, &error))?;
         Ok(Self {
             settings: loaded.settings.render_settings(),

@@ -43,6 +43,11 @@ fn duration(seconds: f64) -> Duration {
     Duration::try_from_secs_f64(seconds).unwrap_or(nearest)
 }
 
+/// Returns the moment after `left` seconds. None: there is no limit.
+fn deadline(left: Option<f64>) -> Option<Instant> {
+    Instant::now().checked_add(duration(left?))
+}
+
 struct State {
     session: driver::Session<'static>,
     /// The header of an empty film.
@@ -66,8 +71,8 @@ struct Watcher<'a> {
 impl Progress for Watcher<'_> {
     fn advance(&self, _samples: u64) {}
 
-    fn should_stop(&self) -> bool {
-        self.stop.is_set()
+    fn stop(&self) -> driver::Stop<'_> {
+        driver::Stop::when(self.stop.flag())
     }
 
     fn nanoseconds(&self) -> u64 {
@@ -111,7 +116,8 @@ fn no_memory(py: Python<'_>, error: &FilmError) -> PyErr {
 
 #[pymethods]
 impl Session {
-    /// Starts a session without passes; `bidir.Session` makes `requested`.
+    /// Starts a session without passes; `bidir.Session` makes `requested`. Training takes a part of a time, and no
+    /// more than is left: the `limits`. Unit: seconds.
     #[new]
     fn new(
         py: Python<'_>,
@@ -119,8 +125,9 @@ impl Session {
         requested: Requested,
         threads: usize,
         training: Option<u64>,
-        time: Option<f64>,
+        limits: (Option<f64>, Option<f64>),
     ) -> PyResult<Self> {
+        let (time, left) = limits;
         let settings = resolve(py, &requested, &scene.settings)?;
         let resources = Resources {
             threads: threads_of(py, threads)?.count(),
@@ -129,19 +136,26 @@ impl Session {
         let begin = Instant::now();
         let part = time.map(|time| time / f64::from(Effort::PART));
         let (shared, view, own) = (scene.shared.clone(), &scene.view, settings.clone());
-        let session = wait_silently(py, |_| {
+        let session = wait_silently(py, deadline(left), |stop| {
             let effort = Effort {
                 samples: training.unwrap_or(u64::MAX),
                 is_late: &|| part.is_some_and(|part| begin.elapsed().as_secs_f64() >= part),
+                stop: driver::Stop::when(stop.flag()),
             };
             driver::Session::with_effort(shared, view, own, &resources, effort)
         })?;
         let session = session.map_err(|error| {
             let class = match error {
                 driver::SessionError::NoPath { .. } => "SettingsError",
-                driver::SessionError::Film(_) => "RenderError",
+                driver::SessionError::Film(_) | driver::SessionError::Stopped => "RenderError",
             };
-            raise(py, class, &error.to_string())
+            let text = match error {
+                driver::SessionError::Stopped => {
+                    "the time ended in training: give it more time, or make the image smaller"
+                }
+                _ => &error.to_string(),
+            };
+            raise(py, class, text)
         })?;
         if let Some(shortage) = session.shortage() {
             warn(py, &shortage.to_string())?;
@@ -165,14 +179,17 @@ impl Session {
         })
     }
 
-    /// Renders the next pass. A signal aborts and discards it.
-    fn step(&self, py: Python<'_>) -> PyResult<()> {
-        wait_silently(py, |stop| {
+    /// Renders the next pass, and returns true. A signal leaves and forgets it, and so does the end of the time that is
+    /// `left`: false. Unit: seconds.
+    #[pyo3(signature = (left = None))]
+    fn step(&self, py: Python<'_>, left: Option<f64>) -> PyResult<bool> {
+        wait_silently(py, deadline(left), |stop| {
             let mut state = self.lock();
             let begin = Instant::now();
             let watcher = Watcher { stop, begin };
-            state.session.step(&watcher);
+            let is_done = state.session.step(&watcher);
             state.time += begin.elapsed();
+            is_done
         })
     }
 

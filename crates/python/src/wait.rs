@@ -4,20 +4,25 @@ use bidir::driver::{Threads, stand_alone, start_pool};
 use pyo3::prelude::*;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
-use std::sync::{Mutex, OnceLock, PoisonError};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::thread;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// The interval between checks for signals.
 const POLL: Duration = Duration::from_millis(50);
 
 /// A flag that asks an operation to stop.
 #[derive(Debug, Default)]
-pub(crate) struct Stop(AtomicBool);
+pub(crate) struct Stop(Arc<AtomicBool>);
 
 impl Stop {
     pub(crate) fn is_set(&self) -> bool {
         self.0.load(Ordering::Relaxed)
+    }
+
+    /// Returns the flag itself.
+    pub(crate) fn flag(&self) -> &Arc<AtomicBool> {
+        &self.0
     }
 
     fn set(&self) {
@@ -29,10 +34,11 @@ impl Stop {
 ///
 /// This thread checks for signals meanwhile, since only the interpreter's main thread receives Ctrl-C, and
 /// passes the messages of `work` to `hear`. If a signal or `hear` raises an exception, `work` is asked to
-/// stop, and the exception is returned after it has stopped. If the system cannot start a thread, `work` runs
+/// stop, and the exception is returned after it has stopped; it is asked to stop without one at `deadline`. If the system cannot start a thread, `work` runs
 /// on this one, and signals and messages wait until it ends.
 pub(crate) fn wait<T: Send, M: Send>(
     py: Python<'_>,
+    deadline: Option<Instant>,
     hear: impl FnMut(Python<'_>, M) -> PyResult<()> + Send,
     work: impl FnOnce(&Stop, &Sender<M>) -> T + Send,
 ) -> PyResult<T> {
@@ -49,12 +55,12 @@ pub(crate) fn wait<T: Send, M: Send>(
             let done = match worker {
                 Ok(worker) => {
                     drop(sender);
-                    let raised = listen(&receiver, hear, stop);
+                    let raised = listen(&receiver, hear, (stop, deadline));
                     return (worker.join(), raised);
                 }
                 Err(_) => run(sender),
             };
-            (Ok(done), listen(&receiver, hear, stop))
+            (Ok(done), listen(&receiver, hear, (stop, deadline)))
         })
     });
     match (done, raised) {
@@ -67,14 +73,18 @@ pub(crate) fn wait<T: Send, M: Send>(
     }
 }
 
-/// Passes messages to `hear` until the channel closes, and checks for signals. Returns the first exception.
+/// Passes messages to `hear` until the channel closes, checks for signals, and sets `stop` at `deadline`. Returns the
+/// first exception.
 fn listen<M: Send>(
     receiver: &Receiver<M>,
     mut hear: impl FnMut(Python<'_>, M) -> PyResult<()> + Send,
-    stop: &Stop,
+    (stop, deadline): (&Stop, Option<Instant>),
 ) -> Option<PyErr> {
     let mut raised = None;
     loop {
+        if deadline.is_some_and(|deadline| Instant::now() >= deadline) {
+            stop.set();
+        }
         let heard = match receiver.recv_timeout(POLL) {
             Ok(message) => Python::attach(|py| hear(py, message)),
             Err(RecvTimeoutError::Timeout) => Python::attach(check_signals),
@@ -112,7 +122,8 @@ fn check_signals(py: Python<'_>) -> PyResult<()> {
 /// Runs `work` like [`wait`], without messages.
 pub(crate) fn wait_silently<T: Send>(
     py: Python<'_>,
+    deadline: Option<Instant>,
     work: impl FnOnce(&Stop) -> T + Send,
 ) -> PyResult<T> {
-    wait(py, |_, ()| Ok(()), |stop, _| work(stop))
+    wait(py, deadline, |_, ()| Ok(()), |stop, _| work(stop))
 }

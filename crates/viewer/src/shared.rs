@@ -7,7 +7,7 @@ use crate::command::Command;
 use crate::frame::Frame;
 use crate::status::{LaneId, Status};
 use axum::body::Bytes;
-use bidir::driver::Session;
+use bidir::driver::{Session, Stop};
 use formats::film::FilmHeader;
 use std::collections::VecDeque;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -177,35 +177,37 @@ impl SharedState {
     }
 }
 
-/// The reasons to give up the running pass.
+/// The reasons to give up what is running: a pass, or training.
 #[derive(Debug, Default)]
 pub(crate) struct Interrupts {
-    moved: AtomicBool,
+    any: AtomicBool,
     changed: AtomicBool,
 }
 
 impl Interrupts {
-    /// True where the camera moved since the last [`Self::clear`].
-    pub(crate) fn is_moved(&self) -> bool {
-        self.moved.load(Ordering::Relaxed)
+    /// Asks to stop where the camera moved since the last [`Self::clear`], or another command ends the pass.
+    pub(crate) fn stop(&self) -> Stop<'_> {
+        Stop::when(&self.any)
     }
 
-    /// True where another command ends the pass.
-    pub(crate) fn is_changed(&self) -> bool {
-        self.changed.load(Ordering::Relaxed)
+    /// Asks to stop where a command ends the pass that is no move of the camera.
+    pub(crate) fn stop_unless_moved(&self) -> Stop<'_> {
+        Stop::when(&self.changed)
     }
 
     /// Forgets all, before requests are taken: later commands set it again.
     pub(crate) fn clear(&self) {
-        self.moved.store(false, Ordering::Relaxed);
+        self.any.store(false, Ordering::Relaxed);
         self.changed.store(false, Ordering::Relaxed);
     }
 
     fn note(&self, command: &Command) {
-        if command.is_move() {
-            self.moved.store(true, Ordering::Relaxed);
-        } else if command.ends_pass() {
+        let is_move = command.is_move();
+        if !is_move && command.ends_pass() {
             self.changed.store(true, Ordering::Relaxed);
+        }
+        if is_move || command.ends_pass() {
+            self.any.store(true, Ordering::Relaxed);
         }
     }
 }

@@ -1,9 +1,12 @@
 //! Instances: the same answers as copies, as tight as what they are made of, and errors for bad ones.
 
+use std::ops::ControlFlow;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use bidir_accel::{
-    Aabb, BuildError, BuildOptions, Bvh, Hit, Instance, InstanceError, Primitive, Ray, accept_all,
+    Aabb, BuildError, BuildOptions, Bvh, Hit, Instance, InstanceError, Isa, Primitive, Ray, Stop,
+    accept_all,
 };
 use glam::{DAffine3, DMat3, DVec3, Vec3};
 
@@ -191,6 +194,38 @@ fn own_primitives_come_first_in_ties() {
     assert_eq!(id(&only), Some((2.0_f32.to_bits(), 1)));
     let behind = |hit: &Hit| hit.instance > 2;
     assert_eq!(only.closest(&ray, behind).map(|hit| hit.instance), Some(3));
+}
+
+/// A thousand instances in one place, of which a ray looks at none after somebody asked to stop.
+#[test]
+fn stopped_rays_look_at_no_more_instances() {
+    let triangle = Primitive::Triangle([Vec3::ZERO, Vec3::X, Vec3::Y]);
+    let instance = Instance {
+        object: 0,
+        world_from_object: DAffine3::IDENTITY,
+    };
+    let ray = Ray::new(Vec3::new(0.2, 0.2, 2.0), -Vec3::Z);
+    for isa in Isa::supported() {
+        let bvh = placed_one(&[], &[&[triangle]], &[instance; 1000]);
+        let bvh = bvh.with_isa(isa).expect("supported");
+        for (stops, expected) in [(false, 1000), (true, 1)] {
+            let (flag, seen) = (AtomicBool::new(false), AtomicUsize::new(0));
+            let stop = Stop::when(&flag);
+            let _ = bvh.until(stop).each_hit(&ray, |_| {
+                seen.fetch_add(1, Ordering::Relaxed);
+                flag.store(stops, Ordering::Relaxed);
+                ControlFlow::Continue(())
+            });
+            assert_eq!(seen.load(Ordering::Relaxed), expected, "{isa}");
+            // From then on no question is answered.
+            let mut blocked = Vec::new();
+            bvh.until(stop).are_blocked(&[ray; 9], &mut blocked);
+            assert_eq!(blocked, [!stops; 9], "{isa}");
+            assert_eq!(bvh.until(stop).is_blocked(&ray), !stops);
+            let hit = bvh.until(stop).closest(&ray, accept_all);
+            assert_eq!(hit.is_some(), !stops, "{isa}");
+        }
+    }
 }
 
 #[test]

@@ -99,7 +99,7 @@ impl FirstSurface {
         }
         let (ray, _) = camera_ray(&context, sample);
         batch.stats.rays.camera += 1;
-        let chances = Chances::new(&sample.camera, 1);
+        let chances = Chances::new(&sample.camera, 1).until(job.stop);
         let hit = job.scene.intersect(ray.origin, ray.direction, chances)?;
         let u_mix = || sample.camera.get_1d(Dimension::at(1, Purpose::Mix));
         let (wo, beta) = (-ray.direction, Spectrum::ONE);

@@ -18,6 +18,7 @@ mod training;
 mod variance;
 
 pub use crate::settings::Settings;
+pub use accel::Stop;
 pub use budget::{Budget, Limit, Spent};
 pub use replay::{Landing, Replay, ReplayedTerm, Selection};
 pub use session::{SceneHandle, Session};
@@ -58,14 +59,15 @@ impl Resources {
     pub const DEFAULT_FILM_MEMORY: u64 = 16 << 30;
 }
 
-/// Receives progress from all threads, and decides if the render goes on.
+/// Receives progress from all threads, and says if the render goes on.
 pub trait Progress: Sync {
     /// Some `samples` more are done.
     fn advance(&self, samples: u64);
 
-    /// True to give up the running pass, which is then forgotten.
-    fn should_stop(&self) -> bool {
-        false
+    /// Asks to give up the running pass, which is then forgotten. All threads look at it before every ray, and on the
+    /// way of a ray before every instance.
+    fn stop(&self) -> Stop<'_> {
+        Stop::NEVER
     }
 
     /// The host's clock, which is looked at only where a film keeps
@@ -94,6 +96,9 @@ pub enum SessionError {
         /// [`LostLight::All`].
         lost: LostLight,
     },
+    /// The host asked to stop before training was complete.
+    #[error("stopped before the first pass")]
+    Stopped,
 }
 
 /// Renders `passes` passes.

@@ -150,7 +150,7 @@ impl ReplayedTerm {
         let transmittance = match ends {
             None => 1.0,
             Some([a, b]) if job.scene.has_media() => {
-                let edge = job.scene.edge(a, b, &context.wavelengths);
+                let edge = job.scene.edge([a, b], &context.wavelengths, job.stop);
                 // Rays that were traced have put T into their terms.
                 if let (Fate::NotTraced, Some(edge)) = (entry.fate, &edge) {
                     term.contribution *= edge.transmittance;

@@ -14,11 +14,12 @@ use super::deposit::Deposit;
 use super::features::{Features, Meter};
 use super::threads::{Shortage, Threads, Workers};
 use super::training::prepare;
-use super::{Effort, Progress, Replay, Resources, SessionError, Settings, Training};
+use super::{Effort, Progress, Replay, Resources, SessionError, Settings, Stop, Training};
 use crate::analysis::no_path;
 use crate::film::{Film, FilmError, MergeError, PassBuffer};
 use crate::guide::Guide;
 use crate::integrator::{Batch, IntegratorKind, Method, Sample, group_size};
+use crate::medium::MediumId;
 use crate::path::{Job, SampleCounts, camera_medium};
 use crate::sampler::{Domain, Sampler};
 use crate::scene::Scene;
@@ -85,11 +86,13 @@ pub struct Session<'a> {
     training: Option<Training>,
     film: Film,
     order: Order,
+    /// The medium around the camera.
+    medium: MediumId,
     /// No pass before this one is rendered.
     first_pass: u64,
     buffer: PassBuffer,
-    /// True from the beginning of a pass to its end: what a pass left that a panic of the host ended is
-    /// forgotten.
+    /// True from the beginning of a pass to its end: what a pass left that was given up, or that a panic of the host
+    /// ended, is forgotten.
     is_in_pass: bool,
     stats: Stats,
     stage_times: StageTimes,
@@ -101,7 +104,7 @@ pub struct Session<'a> {
 impl<'a> Session<'a> {
     /// A session that has rendered nothing but its training.
     ///
-    /// Errors: the film needs more memory than `resources` allow or the system has.
+    /// Errors: the film needs more memory than `resources` allow or the system has; `effort` asked to stop.
     pub fn new(
         scene: impl Into<SceneHandle<'a>>,
         view: &View,
@@ -131,11 +134,13 @@ impl<'a> Session<'a> {
         let buffer = PassBuffer::new(view.film(), film.layers())?;
         let workers = Workers::start(Threads::new(resources.threads));
         let threads = workers.count();
-        let (settings, training) = workers.install(|| prepare(&scene, view, settings, effort));
+        let prepared = workers.install(|| prepare(&scene, view, settings, effort));
+        let (settings, training) = prepared.ok_or(SessionError::Stopped)?;
         let rule = selector(&settings, training.as_ref());
         let method = Method::new(settings.integrator, rule, &settings.lvc);
         let order = workers.install(|| Order::new(view.film().crop, &method));
         Ok(Self {
+            medium: camera_medium(&scene, view),
             scene,
             view: view.clone(),
             settings,
@@ -177,7 +182,8 @@ impl<'a> Session<'a> {
     /// Renders the next pass. False: `progress` asked to stop, and the pass is forgotten.
     pub fn step(&mut self, progress: &dyn Progress) -> bool {
         if std::mem::replace(&mut self.is_in_pass, true) {
-            self.buffer.clear();
+            let buffer = &mut self.buffer;
+            self.workers.install(|| buffer.clear());
             self.take_counts();
         }
         let pass = self.next_pass();
@@ -197,16 +203,19 @@ impl<'a> Session<'a> {
             }
         });
         let (stats, stage_times) = self.take_counts();
-        let finished = !given_up.into_inner();
-        if finished {
-            self.stats += &stats;
-            self.stage_times += &stage_times;
-            let (film, buffer) = (&mut self.film, &self.buffer);
-            self.workers.install(|| film.add_pass(pass, buffer));
+        if given_up.into_inner() {
+            // The next pass clears what this one left: a host that stops does not wait for it.
+            return false;
         }
-        self.buffer.clear();
+        self.stats += &stats;
+        self.stage_times += &stage_times;
+        let (film, buffer) = (&mut self.film, &mut self.buffer);
+        self.workers.install(|| {
+            film.add_pass(pass, buffer);
+            buffer.clear();
+        });
         self.is_in_pass = false;
-        finished
+        true
     }
 
     /// The counters and times of all threads since the last call.
@@ -222,7 +231,7 @@ impl<'a> Session<'a> {
         (stats, stage_times)
     }
 
-    /// Renders runs of pixels until none is left. False: a run was given up.
+    /// Renders runs of pixels until none is left. False: one was given up.
     fn render_runs(
         &self,
         pass: u64,
@@ -230,6 +239,7 @@ impl<'a> Session<'a> {
         batch: &mut Batch,
         progress: &dyn Progress,
     ) -> bool {
+        let job = self.job(progress.stop());
         let pixels = self.view.film().crop.area();
         let shares_light = self.method.shares_light();
         let run = if shares_light {
@@ -242,15 +252,14 @@ impl<'a> Session<'a> {
             if begin >= pixels {
                 return true;
             }
-            if progress.should_stop() {
-                return false;
-            }
             let places = self.group(begin, run);
             if shares_light {
-                let keep = |batch: &mut Batch| self.deposit(&self.job()).take_splats(batch);
-                self.walk_light(places.clone(), pass, (batch, BATCH), keep);
+                let keep = |batch: &mut Batch| self.deposit(&job).take_splats(batch);
+                self.walk_light(&job, places.clone(), pass, (batch, BATCH), keep);
             }
-            self.render_run(places.clone(), pass, batch, progress);
+            if !self.render_run(&job, places.clone(), pass, (batch, progress)) {
+                return false;
+            }
             progress.advance(places.end - places.start);
         }
     }
@@ -264,14 +273,15 @@ impl<'a> Session<'a> {
         }
     }
 
-    fn job(&self) -> Job<'_> {
+    fn job<'j>(&'j self, stop: Stop<'j>) -> Job<'j> {
         Job {
             scene: &self.scene,
             view: &self.view,
             settings: &self.settings.path,
             counts: self.counts(),
             guide: self.guide(),
-            medium: camera_medium(&self.scene, &self.view),
+            medium: self.medium,
+            stop,
         }
     }
 
@@ -293,15 +303,15 @@ impl<'a> Session<'a> {
         training.filter(|_| self.settings.integrator == IntegratorKind::Lvc)
     }
 
-    /// Takes the samples at `places` batch by batch, and keeps what they found.
+    /// Takes the samples at `places` batch by batch, and keeps what they found. False: it was asked to stop, and they
+    /// are given up.
     fn render_run(
         &self,
+        job: &Job<'_>,
         mut places: Range<u64>,
         pass: u64,
-        batch: &mut Batch,
-        progress: &dyn Progress,
-    ) {
-        let job = self.job();
+        (batch, progress): (&mut Batch, &dyn Progress),
+    ) -> bool {
         let layers = self.film.layers();
         // Features are measured of one sample at a time.
         let size = if layers.features() > 0 { 1 } else { BATCH };
@@ -310,15 +320,20 @@ impl<'a> Session<'a> {
             batch.fill(samples.map(|place| self.sample(place, pass)));
             batch.stopwatch.begin_samples(batch.samples.len());
             let before = Meter::read(layers, batch, progress);
-            self.method.run(&job, batch);
-            self.deposit(&job).take(batch);
+            self.method.run(job, batch);
+            self.deposit(job).take(batch);
             if layers.features() > 0 {
                 let after = Meter::read(layers, batch, progress);
-                let features = Features::new(&job, layers, batch, [&before, &after]);
-                self.deposit(&job).take_features(batch, &features);
+                let features = Features::new(job, layers, batch, [&before, &after]);
+                self.deposit(job).take_features(batch, &features);
             }
             batch.stopwatch.end(Stage::Film);
+            // After the last ray: whoever saw the flag before, sees it here.
+            if job.stop.is_asked() {
+                return false;
+            }
         }
+        true
     }
 
     /// The sample at `place` in the order of a pass, with the light path that goes with it.
@@ -336,9 +351,9 @@ impl<'a> Session<'a> {
     pub fn replay(&self, pixel: [u32; 2], pass: u64) -> Option<Replay> {
         let [x, y] = pixel.map(i64::from);
         let place = self.order.place(self.view.film().crop.index(x, y)?);
-        let (job, mut batch) = (self.job(), Batch::default());
+        let (job, mut batch) = (self.job(Stop::NEVER), Batch::default());
         let shared = self.method.shares_light();
-        let brought = shared.then(|| self.replay_light(place, pass, &mut batch));
+        let brought = shared.then(|| self.replay_light(&job, place, pass, &mut batch));
         batch.fill([self.sample(place, pass)]);
         self.method.run(&job, &mut batch);
         let light = match brought.flatten() {

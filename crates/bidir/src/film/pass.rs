@@ -9,6 +9,7 @@ use super::memory::filled;
 use super::{FilmError, FilmSettings, Layers, SplatPlace};
 use crate::math::fixed::{self, FixedSum, LARGEST_CONTRIBUTION, VALUE_SCALE};
 use crate::spectrum::Rgb;
+use rayon::prelude::{ParallelIterator, ParallelSliceMut};
 use std::sync::atomic::{AtomicU32, Ordering};
 
 /// One pass while it is rendered: one camera sample per pixel, and splats anywhere. All threads
@@ -62,6 +63,12 @@ fn add<'a>(sums: impl Iterator<Item = &'a [FixedSum; 3]>, value: Rgb, weight: f3
     }
 }
 
+/// Calls `change` for each of `cells`, a thread for many of them.
+fn each<T: Send>(cells: &mut [T], change: impl Fn(&mut T) + Sync) {
+    let runs = cells.par_chunks_mut(1 << 16);
+    runs.for_each(|run| run.iter_mut().for_each(&change));
+}
+
 fn to_fixed(value: f32) -> i128 {
     fixed::from_f64(f64::from(value), VALUE_SCALE)
 }
@@ -88,14 +95,15 @@ impl PassBuffer {
         })
     }
 
-    /// Empties the buffer for the next pass.
+    /// Empties the buffer for the next pass, by the threads of the pool that it is called in.
     pub fn clear(&mut self) {
-        let cameras = self.camera.iter_mut().chain(&mut self.part_camera);
-        for bits in cameras.flatten().chain(&mut self.features) {
-            *bits.get_mut() = 0;
+        let clear_bits = |bits: &mut AtomicU32| *bits.get_mut() = 0;
+        for cells in [&mut self.camera, &mut self.part_camera] {
+            each(cells, |cell| cell.iter_mut().for_each(clear_bits));
         }
-        for sum in self.light.iter_mut().chain(&mut self.part_light).flatten() {
-            sum.clear();
+        each(&mut self.features, clear_bits);
+        for sums in [&mut self.light, &mut self.part_light] {
+            each(sums, |cell| cell.iter_mut().for_each(FixedSum::clear));
         }
     }
 

@@ -57,6 +57,7 @@ use crate::medium::MediumId;
 use crate::scene::Scene;
 use crate::spectrum::Wavelengths;
 use crate::view::View;
+use accel::Stop;
 
 /// The most vertices of any path, whatever the limits: a walk between perfect mirrors would not
 /// end.
@@ -117,6 +118,8 @@ pub struct Job<'a> {
     pub guide: Guide<'a>,
     /// The medium around the camera.
     pub medium: MediumId,
+    /// Asks to leave the samples: their rays then end anywhere, and what they found is worth nothing.
+    pub stop: Stop<'a>,
 }
 
 impl<'a> Job<'a> {
@@ -129,6 +132,7 @@ impl<'a> Job<'a> {
             counts: SampleCounts::of_own_subpaths(view.film()),
             guide: Guide::default(),
             medium: camera_medium(scene, view),
+            stop: Stop::NEVER,
         }
     }
 }

@@ -181,7 +181,7 @@ impl Walker<'_> {
     /// Adds vertex number `index`, the surface that `step` leads to.
     #[inline(always)]
     fn advance(&self, vertices: &mut Vec<Vertex>, step: &Step, index: usize) -> Option<End> {
-        let chances = Chances::new(self.stream, index);
+        let chances = Chances::new(self.stream, index).until(self.context.job.stop);
         let scene = self.context.job.scene;
         let Some(hit) = scene.intersect(step.origin, step.direction, chances) else {
             let from = vertices[vertices.len() - 1].locus;
@@ -202,7 +202,7 @@ impl Walker<'_> {
         let from = vertices[vertices.len() - 1].locus;
         let ray = accel::Ray::new(step.origin, step.direction);
         let medium = from.medium_toward(step.direction);
-        let chances = Chances::new(self.stream, index);
+        let chances = Chances::new(self.stream, index).until(self.context.job.stop);
         let (scene, wavelengths) = (self.context.job.scene, &self.context.wavelengths);
         let Advance {
             interaction,

@@ -14,7 +14,7 @@ use super::{Presence, Scene};
 use crate::math::Vec2;
 use crate::sampler::{Dimension, Purpose, SampleStream};
 use crate::texture::{TexturePoint, clamped_coverage};
-use accel::Hit;
+use accel::{Hit, Stop};
 use smallvec::SmallVec;
 use std::ops::ControlFlow;
 
@@ -23,6 +23,7 @@ use std::ops::ControlFlow;
 pub struct Chances<'a> {
     stream: &'a SampleStream,
     dimension: Dimension,
+    stop: Stop<'a>,
 }
 
 impl<'a> Chances<'a> {
@@ -32,7 +33,14 @@ impl<'a> Chances<'a> {
         Self {
             stream,
             dimension: Dimension::at(vertex, Purpose::Coverage),
+            stop: Stop::NEVER,
         }
+    }
+
+    /// The same, of a ray that nobody waits for once `stop` is asked for: it then ends anywhere, at once.
+    #[inline]
+    pub(crate) fn until(self, stop: Stop<'a>) -> Self {
+        Self { stop, ..self }
     }
 
     /// The numbers that decide by which lane of light, and how far, the ray goes through media.
@@ -82,10 +90,14 @@ impl Scene {
         chances: Chances<'_>,
         cross: impl Fn(&Hit),
     ) -> Option<Hit> {
+        let (bvh, stop) = (self.bvh.until(chances.stop), chances.stop);
         if self.is_opaque {
-            return self.bvh.closest(ray, accel::accept_all);
+            return bvh.closest(ray, accel::accept_all);
         }
-        self.bvh.closest(ray, |hit| {
+        bvh.closest(ray, |hit| {
+            if stop.is_asked() {
+                return true;
+            }
             let alpha = self.coverage(ray, hit);
             let stops = alpha >= 1.0 || alpha > 0.0 && chances.draw(hit) < alpha;
             if !stops {
@@ -96,14 +108,21 @@ impl Scene {
     }
 
     /// Π (1 - α) over everything that a shadow ray meets. Calls `cross` for surfaces that it passes, all of them where
-    /// anything arrives.
+    /// anything arrives. Any number where nobody waits for it, because `stop` was asked for.
     #[inline]
-    pub(super) fn visible_part(&self, ray: &accel::Ray, mut cross: impl FnMut(&Hit)) -> f32 {
+    pub(super) fn visible_part(
+        &self,
+        ray: &accel::Ray,
+        stop: Stop<'_>,
+        mut cross: impl FnMut(&Hit),
+    ) -> f32 {
+        let bvh = self.bvh.until(stop);
         if self.is_opaque {
-            return f32::from(!self.bvh.is_blocked(ray));
+            return f32::from(!bvh.is_blocked(ray));
         }
         let mut factors = Factors::default();
-        let flow = self.bvh.each_hit(ray, |hit| match self.coverage(ray, hit) {
+        let flow = bvh.each_hit(ray, |hit| match self.coverage(ray, hit) {
+            _ if stop.is_asked() => ControlFlow::Break(()),
             alpha if alpha >= 1.0 => ControlFlow::Break(()),
             alpha => {
                 cross(hit);
@@ -142,6 +161,12 @@ impl Factors {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::material::Material;
+    use crate::math::{Affine3A, Vec3};
+    use crate::scene::SceneBuilder;
+    use crate::shape::{Orientation, Shape, Sphere};
+    use crate::texture::{ColorTexture, FloatTexture};
+    use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
     #[test]
     fn products_do_not_depend_on_order() {
@@ -159,6 +184,37 @@ mod tests {
             assert_eq!(forwards.to_bits(), backwards.to_bits());
             let expected: f64 = numbers.iter().map(|&x| f64::from(x)).product();
             assert!((f64::from(forwards) - expected).abs() <= 1e-6 * expected);
+        }
+    }
+
+    /// Of a hundred veils in the way of a ray, those are passed that it comes to before somebody asks to stop.
+    #[test]
+    fn stopped_rays_look_at_no_more_surfaces() {
+        let mut builder = SceneBuilder::new();
+        let material = builder.material(Material::Diffuse {
+            reflectance: ColorTexture::Constant([0.5; 3]),
+        });
+        for _ in 0..100 {
+            let veil = Sphere::new(Affine3A::IDENTITY, 1.0, Orientation::Natural);
+            let veil = builder.shape(Shape::Sphere(veil), material, None);
+            builder.coverage(veil, FloatTexture::Constant(1e-3));
+        }
+        let scene = builder.build().expect("the scene is valid");
+        let ray = accel::Ray::new(Vec3::ZERO, Vec3::Z);
+        let stream = SampleStream::default();
+        for (stops, expected) in [(false, 100), (true, 1)] {
+            let seen = [(); 2].map(|()| AtomicUsize::new(0));
+            let flags = [(); 2].map(|()| AtomicBool::new(false));
+            let cross = |i: usize| {
+                seen[i].fetch_add(1, Ordering::Relaxed);
+                flags[i].store(stops, Ordering::Relaxed);
+            };
+            scene.visible_part(&ray, Stop::when(&flags[0]), |_| cross(0));
+            let chances = Chances::new(&stream, 1).until(Stop::when(&flags[1]));
+            scene.closest(&ray, chances, |_| cross(1));
+            assert_eq!(seen[0].load(Ordering::Relaxed), expected);
+            let walked = seen[1].load(Ordering::Relaxed);
+            assert!(if stops { walked == 1 } else { walked > 80 }, "{walked}");
         }
     }
 

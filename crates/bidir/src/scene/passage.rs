@@ -8,7 +8,7 @@ use crate::locus::{Locus, LocusKind};
 use crate::math::Vec3;
 use crate::medium::{Detail, Drawn, Medium, MediumId, MediumScattering, MediumSides, Stretch};
 use crate::spectrum::{Spectrum, Wavelengths};
-use accel::{Hit, Ray};
+use accel::{Hit, Ray, Stop};
 use smallvec::SmallVec;
 use std::cell::RefCell;
 use std::ops::ControlFlow;
@@ -315,17 +315,22 @@ impl Scene {
         Interaction::Medium(Locus::in_medium(point, medium), scattering)
     }
 
-    /// The media between two ends, of which at most one is at infinity. None: something opaque is there, or nothing
-    /// arrives.
+    /// The media between two ends, of which at most one is at infinity. None: something opaque is there, nothing
+    /// arrives, or nobody waits for it, because `stop` was asked for.
     #[inline(never)]
-    pub fn edge(&self, a: &Locus, b: &Locus, wavelengths: &Wavelengths) -> Option<Edge> {
+    pub fn edge(
+        &self,
+        [a, b]: [&Locus; 2],
+        wavelengths: &Wavelengths,
+        stop: Stop<'_>,
+    ) -> Option<Edge> {
         let ray = super::visibility::shadow_ray(a, b);
         let start = if a.is_infinite() { b } else { a };
         let unit = ray.direction.length();
         let mut crossings = SmallVec::<[Crossing; 8]>::new();
         let cross = |hit: &Hit| crossings.extend(self.crossing(&ray, hit));
-        let visible = self.visible_part(&ray, cross);
-        if visible <= 0.0 {
+        let visible = self.visible_part(&ray, stop, cross);
+        if visible <= 0.0 || stop.is_asked() {
             return None;
         }
         let passage = Passage::new(start.medium_toward(ray.direction), crossings, ray.t_max);

@@ -5,6 +5,7 @@
 
 use super::Scene;
 use crate::locus::Locus;
+use accel::Stop;
 
 /// Shadow rays that are traced together: memory for the next ones.
 #[derive(Debug, Default)]
@@ -19,14 +20,15 @@ impl Scene {
     /// lies between, 1 where nothing does. At most one end is at infinity.
     #[inline]
     pub fn transmittance(&self, a: &Locus, b: &Locus) -> f32 {
-        self.visible_part(&shadow_ray(a, b), |_| ())
+        self.visible_part(&shadow_ray(a, b), Stop::NEVER, |_| ())
     }
 
     /// The [transmittance](Self::transmittance) between each of these pairs of ends, in their order: less work for
-    /// each than for one alone.
+    /// each than for one alone. Any numbers once `stop` is asked for.
     pub(crate) fn transmittances<'a, 'm>(
         &self,
         ends: impl Iterator<Item = &'a [Locus; 2]>,
+        stop: Stop<'_>,
         memory: &'m mut ShadowRays,
     ) -> &'m [f32] {
         let ShadowRays {
@@ -38,10 +40,11 @@ impl Scene {
         rays.extend(ends.map(|[a, b]| shadow_ray(a, b)));
         transmittances.clear();
         if self.is_opaque {
-            self.bvh.are_blocked(rays, blocked);
+            self.bvh.until(stop).are_blocked(rays, blocked);
             transmittances.extend(blocked.iter().map(|&is_blocked| f32::from(!is_blocked)));
         } else {
-            transmittances.extend(rays.iter().map(|ray| self.visible_part(ray, |_| ())));
+            let visible = |ray| self.visible_part(ray, stop, |_| ());
+            transmittances.extend(rays.iter().map(visible));
         }
         transmittances
     }

@@ -34,7 +34,7 @@ fn walk(context: &PathContext<'_>, index: u64, [light, camera]: [&mut Subpaths; 
 pub(crate) fn edge(context: &PathContext<'_>, a: &Vertex, b: &Vertex) -> Option<Edge> {
     let scene = context.job.scene;
     if scene.has_media() {
-        return scene.edge(&a.locus, &b.locus, &context.wavelengths);
+        return scene.edge([&a.locus, &b.locus], &context.wavelengths, context.job.stop);
     }
     Some(Edge {
         transmittance: Spectrum::splat(1.0),

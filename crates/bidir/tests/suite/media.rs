@@ -8,6 +8,7 @@ use crate::common::{
     Shot, ShotBuilder, add_walls, builder, diffuse, emission, glass, narrow_camera, quad, settings,
     sphere,
 };
+use bidir::driver::Stop;
 use bidir::integrator::IntegratorKind;
 use bidir::light::{InfiniteLight, Light, SpotLight};
 use bidir::locus::Locus;
@@ -245,7 +246,7 @@ fn light_that_passes_a_hole_in_a_boundary_is_in_the_medium_behind_it() {
     let scene = finish(builder).scene;
     let [near, far] = [-1.0, 2.0].map(|z| Locus::in_space(Vec3::new(0.1, 0.2, z)));
     for (a, b) in [(&near, &far), (&far, &near)] {
-        let edge = scene.edge(a, b, &Wavelengths::default());
+        let edge = scene.edge([a, b], &Wavelengths::default(), Stop::NEVER);
         let arrives = edge.expect("half of the light passes").transmittance[0];
         assert!((arrives - 0.5 * libm::expf(-1.0)).abs() < 1e-4, "{arrives}");
     }

@@ -1,13 +1,13 @@
 //! The same passes have the same bits, however they are computed.
 
 use crate::common;
-use bidir::driver::{Progress, Resources, Session, Settings, render};
+use bidir::driver::{Progress, Resources, Session, Settings, Stop, render};
 use bidir::film::{Film, MergeError, PassBuffer, PassSet};
 use bidir::integrator::IntegratorKind;
 use bidir::light::{InfiniteLight, Light};
 use bidir::select::ShadowRays;
 use bidir::stats::{Stage, StageTimes};
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 fn settings(integrator: IntegratorKind, shadow_rays: &str) -> Settings {
@@ -115,37 +115,39 @@ fn a_session_counts_the_same_with_any_number_of_threads() {
     assert!(one.candidates > one.rays.connection);
 }
 
-/// Stops after some samples.
-struct StopAfter(AtomicU64);
+/// Asks to stop after the first run of pixels.
+struct StopAfterRun(AtomicBool);
 
-impl Progress for StopAfter {
-    fn advance(&self, samples: u64) {
-        self.0.fetch_sub(
-            samples.min(self.0.load(Ordering::Relaxed)),
-            Ordering::Relaxed,
-        );
+impl Progress for StopAfterRun {
+    fn advance(&self, _samples: u64) {
+        self.0.store(true, Ordering::Relaxed);
     }
 
-    fn should_stop(&self) -> bool {
-        self.0.load(Ordering::Relaxed) == 0
+    fn stop(&self) -> Stop<'_> {
+        Stop::when(&self.0)
     }
 }
 
+/// Whether a host asks before the pass or in it, in rays of a thread that ends its run later.
 #[test]
 fn a_pass_that_is_given_up_leaves_no_trace() {
     let scene = common::room_of(32, 0.0);
-    let settings = settings(IntegratorKind::Bdpt, "all");
-    let resources = with_threads(2);
-    let mut session = Session::new(&scene.scene, &scene.view, settings.clone(), &resources)
-        .expect("the film is small");
-    assert!(session.step(&()));
-    let before = session.stats().clone();
-    assert!(!session.step(&StopAfter(AtomicU64::new(1))));
-    assert_eq!((session.next_pass(), session.stats()), (1, &before));
-    assert!(session.step(&()));
-    let whole =
-        render(&scene.scene, &scene.view, &settings, 2, &resources).expect("the film is small");
-    assert!(*session.film() == whole);
+    for integrator in [IntegratorKind::Bdpt, IntegratorKind::Lvc] {
+        let settings = settings(integrator, "all");
+        let resources = with_threads(2);
+        let mut session = Session::new(&scene.scene, &scene.view, settings.clone(), &resources)
+            .expect("the film is small");
+        assert!(session.step(&()));
+        let before = session.stats().clone();
+        for asks_first in [false, true] {
+            assert!(!session.step(&StopAfterRun(AtomicBool::new(asks_first))));
+            assert_eq!((session.next_pass(), session.stats()), (1, &before));
+        }
+        assert!(session.step(&()));
+        let whole =
+            render(&scene.scene, &scene.view, &settings, 2, &resources).expect("the film is small");
+        assert!(*session.film() == whole);
+    }
 }
 
 /// A host whose code panics.
@@ -169,27 +171,6 @@ fn a_pass_that_the_host_ends_by_a_panic_leaves_no_trace() {
     assert!(session.step(&()) && other.step(&()));
     assert!(session.film() == other.film());
     assert_eq!(session.stats(), other.stats());
-}
-
-/// Asks to stop once, and never again.
-struct StopOnce(AtomicU64);
-
-impl Progress for StopOnce {
-    fn advance(&self, _samples: u64) {}
-
-    fn should_stop(&self) -> bool {
-        self.0.fetch_add(1, Ordering::Relaxed) == 0
-    }
-}
-
-#[test]
-fn a_pass_with_a_hole_is_never_added() {
-    let scene = common::room(0.0);
-    let settings = settings(IntegratorKind::Path, "all");
-    let mut session = Session::new(&scene.scene, &scene.view, settings, &with_threads(2))
-        .expect("the film is small");
-    assert!(!session.step(&StopOnce(AtomicU64::new(0))));
-    assert!(session.film().passes().is_empty());
 }
 
 /// The film of some passes, by a session that goes on with others.

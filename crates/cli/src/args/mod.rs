@@ -106,9 +106,9 @@ pub(crate) enum Command {
     /// filter. A glTF file is rendered with auto, at most 12 bounces, 64 samples per pixel and a height
     /// of 720 pixels.
     ///
-    /// Ctrl-C finishes the current pass and writes the image; a second Ctrl-C, or one before the first
-    /// pass, stops at once. With --checkpoint, Ctrl-C ends with exit code 75 once the film file has a pass;
-    /// the same command with --resume continues.
+    /// Ctrl-C leaves the current pass and writes the image of the complete ones, or nothing if there are
+    /// none; a second Ctrl-C stops at once. With --checkpoint, Ctrl-C ends with exit code 75 once the film
+    /// file has a pass; the same command with --resume continues.
     Render(Box<RenderArgs>),
     /// Render a scene in the browser: compare integrators, move the camera, inspect pixels.
     ///
@@ -137,7 +137,7 @@ pub(crate) enum Command {
     /// `films`, which --extend adds samples to. `bidir compare --reference` takes the folder, and refuses
     /// it if one of the first three files is missing or damaged.
     ///
-    /// Ctrl-C finishes the current pass and ends with exit code 75: the same command continues. The bits
+    /// Ctrl-C leaves the current pass and ends with exit code 75: the same command continues. The bits
     /// are those of an uninterrupted run.
     Reference(Box<ReferenceArgs>),
     /// Print error metrics of images against a reference.
@@ -167,7 +167,7 @@ pub(crate) enum Command {
     /// results.json with every record, report.html, records.ndjson to continue from, and the images of
     /// the first seed.
     ///
-    /// Budgets are equal samples, equal rays or equal time. Ctrl-C finishes the current pass and ends
+    /// Budgets are equal samples, equal rays or equal time. Ctrl-C leaves the current pass and ends
     /// with exit code 75: the same command continues.
     Experiment(ExperimentArgs),
     /// Inspect, develop or verify film files.

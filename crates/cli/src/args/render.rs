@@ -163,8 +163,8 @@ pub(crate) struct BudgetArgs {
     /// Stop after this time: 90, 90s, 10m, 1h30m.
     ///
     /// Counts training and checkpoints, not loading the scene and writing the image. A pass that would
-    /// not finish in time is not started, but every run renders at least one. Training takes at most
-    /// a tenth of it; shorter training means more noise.
+    /// not finish in time is not started, or left. If none is complete, that is an error, and no file is
+    /// written. Training takes at most a tenth of the time; shorter training means more noise.
     #[arg(long, env = "BIDIR_TIME", value_name = "DURATION")]
     pub(crate) time: Option<Duration>,
     /// Stop at this relative error, such as 0.05.
@@ -177,7 +177,7 @@ pub(crate) struct BudgetArgs {
 }
 
 /// The image's geometry.
-#[derive(Args, Debug)]
+#[derive(Args, Clone, Debug)]
 #[command(next_help_heading = "Image")]
 pub(crate) struct FilmArgs {
     /// Image size in pixels [default: the scene's].

@@ -7,6 +7,8 @@ use crate::signals::Signals;
 use formats::printable;
 use indicatif::ProgressBar;
 use lab::experiment::{Event, Observer};
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 use std::time::{Duration as Time, Instant};
 
 /// The least time between two lines, but for the first and the last.
@@ -26,7 +28,6 @@ pub(super) struct Watch<'a> {
     done: usize,
     /// Renders in all.
     of: usize,
-    has_said_stop: bool,
 }
 
 enum Channel {
@@ -51,7 +52,6 @@ impl<'a> Watch<'a> {
             before: 0,
             done: 0,
             of: 0,
-            has_said_stop: false,
         }
     }
 
@@ -142,13 +142,10 @@ impl Observer for Watch<'_> {
     }
 
     fn should_stop(&mut self) -> bool {
-        let is_asked = self.signals.exit().is_some();
-        if is_asked && !self.has_said_stop {
-            self.has_said_stop = true;
-            if let Channel::Lines(_) = self.channel {
-                say("stopping after the running pass; a second signal stops at once");
-            }
-        }
-        is_asked
+        self.signals.exit().is_some()
+    }
+
+    fn stop_flag(&self) -> Arc<AtomicBool> {
+        self.signals.stop_flag()
     }
 }

@@ -133,7 +133,7 @@ fn a_stopped_render_is_not_reported_as_complete() {
     stdout.read_to_string(&mut output).unwrap();
     assert_eq!(child.wait().unwrap().code(), Some(143));
     assert!(
-        output.contains("openjd_status: stopping after the running pass"),
+        output.contains("openjd_status: stopping; a second signal"),
         "{output}"
     );
     assert!(!output.contains("100.0"), "{output}");

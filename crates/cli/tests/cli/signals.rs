@@ -38,7 +38,7 @@ fn interrupted(place: &Workplace, arguments: &str, signals: &[(&str, &str)]) -> 
 }
 
 #[test]
-fn the_first_signal_ends_after_the_running_pass_with_an_image() {
+fn the_first_signal_ends_with_the_image_of_the_complete_passes() {
     for (signal, code) in [("INT", 130), ("TERM", 143)] {
         let place = Workplace::new();
         // A tenth of the time is reported after a second.
@@ -50,27 +50,54 @@ fn the_first_signal_ends_after_the_running_pass_with_an_image() {
     }
 }
 
+/// A film of 144 MB takes long to write.
 #[test]
 fn the_second_signal_ends_at_once() {
     let place = Workplace::new();
-    let start = Instant::now();
-    let arguments = "--size 1000x1000 --spp 1 --time 10 --threads 1";
-    let signals = [
-        ("Progress:", "INT"),
-        ("a second signal stops at once", "INT"),
-    ];
+    let arguments = "--size 1000x1000 --spp 1000000 --integrator path --checkpoint a.film";
+    let signals = [("pass 2", "INT"), ("a second signal stops at once", "INT")];
     interrupted(&place, arguments, &signals).expect(130);
-    assert!(start.elapsed() < Duration::from_secs(8));
-    assert!(!place.path("room.exr").exists());
+    assert!(!place.path("room.exr").exists() && !place.path("a.film").exists());
 }
 
 #[test]
-fn a_signal_during_the_last_pass_has_no_effect() {
+fn a_signal_in_the_only_pass_leaves_no_file() {
     let place = Workplace::new();
-    // The only pass is running when the signal comes.
-    let arguments = "--size 400x400 --spp 1 --time 10";
-    let ran = interrupted(&place, arguments, &[("Progress:", "INT")]);
-    ran.expect(0).says("1 sample per pixel");
+    let arguments = "--size 1000x1000 --spp 1 --time 1m --threads 1";
+    interrupted(&place, arguments, &[("Progress:", "INT")])
+        .expect(130)
+        .says("stopped before the first pass: nothing was written");
+    assert_eq!(place.names(), ["room.pbrt"]);
+}
+
+/// A scene whose rays pass twenty thousand surfaces that are nearly invisible.
+fn slow(place: &Workplace) {
+    let curtain = |i: i32| {
+        let height = -3.0 - f64::from(i) / 40_000.0;
+        format!(
+            "Shape \"disk\" \"float radius\" 3 \"float height\" {height} \"float alpha\" 1e-5\n"
+        )
+    };
+    let curtains: String = (0..20_000).map(curtain).collect();
+    place.write("room.pbrt", &(SCENE.to_owned() + &curtains));
+}
+
+/// A pass of a million samples takes minutes, and a batch of them half a second.
+#[test]
+fn without_a_complete_pass_in_time_nothing_is_written() {
+    let place = Workplace::new();
+    slow(&place);
+    let render = "render room.pbrt --size 1000x1000 --checkpoint a.film";
+    for integrator in ["path", "bdpt", "lvc"] {
+        let start = Instant::now();
+        place
+            .run(&format!("{render} --integrator {integrator} --time 1"))
+            .expect(7)
+            .says("no pass was complete after 1.00s: nothing was written")
+            .says("give it more --time, or make the image smaller with --size or --crop");
+        assert!(start.elapsed() < Duration::from_secs(60));
+        assert_eq!(place.names(), ["room.pbrt"]);
+    }
 }
 
 #[test]
@@ -88,15 +115,7 @@ fn with_a_film_file_the_render_can_continue() {
 
 /// Runs a render with long training, and sends a signal after its message.
 fn stopped_in_training(place: &Workplace, what: &str, signal: &str) -> Ran {
-    // Every ray from the camera passes thousands of surfaces that are nearly invisible.
-    let curtain = |i: i32| {
-        let height = -3.0 - f64::from(i) / 40_000.0;
-        format!(
-            "Shape \"disk\" \"float radius\" 3 \"float height\" {height} \"float alpha\" 1e-5\n"
-        )
-    };
-    let curtains: String = (0..20_000).map(curtain).collect();
-    place.write("room.pbrt", &(SCENE.to_owned() + &curtains));
+    slow(place);
     let long = "--integrator lvc --spp 100000";
     let mut command = place.command(&format!("render room.pbrt {long} {what}"));
     let mut child = command.stderr(Stdio::piped()).spawn().unwrap();

@@ -4,7 +4,7 @@ use super::error::{ExperimentError, Place};
 use super::{Experiment, MethodSpec, SceneSource, SceneSpec};
 use crate::image::Pixels;
 use crate::results::SceneInfo;
-use bidir::driver::{Resources, Session, Settings};
+use bidir::driver::{Effort, Resources, Session, SessionError, Settings, Stop};
 use bidir::film::Layers;
 use bidir::integrator::IntegratorKind;
 use bidir::scene::Scene;
@@ -111,21 +111,30 @@ impl<'a> LoadedScene<'a> {
         })
     }
 
-    /// Starts a session of this scene.
+    /// Starts a session of this scene. None: it was asked to stop in training.
     pub(super) fn session(
         &self,
         settings: Settings,
         threads: usize,
-    ) -> Result<Session<'_>, ExperimentError> {
+        stop: Stop<'_>,
+    ) -> Result<Option<Session<'_>>, ExperimentError> {
         let resources = Resources {
             threads,
             ..Resources::default()
         };
-        let session = Session::new(&self.scene, &self.view, settings, &resources);
-        session.map_err(|error| ExperimentError::Render {
-            scene: self.spec.name.clone(),
-            error,
-        })
+        let effort = Effort {
+            stop,
+            ..Effort::WHOLE
+        };
+        let (scene, view) = (&self.scene, &self.view);
+        match Session::with_effort(scene, view, settings, &resources, effort) {
+            Ok(session) => Ok(Some(session)),
+            Err(SessionError::Stopped) => Ok(None),
+            Err(error) => Err(ExperimentError::Render {
+                scene: self.spec.name.clone(),
+                error,
+            }),
+        }
     }
 
     /// Returns width and height of the images. Unit: pixels.

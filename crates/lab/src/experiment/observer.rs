@@ -1,6 +1,9 @@
 //! The host's view of a running experiment: events, a clock, and a way to stop.
 
 use crate::results::Record;
+use bidir::driver::{Progress, Stop};
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 
 /// The host of an experiment: receives events, supplies the clocks, and can stop the run.
 ///
@@ -21,6 +24,23 @@ pub trait Observer: Send {
     /// Returns true to stop; called before each pass. The unfinished render is then dropped.
     fn should_stop(&mut self) -> bool {
         false
+    }
+
+    /// Returns the flag that asks to leave the running pass or training, too. It is set only if
+    /// [`Self::should_stop`] then returns true.
+    fn stop_flag(&self) -> Arc<AtomicBool> {
+        Arc::default()
+    }
+}
+
+/// Leaves a pass when the flag of an observer is set.
+pub(super) struct Pass<'a>(pub(super) &'a AtomicBool);
+
+impl Progress for Pass<'_> {
+    fn advance(&self, _samples: u64) {}
+
+    fn stop(&self) -> Stop<'_> {
+        Stop::when(self.0)
     }
 }
 

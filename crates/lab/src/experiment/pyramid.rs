@@ -7,12 +7,12 @@ use super::error::ExperimentError;
 use super::journal::Journal;
 use super::loaded_scene::LoadedScene;
 use super::names::file_name;
-use super::observer::{Event, Observer};
+use super::observer::{Event, Observer, Pass};
 use super::run_set::{End, Setup};
 use super::{Experiment, MethodSpec, PyramidSpec, SceneSpec, is_in};
 use crate::pyramid::{self, Figures};
 use crate::results::{Pyramid, StrategyInfo};
-use bidir::driver::Session;
+use bidir::driver::{Session, Stop};
 use bidir::film::Layers;
 use formats::scene::Files;
 
@@ -148,17 +148,20 @@ impl PyramidRun<'_> {
         let mut settings = self.method.request.apply(&self.scene.settings);
         settings.seed = self.experiment.seeds.first;
         settings.layers = Layers::new(&[], &[], pyramid::VERTICES.into()).with_raw();
-        let mut session = self.scene.session(settings, self.experiment.threads)?;
+        let (flag, threads) = (observer.stop_flag(), self.experiment.threads);
+        let started = self.scene.session(settings, threads, Stop::when(&flag))?;
+        let Some(mut session) = started else {
+            return Ok(None);
+        };
         for passes in 0..self.spec.spp {
             observer.notify(Event::Pyramid {
                 scene: &self.scene.spec.name,
                 passes,
                 of: self.spec.spp,
             });
-            if observer.should_stop() {
+            if observer.should_stop() || !session.step(&Pass(&flag)) {
                 return Ok(None);
             }
-            session.step(&());
         }
         let images = file(self.scene);
         let film = session.film();

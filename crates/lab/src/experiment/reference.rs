@@ -12,12 +12,12 @@ use crate::image::Pixels;
 use crate::reference::{self as references, Host, Plan, Subject};
 use crate::seal::sha256;
 use bidir::ESTIMATOR_VERSION;
-use bidir::driver::{Progress, Resources};
+use bidir::driver::{Progress, Resources, Stop};
 use bidir::integrator::IntegratorKind;
 use bidir::path::{MisHeuristic, Strategies};
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::{Mutex, PoisonError};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
 
 type Result<T> = std::result::Result<T, ExperimentError>;
 
@@ -301,6 +301,7 @@ struct Watch<'a> {
     samples_per_pass: u64,
     passes: u64,
     samples: AtomicU64,
+    flag: Arc<AtomicBool>,
     observer: Mutex<&'a mut dyn Observer>,
 }
 
@@ -311,6 +312,7 @@ impl<'a> Watch<'a> {
             samples_per_pass: loaded.view.film().crop.area().max(1),
             passes: 2 * plan.rounded_spp(),
             samples: AtomicU64::new(0),
+            flag: observer.stop_flag(),
             observer: Mutex::new(observer),
         }
     }
@@ -337,6 +339,10 @@ impl<'a> Watch<'a> {
 impl Progress for Watch<'_> {
     fn advance(&self, samples: u64) {
         self.samples.fetch_add(samples, Ordering::Relaxed);
+    }
+
+    fn stop(&self) -> Stop<'_> {
+        Stop::when(&self.flag)
     }
 
     fn nanoseconds(&self) -> u64 {

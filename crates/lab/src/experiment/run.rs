@@ -3,12 +3,12 @@
 use super::error::ExperimentError;
 use super::loaded_scene::{LoadedScene, Reference};
 use super::names::file_name;
-use super::observer::Observer;
+use super::observer::{Observer, Pass};
 use super::{BudgetSpec, MethodSpec};
 use crate::image::{Pair, Pixels};
 use crate::metric::Metric;
 use crate::results::{BudgetKind, Rays, Record};
-use bidir::driver::Session;
+use bidir::driver::{Session, Stop};
 use bidir::film::Picture;
 use formats::image::{ExrImage, ExrLayer};
 use std::collections::BTreeMap;
@@ -45,7 +45,11 @@ impl Run<'_> {
         settings.seed = self.seed;
         let mut time = Moment::default();
         let begin = Moment::now(observer);
-        let mut session = self.scene.session(settings, threads)?;
+        let flag = observer.stop_flag();
+        let started = self.scene.session(settings, threads, Stop::when(&flag))?;
+        let Some(mut session) = started else {
+            return Ok(None);
+        };
         time.add_since(begin, observer);
         let training = time;
         while self.allows_another_pass(&session, time.seconds, training.seconds) {
@@ -53,7 +57,9 @@ impl Run<'_> {
                 return Ok(None);
             }
             let begin = Moment::now(observer);
-            session.step(&());
+            if !session.step(&Pass(&flag)) {
+                return Ok(None);
+            }
             time.add_since(begin, observer);
         }
         Ok(Some(Rendered {

@@ -3,7 +3,7 @@
 use super::make::{Host, Subject};
 use super::{Error, FILMS, REPLICATES};
 use crate::image::Pixels;
-use bidir::driver::{Resources, Session, Settings};
+use bidir::driver::{Effort, Resources, Session, SessionError, Settings};
 use bidir::film::{Film, PassSet};
 use formats::film::{FilmFile, FilmHeader, Stopping};
 use std::path::{Path, PathBuf};
@@ -117,6 +117,21 @@ impl Estimator<'_> {
         })
     }
 
+    /// Starts the session of a replicate. None: the host asked to stop in training.
+    fn session(&self, settings: &Settings, host: Host<'_>) -> Result<Option<Session<'_>>, Error> {
+        let Subject { scene, view, .. } = self.subject;
+        let effort = Effort {
+            stop: host.progress.stop(),
+            ..Effort::WHOLE
+        };
+        let settings = settings.clone();
+        match Session::with_effort(*scene, view, settings, self.resources, effort) {
+            Ok(session) => Ok(Some(session)),
+            Err(SessionError::Stopped) => Ok(None),
+            Err(error) => Err(error.into()),
+        }
+    }
+
     fn render(
         &self,
         path: &Path,
@@ -126,12 +141,9 @@ impl Estimator<'_> {
     ) -> Result<Option<FilmFile>, Error> {
         let start = host.progress.nanoseconds();
         let since = |start| Duration::from_nanos(host.progress.nanoseconds().saturating_sub(start));
-        let mut session = Session::new(
-            self.subject.scene,
-            self.subject.view,
-            settings.clone(),
-            self.resources,
-        )?;
+        let Some(mut session) = self.session(settings, host)? else {
+            return Ok(None);
+        };
         let header = self.subject.identity();
         let header = header.header(settings, session.training());
         let before = earlier.as_ref().map(|file| file.header.clone());

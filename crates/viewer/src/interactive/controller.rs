@@ -7,7 +7,7 @@ use super::slot::{RenderSlot, without_training};
 use crate::shared::{Request, RequestQueue};
 use crate::status::{LaneId, State, Status};
 use crate::view::{Course, RenderView};
-use bidir::driver::{Resources, Session, Settings};
+use bidir::driver::{Effort, Resources, Session, SessionError, Settings};
 use bidir::film::{Aov, Layers};
 use bidir::path::PathRoulette;
 use bidir::scene::Scene;
@@ -168,30 +168,42 @@ impl RenderController {
         }
         self.state = State::Preparing;
         self.publish();
-        match self.make_slots() {
+        let view = match self.camera.current() {
+            Ok(view) => view,
+            Err(error) => return self.fail(error.to_string()),
+        };
+        match self.make_slots(&view) {
             Ok(slots) => {
                 self.slots = slots;
                 self.state = State::Rendering;
                 self.log_begin();
             }
-            Err(message) => {
-                self.log(&message);
-                self.message = Some(message);
-                self.state = State::Failed;
-            }
+            // A command that came in training is taken next, and then it is repeated.
+            Err(SessionError::Stopped) => self.is_stale = true,
+            Err(error) => self.fail(error.to_string()),
         }
         self.publish();
     }
 
-    fn make_slots(&self) -> Result<Vec<RenderSlot>, String> {
-        let view = self.camera.current().map_err(|error| error.to_string())?;
+    fn fail(&mut self, message: String) {
+        self.log(&message);
+        self.message = Some(message);
+        self.state = State::Failed;
+    }
+
+    fn make_slots(&self, view: &View) -> Result<Vec<RenderSlot>, SessionError> {
         let wanted = LaneId::ALL.into_iter().zip(&self.wanted);
         wanted
-            .map(|(lane, wanted)| self.slot(lane, wanted, &view))
+            .map(|(lane, wanted)| self.slot(lane, wanted, view))
             .collect()
     }
 
-    fn slot(&self, lane: LaneId, wanted: &Settings, view: &View) -> Result<RenderSlot, String> {
+    fn slot(
+        &self,
+        lane: LaneId,
+        wanted: &Settings,
+        view: &View,
+    ) -> Result<RenderSlot, SessionError> {
         let course = Course {
             generation: self.generation,
             preview: self.camera.is_preview(),
@@ -203,8 +215,11 @@ impl RenderController {
             wanted.clone()
         };
         let scene = Arc::clone(&self.scene);
-        let session = Session::new(scene, view, settings.clone(), &self.resources)
-            .map_err(|error| error.to_string())?;
+        let effort = Effort {
+            stop: self.queue.interrupts().stop(),
+            ..Effort::WHOLE
+        };
+        let session = Session::with_effort(scene, view, settings.clone(), &self.resources, effort)?;
         Ok(RenderSlot {
             header: self.header(&settings, &session),
             session,

@@ -2,7 +2,7 @@
 
 use crate::shared::{Interrupts, Query, SharedState, Subject};
 use crate::view::RenderView;
-use bidir::driver::{Progress, Session, Settings};
+use bidir::driver::{Progress, Session, Settings, Stop};
 use bidir::integrator::IntegratorKind;
 use bidir::path::PathRoulette;
 use bidir::settings::{Choice, Request};
@@ -28,8 +28,12 @@ struct Watch<'a> {
 impl Progress for Watch<'_> {
     fn advance(&self, _samples: u64) {}
 
-    fn should_stop(&self) -> bool {
-        self.interrupts.is_changed() || (self.interrupts.is_moved() && !self.is_patient)
+    fn stop(&self) -> Stop<'_> {
+        if self.is_patient {
+            self.interrupts.stop_unless_moved()
+        } else {
+            self.interrupts.stop()
+        }
     }
 
     fn nanoseconds(&self) -> u64 {

@@ -2,6 +2,7 @@
 
 use super::Session;
 use crate::integrator::{Batch, Entry, begin_group, end_group, group_size, walk_group};
+use crate::path::Job;
 use crate::stats::{Stage, Stats};
 use std::ops::Range;
 
@@ -29,23 +30,23 @@ impl Session<'_> {
     /// them.
     pub(super) fn walk_light(
         &self,
+        job: &Job<'_>,
         places: Range<u64>,
         pass: u64,
         (batch, size): (&mut Batch, usize),
         mut keep: impl FnMut(&mut Batch),
     ) {
-        let job = self.job();
         begin_group(batch);
         let mut bringers = self.bringers(places).peekable();
         while bringers.peek().is_some() {
             batch.stopwatch.begin_light();
             let places = bringers.by_ref().take(size);
             batch.fill(places.map(|place| self.sample(place, pass)));
-            walk_group(&job, batch);
+            walk_group(job, batch);
             keep(batch);
             batch.stopwatch.end(Stage::Film);
         }
-        end_group(&job, batch);
+        end_group(job, batch);
     }
 
     /// How many light subpaths a pass has.
@@ -58,6 +59,7 @@ impl Session<'_> {
     /// anything is counted, by its number and its splats. None: another sample brings it.
     pub(super) fn replay_light(
         &self,
+        job: &Job<'_>,
         place: u64,
         pass: u64,
         batch: &mut Batch,
@@ -66,7 +68,7 @@ impl Session<'_> {
         let group = self.group(place / size * size, size);
         let pixel = self.sample(place, pass).pixel;
         let (mut own, mut own_stats) = (None, Stats::default());
-        self.walk_light(group, pass, (batch, 1), |batch| {
+        self.walk_light(job, group, pass, (batch, 1), |batch| {
             let stats = std::mem::take(&mut batch.stats);
             if batch.samples[0].pixel == pixel {
                 own = Some((batch.light.count() - 1, std::mem::take(&mut batch.splats)));

@@ -1,5 +1,7 @@
 //! The limits of training.
 
+use accel::Stop;
+
 /// The limits of training. A host that has little time for it renders with the results of fewer samples: with
 /// more noise, but of the same image.
 #[derive(Clone, Copy)]
@@ -9,6 +11,8 @@ pub struct Effort<'a> {
     pub samples: u64,
     /// Training ends when it returns true, with the samples of the complete rounds. All threads call it.
     pub is_late: IsLate<'a>,
+    /// Asks to give up training, and the session with it.
+    pub stop: Stop<'a>,
 }
 
 /// True where training is to end.
@@ -25,6 +29,7 @@ impl Effort<'_> {
         Effort {
             samples,
             is_late: &|| false,
+            stop: Stop::NEVER,
         }
     }
 }

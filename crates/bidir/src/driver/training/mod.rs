@@ -64,23 +64,23 @@ struct Task<'a> {
 }
 
 /// The settings with everything decided that they leave open, and what was learned, where anything had
-/// to be.
+/// to be. None: it was asked to stop.
 pub(super) fn prepare(
     scene: &Scene,
     view: &View,
     settings: Settings,
     effort: Effort<'_>,
-) -> (Settings, Option<Training>) {
+) -> Option<(Settings, Option<Training>)> {
     let is_open = settings.integrator == IntegratorKind::Auto;
     if !is_open && !settings.needs_training() {
-        return (settings, None);
+        return Some((settings, None));
     }
     let task = Task {
         scene,
         view,
         settings: &settings,
     };
-    let survey = Survey::run(task, effort);
+    let survey = Survey::run(task, effort)?;
     let plan = is_open.then(|| Plan::best(task, &survey));
     let mut decided = plan.map_or_else(|| settings.clone(), |plan| plan.apply(&settings));
     let mut training = Training::new(&survey);
@@ -90,7 +90,7 @@ pub(super) fn prepare(
         samples_per_subpath: decided.lvc.samples_per_subpath,
         ..plan
     });
-    (decided, Some(training))
+    Some((decided, Some(training)))
 }
 
 impl Settings {

@@ -16,6 +16,7 @@ use crate::scene::Scene;
 use crate::select::{Candidate, ShadowRays};
 use crate::stats::Stats;
 use crate::view::View;
+use accel::Stop;
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -35,20 +36,20 @@ pub(super) struct Survey {
 }
 
 impl Survey {
-    pub(super) fn run(task: Task<'_>, effort: Effort<'_>) -> Self {
-        let surveyor = Surveyor::new(task);
-        let first = surveyor.round(0..FIRST_SAMPLES, &|| false);
-        let mut survey = first.unwrap_or_default();
+    /// The samples of training. None: it was asked to stop.
+    pub(super) fn run(task: Task<'_>, effort: Effort<'_>) -> Option<Self> {
+        let surveyor = Surveyor::new(task, effort.stop);
+        let mut survey = surveyor.round(0..FIRST_SAMPLES, &|| false)?;
         let pixels = task.view.film().crop.area();
         let wanted = extent::samples(pixels, extent::work(&survey.stats));
         loop {
             let count = survey.stats.samples;
             survey.is_short = count < wanted;
             if !survey.is_short || 2 * count > effort.samples {
-                return survey;
+                return Some(survey);
             }
             let Some(more) = surveyor.round(count..2 * count, effort.is_late) else {
-                return survey;
+                return (!effort.stop.is_asked()).then_some(survey);
             };
             survey.add(more);
         }
@@ -112,10 +113,11 @@ struct Surveyor<'a> {
     view: &'a View,
     settings: Settings,
     method: Method,
+    stop: Stop<'a>,
 }
 
 impl<'a> Surveyor<'a> {
-    fn new(task: Task<'a>) -> Self {
+    fn new(task: Task<'a>, stop: Stop<'a>) -> Self {
         let mut settings = task.settings.clone();
         // Shares of paths are those of these weights.
         settings.path.mis = MisHeuristic::Balance;
@@ -125,10 +127,12 @@ impl<'a> Surveyor<'a> {
             view: task.view,
             settings,
             method: Method::Bdpt(all),
+            stop,
         }
     }
 
-    /// Takes samples in groups, whose results are in order whichever threads had them. None: it became late.
+    /// Takes samples in groups, whose results are in order whichever threads had them. None: it became late, or was
+    /// asked to stop.
     fn round(&self, numbers: Range<u64>, is_late: IsLate<'_>) -> Option<Survey> {
         let count = numbers.end - numbers.start;
         let size = (count / GROUPS).max(1);
@@ -141,6 +145,9 @@ impl<'a> Surveyor<'a> {
             let mut survey = Survey::default();
             for number in begin..begin + size {
                 self.sample(number, batch, &mut survey);
+                if self.stop.is_asked() {
+                    return None;
+                }
             }
             survey.stats = std::mem::take(&mut batch.stats);
             Some(survey)
@@ -158,7 +165,10 @@ impl<'a> Surveyor<'a> {
         let camera = sampler.stream(Domain::TrainingCamera, number, 0);
         let light = sampler.stream(Domain::TrainingLight, 0, number);
         let pixel = spread::point(&self.view.film().crop, number);
-        let job = Job::of_own_subpaths(self.scene, self.view, &self.settings.path);
+        let job = Job {
+            stop: self.stop,
+            ..Job::of_own_subpaths(self.scene, self.view, &self.settings.path)
+        };
         batch.fill([Sample::new(self.scene, 0, pixel, camera, light)]);
         self.method.run(&job, batch);
         survey.keep(&job, batch);
@@ -168,7 +178,7 @@ impl<'a> Surveyor<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::driver::training::tests::{lamp, view};
+    use crate::driver::training::tests::{lamp, surveyed, view};
     use crate::driver::{Resources, Session};
     use crate::film::PixelRect;
     use crate::film::{FilmSettings, Filter};
@@ -212,7 +222,7 @@ mod tests {
             view: &view,
             settings: &settings,
         };
-        let survey = Survey::run(task, Effort::WHOLE);
+        let survey = surveyed(task, Effort::WHOLE);
         let longest = survey.stats.samples * (MAX_VERTICES as u64 - 1);
         assert_eq!(survey.stats.rays.camera, longest);
         // All pairs are half a million.
@@ -247,7 +257,7 @@ mod tests {
                 view: &view,
                 settings: &settings,
             };
-            let survey = Survey::run(task, Effort::WHOLE);
+            let survey = surveyed(task, Effort::WHOLE);
             survey.luminance / survey.samples()
         });
         let trained = trainings.sum::<f64>() as f32 / 16.0;

@@ -1,6 +1,6 @@
 use super::*;
 use crate::camera::{Camera, Perspective, PerspectiveSettings};
-use crate::driver::{Resources, Session};
+use crate::driver::{Resources, Session, SessionError, Stop};
 use crate::film::{FilmSettings, Filter, FilterKind, PixelRect};
 use crate::integrator::SamplesPerSubpath;
 use crate::light::EmissionSides;
@@ -9,7 +9,7 @@ use crate::math::{Affine3A, Vec2, Vec3};
 use crate::scene::{Emission, SceneBuilder};
 use crate::shape::{Orientation, Shape, Sphere};
 use crate::texture::ColorTexture;
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 pub(super) const WHOLE: PixelRect = PixelRect {
     min: [0; 2],
@@ -32,6 +32,12 @@ pub(super) fn view(crop: PixelRect) -> View {
     });
     let camera = Camera::Perspective(camera.expect("a rigid camera"));
     View::new(camera, film).expect("the film is not empty")
+}
+
+/// The samples of training that nobody stops.
+#[track_caller]
+pub(super) fn surveyed(task: Task<'_>, effort: Effort<'_>) -> Survey {
+    Survey::run(task, effort).expect("nobody stops it")
 }
 
 /// A diffuse surface.
@@ -88,7 +94,8 @@ pub(super) fn room_with(ball: Material) -> Scene {
 fn planned(z: f32, radiance: Option<[f32; 3]>) -> IntegratorKind {
     let scene = sphere(z, radiance);
     let settings = Settings::new(IntegratorKind::Auto);
-    let (decided, training) = prepare(&scene, &view(WHOLE), settings, Effort::WHOLE);
+    let prepared = prepare(&scene, &view(WHOLE), settings, Effort::WHOLE);
+    let (decided, training) = prepared.expect("nobody stops it");
     let plan = training.and_then(|training| training.plan);
     assert_eq!(plan.map(|plan| plan.integrator), Some(decided.integrator));
     decided.integrator
@@ -112,7 +119,7 @@ fn long_light_subpaths_are_few() {
         view: &view(WHOLE),
         settings: &settings,
     };
-    let mut training = Training::new(&Survey::run(task, Effort::at_most(16)));
+    let mut training = Training::new(&surveyed(task, Effort::at_most(16)));
     let film = FilmSettings::new([1024; 2], Filter::default());
     for (rays, expected) in [(5.0, 2), (128.0, 2), (200.0, 4), (1023.0, 16)] {
         training.subpath_rays = rays;
@@ -172,6 +179,7 @@ fn training_that_ends_late_is_training_with_as_many_samples() {
             let effort = Effort {
                 samples: u64::MAX,
                 is_late: &|| asked.fetch_add(1, Ordering::Relaxed) >= questions,
+                stop: Stop::NEVER,
             };
             let late = rendered(integrator, effort);
             assert_eq!(late.1, expected, "{integrator:?}");
@@ -179,5 +187,27 @@ fn training_that_ends_late_is_training_with_as_many_samples() {
         }
         let limited = [31, 16, 0].map(|samples| rendered(integrator, Effort::at_most(samples)).1);
         assert_eq!(limited, [16; 3]);
+    }
+}
+
+/// Whether a host asks before training or while it runs, there is no session.
+#[test]
+fn training_that_is_stopped_makes_no_session() {
+    let scene = room();
+    for questions in [0, 70] {
+        let (asked, flag) = (AtomicU64::new(0), AtomicBool::new(questions == 0));
+        let effort = Effort {
+            samples: u64::MAX,
+            is_late: &|| {
+                let is_due = asked.fetch_add(1, Ordering::Relaxed) >= questions;
+                flag.fetch_or(is_due, Ordering::Relaxed);
+                false
+            },
+            stop: Stop::when(&flag),
+        };
+        let settings = Settings::new(IntegratorKind::Lvc);
+        let resources = Resources::default();
+        let session = Session::with_effort(&scene, &view(WHOLE), settings, &resources, effort);
+        assert!(matches!(session, Err(SessionError::Stopped)));
     }
 }

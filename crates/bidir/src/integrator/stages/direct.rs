@@ -58,7 +58,7 @@ pub(in super::super) fn direct(job: &Job<'_>, batch: &mut Batch) {
             }
         }
     }
-    trace(job.scene, entries, shadow_rays, stats);
+    trace(job, entries, shadow_rays, stats);
     batch.stopwatch.end(Stage::Direct);
 }
 

@@ -63,7 +63,7 @@ pub(in super::super) fn light_image(job: &Job<'_>, batch: &mut Batch, weighting:
             }
         }
     }
-    trace(job.scene, splats, shadow_rays, stats);
+    trace(job, splats, shadow_rays, stats);
     batch.stopwatch.end(Stage::LightImage);
 }
 

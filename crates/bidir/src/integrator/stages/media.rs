@@ -33,7 +33,7 @@ impl ShadowPassage {
         if scene.is_clear(&a, &b) {
             return Self::Clear;
         }
-        Self::Traced(scene.edge(&a, &b, &context.wavelengths))
+        Self::Traced(scene.edge([&a, &b], &context.wavelengths, context.job.stop))
     }
 
     /// The media, where there are any and something arrives.

@@ -4,7 +4,7 @@ use super::super::{Batch, Entry, Fate, Link};
 use super::media::settle_chosen;
 use crate::contribution::Contribution;
 use crate::path::Job;
-use crate::scene::{Scene, ShadowRays};
+use crate::scene::ShadowRays;
 use crate::select::{Chosen, Draws, Selector};
 use crate::stats::{Stage, Stats};
 
@@ -64,19 +64,19 @@ pub(in super::super) fn shadow_rays(job: &Job<'_>, batch: &mut Batch) {
         stats,
         ..
     } = batch;
-    trace(job.scene, entries, shadow_rays, stats);
+    trace(job, entries, shadow_rays, stats);
     batch.stopwatch.end(Stage::Shadow);
 }
 
 /// Traces the shadow rays of `entries`, all together, and notes what arrives.
 pub(super) fn trace(
-    scene: &Scene,
+    job: &Job<'_>,
     entries: &mut [Entry],
     memory: &mut ShadowRays,
     stats: &mut Stats,
 ) {
     let ends = entries.iter().filter_map(Entry::shadow_ray);
-    let transmittances = scene.transmittances(ends, memory);
+    let transmittances = job.scene.transmittances(ends, job.stop, memory);
     let traced = entries.iter_mut();
     let traced = traced.filter(|entry| entry.shadow_ray().is_some());
     for (entry, &transmittance) in traced.zip(transmittances) {

@@ -8,6 +8,7 @@ use crate::scene::SceneBuilder;
 use crate::shape::{Orientation, Shape, Sphere};
 use crate::spectrum::Rgb;
 use crate::testing::{Battery, Domain, Grid, check_close, samples};
+use std::sync::atomic::AtomicBool;
 
 /// How far collisions are counted, from `START` along +z. Unit: m.
 const REACH: f32 = 6.0;
@@ -82,8 +83,17 @@ fn density(scene: &Scene, t: f32) -> f32 {
         return 0.0;
     }
     let end = Locus::in_medium(point, here);
-    let edge = scene.edge(&start, &end, &Wavelengths::default());
+    let edge = scene.edge([&start, &end], &Wavelengths::default(), Stop::NEVER);
     edge.map_or(0.0, |edge| edge.to_b)
+}
+
+/// Nothing arrives by a ray that nobody waits for, and a walk ends where its ray began.
+#[test]
+fn stopped_rays_go_through_no_media() {
+    let (scene, flag) = (ball_in_fog(), AtomicBool::new(true));
+    let ends = [START, -START].map(Locus::in_space);
+    let edge = |stop| scene.edge([&ends[0], &ends[1]], &Wavelengths::default(), stop);
+    assert!(edge(Stop::NEVER).is_some() && edge(Stop::when(&flag)).is_none());
 }
 
 #[test]

@@ -4,6 +4,8 @@ use super::super::color::to_rec709;
 use super::super::reader::Reader;
 use super::super::shape::check_point;
 use super::{color, glow, own_coefficients, phase, scale, scaled};
+use crate::error::ErrorKind;
+use crate::limits::LONGEST_GRID;
 use crate::pbrt::parameters::{Parameter, ParameterType, Values};
 use crate::pbrt::transform::Transforms;
 use crate::source::{Fault, Span};
@@ -195,6 +197,14 @@ pub(super) fn build<const N: usize>(
     values: Vec<[f32; N]>,
     cells: Cells,
 ) -> Result<Grid<N>, Fault> {
+    let [nx, ny, nz] = cells.size;
+    if nx.max(ny).max(nz) > LONGEST_GRID {
+        let message = format!(
+            "the grid has {nx} · {ny} · {nz} cells, but may have only {LONGEST_GRID} along an axis"
+        );
+        let hint = "make it coarser, or cut it into media side by side";
+        return Err(Fault::new(ErrorKind::Limit, span, message).with_hint(hint));
+    }
     Grid::new(cells.size, values, cells.place).ok_or_else(|| {
         let message = "the box of the medium has no volume, or its coefficients are too large";
         Fault::scene(span, message)

@@ -473,6 +473,20 @@ fn grids_too_large_or_too_small_to_compute_with_are_refused() {
         &format!("\"rgb sigma_s\" [1 1 1] {most}"),
         "s.pbrt:2:63: `sigma_s` has 1 values, but must have 2147483647 · 2147483647 · 2147483647",
     );
+    for (size, expected) in [
+        ("nx", "16385 · 1 · 1"),
+        ("ny", "1 · 16385 · 1"),
+        ("nz", "1 · 1 · 16385"),
+    ] {
+        let values = "1 ".repeat(16385);
+        check(
+            "uniformgrid",
+            &format!("\"float density\" [{values}] \"integer {size}\" 16385"),
+            &format!(
+                "s.pbrt:2:69: the grid has {expected} cells, but may have only 16384 along an axis"
+            ),
+        );
+    }
     check(
         "cloud",
         "\"point3 p1\" [1e-44 1e-44 1e-44]",
