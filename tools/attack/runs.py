@@ -8,7 +8,7 @@ import sys
 import time
 
 # The exit codes of docs/reference/cli.md that a program may choose itself.
-DOCUMENTED = {0, 1, 2, 3, 4, 5, 6, 75, 130, 143}
+DOCUMENTED = {0, 1, 2, 3, 4, 5, 6, 7, 75, 130, 143}
 GIB = 1 << 30
 # The address space of a process: a backstop, since threads reserve much that they never use. Unit: bytes.
 ADDRESS_SPACE = 8 * GIB

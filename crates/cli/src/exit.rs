@@ -60,7 +60,7 @@ impl Exit {
         ),
         (
             Self::NoPass,
-            "`render --time` ended before a pass was complete; nothing was written",
+            "no pass was complete when `render --time` ended; nothing was written",
         ),
         (
             Self::Checkpoint,
@@ -68,11 +68,11 @@ impl Exit {
         ),
         (
             Self::Interrupted,
-            "stopped by Ctrl-C; the image has the complete passes, and there is none without any",
+            "stopped by Ctrl-C; the image has the complete passes",
         ),
         (
             Self::Terminated,
-            "stopped by SIGTERM; the image has the complete passes, and there is none without any",
+            "stopped by SIGTERM; the image has the complete passes",
         ),
     ];
 

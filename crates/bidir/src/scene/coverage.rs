@@ -163,6 +163,7 @@ mod tests {
     use super::*;
     use crate::material::Material;
     use crate::math::{Affine3A, Vec3};
+    use crate::sampler::{Domain, Sampler, SamplerKind};
     use crate::scene::SceneBuilder;
     use crate::shape::{Orientation, Shape, Sphere};
     use crate::texture::{ColorTexture, FloatTexture};
@@ -201,7 +202,7 @@ mod tests {
         }
         let scene = builder.build().expect("the scene is valid");
         let ray = accel::Ray::new(Vec3::ZERO, Vec3::Z);
-        let stream = SampleStream::default();
+        let stream = Sampler::new(SamplerKind::Independent, 1).stream(Domain::Camera, 0, 0);
         for (stops, expected) in [(false, 100), (true, 1)] {
             let seen = [(); 2].map(|()| AtomicUsize::new(0));
             let flags = [(); 2].map(|()| AtomicBool::new(false));

@@ -112,7 +112,7 @@ mod tests {
     use super::*;
     use crate::driver::training::{
         Effort, Task,
-        tests::{WHOLE, grey, room_with, surveyed, view},
+        tests::{WHOLE, grey, room_with, survey_of, view},
     };
     use crate::integrator::CandidateCount;
     use crate::material::{ConductorIndex, Material, Roughness};
@@ -130,7 +130,7 @@ mod tests {
             view: &view,
             settings: &settings.clone(),
         };
-        let survey = surveyed(task, Effort::at_most(1024));
+        let survey = survey_of(task, Effort::at_most(1024));
         let mut cost = |count| {
             settings.lvc.candidates = CandidateCount::new(count, 1);
             let counts = Counts::new(&settings, settings.path.roulette, survey.light_vertices());
@@ -176,7 +176,7 @@ mod tests {
             view: &view,
             settings: &settings,
         };
-        let survey = surveyed(task, Effort::at_most(1024));
+        let survey = survey_of(task, Effort::at_most(1024));
         let cost = |integrator, shadow_rays| {
             let mut settings = Settings::new(integrator);
             settings.shadow_rays = shadow_rays;

@@ -254,7 +254,7 @@ mod tests {
     use super::*;
     use crate::driver::training::{
         Effort, Task,
-        tests::{WHOLE, room, surveyed, view},
+        tests::{WHOLE, room, survey_of, view},
     };
     use crate::integrator::IntegratorKind;
 
@@ -267,7 +267,7 @@ mod tests {
             view: &view,
             settings: &Settings::new(IntegratorKind::Lvc),
         };
-        let survey = surveyed(task, Effort::at_most(1024));
+        let survey = survey_of(task, Effort::at_most(1024));
         let Found {
             places,
             light,
@@ -338,7 +338,7 @@ mod tests {
             view: &view,
             settings: &settings,
         };
-        let survey = surveyed(task, Effort::WHOLE);
+        let survey = survey_of(task, Effort::WHOLE);
         let light_vertices = survey.light_vertices();
         let counts = Counts::new(&settings, settings.path.roulette, light_vertices);
         let own = survey.terms.iter().map(|term| {

@@ -267,7 +267,7 @@ mod tests {
     use super::*;
     use crate::driver::training::{
         Effort, Task,
-        tests::{WHOLE, lamp, room, surveyed, view},
+        tests::{WHOLE, lamp, room, survey_of, view},
     };
     use crate::film::PixelRect;
 
@@ -290,7 +290,7 @@ mod tests {
             view: &view,
             settings: &settings,
         };
-        let survey = surveyed(task, Effort::WHOLE);
+        let survey = survey_of(task, Effort::WHOLE);
         let mut path = Settings::new(IntegratorKind::Path);
         path.path.roulette = roulette;
         let counts = Counts::new(&path, surveyed, survey.light_vertices());
@@ -326,7 +326,7 @@ mod tests {
                 view: &view,
                 settings: &settings.clone(),
             };
-            let survey = surveyed(task, Effort::WHOLE);
+            let survey = survey_of(task, Effort::WHOLE);
             let terms = survey.relative_terms(view.film()).expect("a lamp");
             let [one, many] = [CandidateCount::of(1), light_points].map(|count| {
                 settings.lvc.next_events = count;
@@ -352,7 +352,7 @@ mod tests {
             view: &view,
             settings: &settings,
         };
-        let survey = surveyed(task, Effort::WHOLE);
+        let survey = survey_of(task, Effort::WHOLE);
         let terms = survey.relative_terms(view.film()).expect("a lamp");
         let counts = Counts::new(&settings, settings.path.roulette, 1.0);
         let moment: f64 = terms.iter().map(|term| term.square).sum();

@@ -178,7 +178,7 @@ impl<'a> Surveyor<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::driver::training::tests::{lamp, surveyed, view};
+    use crate::driver::training::tests::{lamp, survey_of, view};
     use crate::driver::{Resources, Session};
     use crate::film::PixelRect;
     use crate::film::{FilmSettings, Filter};
@@ -222,7 +222,7 @@ mod tests {
             view: &view,
             settings: &settings,
         };
-        let survey = surveyed(task, Effort::WHOLE);
+        let survey = survey_of(task, Effort::WHOLE);
         let longest = survey.stats.samples * (MAX_VERTICES as u64 - 1);
         assert_eq!(survey.stats.rays.camera, longest);
         // All pairs are half a million.
@@ -257,7 +257,7 @@ mod tests {
                 view: &view,
                 settings: &settings,
             };
-            let survey = surveyed(task, Effort::WHOLE);
+            let survey = survey_of(task, Effort::WHOLE);
             survey.luminance / survey.samples()
         });
         let trained = trainings.sum::<f64>() as f32 / 16.0;

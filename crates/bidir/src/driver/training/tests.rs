@@ -36,7 +36,7 @@ pub(super) fn view(crop: PixelRect) -> View {
 
 /// The samples of training that nobody stops.
 #[track_caller]
-pub(super) fn surveyed(task: Task<'_>, effort: Effort<'_>) -> Survey {
+pub(super) fn survey_of(task: Task<'_>, effort: Effort<'_>) -> Survey {
     Survey::run(task, effort).expect("nobody stops it")
 }
 
@@ -119,7 +119,7 @@ fn long_light_subpaths_are_few() {
         view: &view(WHOLE),
         settings: &settings,
     };
-    let mut training = Training::new(&surveyed(task, Effort::at_most(16)));
+    let mut training = Training::new(&survey_of(task, Effort::at_most(16)));
     let film = FilmSettings::new([1024; 2], Filter::default());
     for (rays, expected) in [(5.0, 2), (128.0, 2), (200.0, 4), (1023.0, 16)] {
         training.subpath_rays = rays;
