@@ -78,6 +78,10 @@ pub fn image(bytes: &[u8]) {
         b't' => tell(image::decode(Format::Tga, file, None)),
         b'h' => tell(image::decode(Format::Hdr, file, None)),
         b'f' => tell(image::decode(Format::Pfm, file, None)),
+        b'b' => tell(image::decode(Format::Bmp, file, None)),
+        b'g' => tell(image::decode(Format::Gif, file, None)),
+        b'q' => tell(image::decode(Format::Qoi, file, None)),
+        b'i' => tell(image::decode(Format::Tiff, file, None)),
         b'l' => tell(image::decode_layers(file)),
         _ => tell(image::decode(Format::Exr, file, None)),
     }

@@ -230,53 +230,25 @@ fn resource(
 }
 
 /// Returns the format of an image by its first bytes.
-fn format_of(bytes: &[u8], image: &json::Image, place: &Place) -> Result<Format, GltfFault> {
-    match bytes {
-        [0x89, b'P', b'N', b'G', ..] => Ok(Format::Png),
-        [0xff, 0xd8, 0xff, ..] => Ok(Format::Jpeg),
-        [
-            b'R',
-            b'I',
-            b'F',
-            b'F',
-            _,
-            _,
-            _,
-            _,
-            b'W',
-            b'E',
-            b'B',
-            b'P',
-            ..,
-        ] => Ok(Format::WebP),
-        _ => {
-            let has =
-                |at: usize, magic| bytes.get(at..).is_some_and(|rest| rest.starts_with(magic));
-            let known = OTHER_FORMATS.iter().find(|(at, magic, _)| has(*at, magic));
-            let file = image.uri.as_ref().filter(|uri| !uri.starts_with("data:"));
-            let file = file.map_or("it".into(), |uri| format!("`{}`", printable(uri)));
-            let found = match known {
-                Some((.., name)) => format!("{file} is {name}, which is not read"),
-                None => format!("{file} is neither png, jpg nor webp"),
-            };
-            let fault = place.fault(ErrorKind::Unsupported, found);
-            Err(fault.with_hint(IMAGES_TO_EXPORT))
-        }
-    }
+fn format_of(bytes: &[u8], described: &json::Image, place: &Place) -> Result<Format, GltfFault> {
+    Format::of_bytes(bytes).ok_or_else(|| {
+        let file = described
+            .uri
+            .as_ref()
+            .filter(|uri| !uri.starts_with("data:"));
+        let file = file.map_or("it".into(), |uri| format!("`{}`", printable(uri)));
+        let found = match image::other_format(bytes) {
+            Some(name) => format!("{file} is {name}, which is not read"),
+            None => format!("{file} is neither png, jpg nor webp"),
+        };
+        let fault = place.fault(ErrorKind::Unsupported, found);
+        fault.with_hint(IMAGES_TO_EXPORT)
+    })
 }
 
 /// The hint for images in other formats.
 pub(super) const IMAGES_TO_EXPORT: &str =
     "export its images as png, jpg or webp; `ktx extract` makes png of KTX2";
-
-/// The marks of other formats, with their offsets.
-const OTHER_FORMATS: [(usize, &[u8], &str); 5] = [
-    (0, b"\xabKTX 20", "a KTX2 file"),
-    (0, b"\xabKTX 11", "a KTX file"),
-    (0, b"DDS ", "a DDS file"),
-    (4, b"ftypavif", "an AVIF file"),
-    (0, b"GIF8", "a GIF file"),
-];
 
 /// Returns an image texture on the parameters of the mesh.
 fn map<const N: usize>(

@@ -96,13 +96,12 @@ impl Layers {
 /// Errors: the file cannot be read, is not an EXR, is broken, or has several parts or subsampled channels,
 /// which cannot be written again.
 pub fn read_layers(path: &Path) -> Result<Layers> {
-    if Format::of(path) != Some(Format::Exr) {
-        let error = Error::new(ErrorKind::Unsupported, "an image without named channels");
-        return Err(error
-            .with_hint("name an image that ends in .exr")
-            .in_file(path));
-    }
     let bytes = bytes::read(path, limits::LARGEST_IMAGE)?.bytes;
+    let of_bytes = Format::of_bytes(&bytes);
+    if of_bytes.or(Format::of(path)) != Some(Format::Exr) {
+        let error = Error::new(ErrorKind::Unsupported, "an image without named channels");
+        return Err(error.with_hint("name an OpenEXR image").in_file(path));
+    }
     decode_layers(&bytes).map_err(|error| error.in_file(path))
 }
 

@@ -1,13 +1,16 @@
-//! Images: reads PNG, JPEG, WebP, TGA, HDR, PFM and EXR as linear numbers, and writes EXR and PNG.
+//! Images: reads them as linear numbers in every [`Format`], and writes EXR and PNG.
+//!
+//! The first bytes of a file decide its format; the ending of its name does where they are no mark.
 //!
 //! Rows go from top to bottom, whatever the file's order. Eight-bit files are converted from sRGB to
-//! linear; only for PNG can the caller, such as a scene file, name another encoding. EXR, HDR and PFM are
-//! linear.
+//! linear; only for PNG can the caller, such as a scene file, name another encoding, and QOI says itself
+//! whether it is linear. EXR, HDR and PFM are linear.
 //!
 //! Decoders of other crates may panic on some bytes; such a panic becomes an [`Error`], and prints nothing.
 
 mod catch;
 mod exr;
+mod format;
 mod layers;
 mod pfm;
 mod png;
@@ -15,6 +18,8 @@ mod raster;
 mod transfer;
 
 pub use exr::{ExrImage, ExrLayer, MetadataValue, encode_exr, write_exr};
+pub use format::Format;
+pub(crate) use format::other_format;
 pub use layers::{Layers, decode_layers, read_layers, write_layers};
 pub use png::{encode_png, write_png};
 pub use transfer::Encoding;
@@ -51,61 +56,20 @@ impl ImageData {
     }
 }
 
-/// A readable format.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Format {
-    /// Portable Network Graphics, 8 or 16 bits.
-    Png,
-    /// JPEG.
-    Jpeg,
-    /// WebP, lossy and lossless; of an animation the first image.
-    WebP,
-    /// Targa.
-    Tga,
-    /// Radiance RGBE.
-    Hdr,
-    /// Portable float map.
-    Pfm,
-    /// OpenEXR.
-    Exr,
-}
-
-impl Format {
-    /// Returns the format by the ending of a file's name. None: the ending is unknown.
-    pub fn of(path: &Path) -> Option<Self> {
-        let extension = path.extension()?.to_str()?.to_ascii_lowercase();
-        Some(match extension.as_str() {
-            "png" => Self::Png,
-            "jpg" | "jpeg" => Self::Jpeg,
-            "webp" => Self::WebP,
-            "tga" => Self::Tga,
-            "hdr" | "pic" => Self::Hdr,
-            "pfm" => Self::Pfm,
-            "exr" => Self::Exr,
-            _ => return None,
-        })
-    }
-}
-
 /// Reads an image; `encoding` is that of a PNG, by default sRGB.
 pub fn read(path: &Path, encoding: Option<Encoding>) -> Result<ImageData> {
-    let format = named_format(path).map_err(|unknown| {
-        // For a missing file, the format does not matter.
-        let missing = path.metadata().err();
-        missing.map_or(unknown, |error| Error::io(path, "open", &error))
-    })?;
     let bytes = bytes::read(path, limits::LARGEST_IMAGE)?.bytes;
-    decode(format, &bytes, encoding).map_err(|error| error.in_file(path))
+    decode_file(path, &bytes, encoding)
 }
 
-/// Returns the format by the name of an image. Errors: it cannot be read.
-pub(crate) fn named_format(path: &Path) -> Result<Format> {
-    Format::of(path).ok_or_else(|| {
-        let error = Error::new(ErrorKind::Unsupported, "unknown image format");
-        error
-            .with_hint("use exr, hdr, pfm, png, jpg, tga or webp")
-            .in_file(path)
-    })
+/// Decodes the bytes of an image file; see [`read`].
+pub(crate) fn decode_file(
+    path: &Path,
+    bytes: &[u8],
+    encoding: Option<Encoding>,
+) -> Result<ImageData> {
+    let decoded = Format::of_file(bytes, path).and_then(|format| decode(format, bytes, encoding));
+    decoded.map_err(|error| error.in_file(path))
 }
 
 /// Decodes an image in memory; see [`read`].
@@ -113,6 +77,7 @@ pub fn decode(format: Format, bytes: &[u8], encoding: Option<Encoding>) -> Resul
     let encoding = match format {
         Format::Png => encoding.unwrap_or_default(),
         Format::Hdr => Encoding::Linear,
+        Format::Qoi if format::is_linear_qoi(bytes) => Encoding::Linear,
         _ => Encoding::Srgb,
     };
     decode_stored(format, bytes, encoding)

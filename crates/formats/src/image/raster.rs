@@ -1,4 +1,4 @@
-//! Reads images by the `image` crate: PNG, JPEG, WebP, TGA, HDR.
+//! Reads images by the `image` crate: all but PFM and EXR.
 
 use super::{Encoding, Format, ImageData, broken, check_size};
 use crate::error::Result;
@@ -8,9 +8,13 @@ use std::io::Cursor;
 
 pub(super) fn decode(format: Format, bytes: &[u8], encoding: Encoding) -> Result<ImageData> {
     let known = match format {
-        Format::Png => ImageFormat::Png,
-        Format::Tga => ImageFormat::Tga,
+        Format::Bmp => ImageFormat::Bmp,
+        Format::Gif => ImageFormat::Gif,
         Format::Hdr => ImageFormat::Hdr,
+        Format::Png => ImageFormat::Png,
+        Format::Qoi => ImageFormat::Qoi,
+        Format::Tga => ImageFormat::Tga,
+        Format::Tiff => ImageFormat::Tiff,
         Format::WebP => ImageFormat::WebP,
         _ => ImageFormat::Jpeg,
     };
@@ -25,10 +29,14 @@ pub(super) fn decode(format: Format, bytes: &[u8], encoding: Encoding) -> Result
     check_size([width.into(), height.into()], channels.into(), bytes)?;
     let decoded = DynamicImage::from_decoder(decoder).map_err(broken)?;
     let (channels, data) = linear(decoded, encoding);
-    // Alpha is kept only for colours in PNG and WebP.
+    // Alpha is kept only for colours, and only in formats that programs for textures write it in.
+    let has_alpha = matches!(
+        format,
+        Format::Png | Format::Qoi | Format::Tiff | Format::WebP
+    );
     let kept = match channels {
         2 => 1,
-        4 if !matches!(format, Format::Png | Format::WebP) => 3,
+        4 if !has_alpha => 3,
         channels => channels,
     };
     let data = if kept == channels {

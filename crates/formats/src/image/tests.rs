@@ -253,12 +253,84 @@ fn broken_images_are_errors() {
     let error = || read(&path, None).unwrap_err().to_string();
     let missing = error();
     assert!(missing.ends_with("a.bmp`: no such file"), "{missing}");
-    std::fs::write(&path, "BM").unwrap();
-    let expected = "a.bmp: unknown image format; use exr, hdr, pfm, png, jpg, tga or webp";
-    assert!(error().ends_with(expected), "{}", error());
+    let path = path.with_extension("psd");
+    let error = |bytes: &[u8]| {
+        std::fs::write(&path, bytes).unwrap();
+        read(&path, None).unwrap_err().to_string()
+    };
+    let use_ = "use exr, hdr, pfm, png, jpg, tga, webp, bmp, gif, qoi or tiff";
+    let expected = format!("a.psd: unknown image format; {use_}");
+    assert!(error(b"text").ends_with(&expected), "{}", error(b"text"));
+    let expected = format!("a.psd: a Photoshop file is not read; {use_}");
+    assert!(error(b"8BPS\0\x01").ends_with(&expected));
 }
 
-const FORMATS: [Format; 7] = [
+/// The seeds of the fuzz target have a letter for their format before the file.
+fn seed(name: &str) -> Vec<u8> {
+    let seeds = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fuzz/seeds/image");
+    let seed = std::fs::read(Path::new(seeds).join(name)).unwrap();
+    seed[1..].to_vec()
+}
+
+/// The first bytes decide, whatever the name says; Targa has no mark, and is known by its name.
+#[test]
+fn images_are_read_by_their_first_bytes() {
+    let folder = tempfile::tempdir().unwrap();
+    let names = [
+        "rgb.bmp",
+        "palette.gif",
+        "rgb.qoi",
+        "rgb.tiff",
+        "packed.tiff",
+        "rgb8.png",
+        "rgb.jpg",
+        "rgb.webp",
+        "rgb.hdr",
+        "rgb.pfm",
+        "zip.exr",
+    ];
+    for name in names {
+        let bytes = seed(name);
+        let format = Format::of_bytes(&bytes);
+        assert_eq!(format, Format::of(Path::new(name)), "{name}");
+        let expected = decode(format.unwrap(), &bytes, None).unwrap();
+        for other in ["a.png", "a.jpg", "a.tga", "a.unknown", "without"] {
+            let path = folder.path().join(other);
+            std::fs::write(&path, &bytes).unwrap();
+            assert_eq!(read(&path, None).unwrap(), expected, "{name} as {other}");
+        }
+    }
+    let tga = seed("rgb.tga");
+    assert_eq!(Format::of_bytes(&tga), None);
+    std::fs::write(folder.path().join("a.TGA"), &tga).unwrap();
+    assert!(read(&folder.path().join("a.TGA"), None).is_ok());
+}
+
+/// Formats without loss give the same six colours.
+#[test]
+fn every_format_has_the_same_colours() {
+    let colors = decode(Format::Bmp, &seed("rgb.bmp"), None).unwrap();
+    assert_eq!([colors.width, colors.height, colors.channels], [3, 2, 3]);
+    assert_eq!(colors.data[..3], [1.0, 0.0, 0.0]);
+    assert!((colors.data[9] - 0.2158).abs() < 1e-3, "{}", colors.data[9]);
+    for (format, name) in [
+        (Format::Gif, "palette.gif"),
+        (Format::Qoi, "rgb.qoi"),
+        (Format::Tiff, "rgb.tiff"),
+    ] {
+        assert_eq!(decode(format, &seed(name), None).unwrap(), colors, "{name}");
+    }
+    let mut linear = seed("rgb.qoi");
+    linear[13] = 1;
+    let linear = decode(Format::Qoi, &linear, None).unwrap();
+    assert!((linear.data[9] - 128.0 / 255.0).abs() < 1e-6);
+}
+
+const FORMATS: [Format; 11] = [
+    Format::Bmp,
+    Format::Gif,
+    Format::Qoi,
+    Format::Tiff,
     Format::Png,
     Format::Jpeg,
     Format::WebP,

@@ -122,9 +122,14 @@ fn files_other_than_an_exr_of_one_part_are_refused() {
     let folder = example();
     let missing = read_layers(&folder.path().join("b.exr")).unwrap_err();
     assert_eq!(missing.kind(), ErrorKind::MissingFile);
-    let error = read_layers(Path::new("a.png")).unwrap_err();
-    let expected = "a.png: an image without named channels; name an image that ends in .exr";
-    assert_eq!(error.to_string(), expected);
+    let named = folder.path().join("a.png");
+    crate::image::write_png(&named, [1, 1], &[[0.5; 3]]).unwrap();
+    let error = read_layers(&named).unwrap_err().to_string();
+    let expected = "a.png: an image without named channels; name an OpenEXR image";
+    assert!(error.ends_with(expected), "{error}");
+    // The bytes decide.
+    std::fs::write(&named, BYTES.as_slice()).unwrap();
+    assert!(read_layers(&named).is_ok());
     let broken = folder.path().join("broken.exr");
     std::fs::write(&broken, &BYTES[..BYTES.len() / 2]).unwrap();
     let error = read_layers(&broken).unwrap_err();

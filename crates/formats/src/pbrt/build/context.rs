@@ -69,12 +69,11 @@ impl Context<'_> {
         encoding: Option<Encoding>,
         span: Span,
     ) -> Result<ImageData, Fault> {
-        let refuse = |error: Error| Fault::from_error(span, &error);
-        let format = image::named_format(path).map_err(refuse)?;
         let bytes = self.read(path, limits::LARGEST_IMAGE, Content::Image, span)?;
-        let decoded = image::decode(format, &bytes, encoding);
-        let decoded = decoded.and_then(|image| self.log.image(image));
-        decoded.map_err(|error| refuse(error.in_file(path)))
+        let decoded = image::decode_file(path, &bytes, encoding);
+        let counted =
+            decoded.and_then(|image| self.log.image(image).map_err(|error| error.in_file(path)));
+        counted.map_err(|error| Fault::from_error(span, &error))
     }
 
     /// Reads a spectrum, which `span` names.

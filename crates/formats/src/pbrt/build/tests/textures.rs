@@ -316,3 +316,28 @@ fn images_are_read_once() {
     let at = TexturePoint::of_parameters(Vec2::new(0.75, 0.5));
     assert!((maps[1].eval(&at)[0] - 0.125).abs() < 1e-2);
 }
+
+/// The bytes of an image decide its format, not its name.
+#[test]
+fn images_of_scenes_are_read_by_their_bytes() {
+    let seeds = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fuzz/seeds/image/");
+    let folder = tempfile::tempdir().unwrap();
+    for (seed, name) in [
+        ("rgb8.png", "really-a-png.jpg"),
+        ("rgb.jpg", "a.png"),
+        ("rgb.bmp", "a.bmp"),
+        ("palette.gif", "a.tga"),
+        ("rgb.qoi", "image"),
+        ("rgb.tiff", "a.hdr"),
+    ] {
+        let bytes = std::fs::read(format!("{seeds}{seed}")).unwrap();
+        std::fs::write(folder.path().join(name), &bytes[1..]).unwrap();
+        let text = format!(
+            "WorldBegin Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"{name}\"\n\
+             Material \"diffuse\" \"texture reflectance\" \"t\" Shape \"sphere\""
+        );
+        let path = folder.path().join("s.pbrt");
+        std::fs::write(&path, text).unwrap();
+        load(&path, &STRICT).unwrap_or_else(|error| panic!("{error}"));
+    }
+}
