@@ -10,6 +10,7 @@ mod foreign;
 mod import;
 mod limits;
 mod nanovdb;
+mod repair;
 mod source;
 mod spectra;
 mod text;
@@ -24,5 +25,6 @@ pub mod ply;
 pub mod scene;
 
 pub use error::{Error, ErrorKind, Result, cannot};
+pub use repair::Repairs;
 pub use source::{FileId, SourceMap, Span};
 pub use text::{is_obeyed, number, printable, printable_lines};

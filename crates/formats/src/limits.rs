@@ -44,6 +44,8 @@ pub(crate) const SHAPES: Allowance = Allowance::new(1 << 18, 1);
 pub(crate) const INSTANCES: Allowance = Allowance::new(1 << 18, 1);
 /// Number of components that accessors of a glTF file read.
 pub(crate) const COMPONENTS: Allowance = Allowance::new(1 << 26, 64);
+/// Number of tests of a corner against others, for the concave polygons of a PLY mesh; its bytes are unpacked.
+pub(crate) const EARS: Allowance = Allowance::new(1 << 18, 256);
 /// Number of values of an image: pixels times channels.
 pub(crate) const IMAGE: Allowance = Allowance::new(1 << 26, 128);
 /// Number of cells that the grids of NanoVDB files span, kept or not.
@@ -122,6 +124,11 @@ mod tests {
             ("shapes", SHAPES, "all files"),
             ("mesh instances of glTF", INSTANCES, "all but images"),
             ("components of glTF accessors", COMPONENTS, "all but images"),
+            (
+                "tests for concave polygons of a PLY mesh",
+                EARS,
+                "the file, unpacked",
+            ),
             ("numbers of an image", IMAGE, "the file"),
             ("cells of NanoVDB grids", VOXELS, "all files"),
             ("numbers of all images of a scene", IMAGES, "all files"),

@@ -8,6 +8,7 @@ pub(super) use places::{joints, places};
 use super::document::{Context, Document};
 use super::json::Primitive;
 use super::place::{GltfFault, Place};
+use crate::repair::{self, Repairs};
 use bidir::math::{Vec2, Vec3};
 use glam::DVec3;
 
@@ -90,7 +91,50 @@ impl Surface {
         surface.triangles = triangles(document, primitive, place, surface.positions.len())?;
         surface.read_attributes(context, (primitive, &attributes))?;
         surface.morph(document, (primitive, place), weights)?;
+        let mut repairs = surface.repair();
+        // Strips repeat vertices where they turn.
+        if mode != 4 {
+            repairs.faces = 0;
+        }
+        for warning in repairs.warnings() {
+            context.warn(place.clone(), warning);
+        }
         Ok(Some(surface).filter(|surface| !surface.triangles.is_empty()))
+    }
+
+    /// Repairs attributes that cannot be used, and takes out triangles without area.
+    fn repair(&mut self) -> Repairs {
+        let positions = &self.positions;
+        let mut repairs = Repairs {
+            faces: repair::drop_flat(positions, &mut self.triangles),
+            normals: repair::repair_normals(positions, &self.triangles, &mut self.normals),
+            ..Repairs::default()
+        };
+        for uvs in &mut self.uvs {
+            repairs.uvs += repair::replace_infinite(uvs, 0.0);
+        }
+        let tangents = self.tangents.iter();
+        repairs.tangents = tangents
+            .filter(|tangent| repair::has_no_direction(tangent))
+            .count();
+        if repairs.tangents > 0 {
+            self.tangents.clear();
+        }
+        repairs
+    }
+
+    /// Sets weights to 0 that are not finite, negative, or of joints beyond the `count` that there are. Returns
+    /// the number of such weights.
+    pub(super) fn repair_weights(&mut self, count: usize) -> Repairs {
+        let mut repairs = Repairs::default();
+        for (joint, weight) in self.joints.iter_mut().flatten() {
+            let is_weight = weight.is_finite() && *weight >= 0.0;
+            if *weight != 0.0 && !(is_weight && (*joint as usize) < count) {
+                *weight = 0.0;
+                repairs.weights += 1;
+            }
+        }
+        repairs
     }
 
     fn read_attributes(
@@ -106,18 +150,18 @@ impl Surface {
                 .map(|&index| (index, place.key(name)))
         };
         if let Some((index, place)) = find("NORMAL") {
-            self.normals = self.per_vertex(document.finite_vectors(index, &place)?, &place)?;
+            self.normals = self.per_vertex(document.vectors(index, &place)?, &place)?;
         }
         // The format demands that tangents are ignored if there are no normals.
         let is_smooth = !self.normals.is_empty();
         if let Some((index, place)) = find("TANGENT").filter(|_| is_smooth) {
-            let tangents = document.finite_vectors::<4>(index, &place)?;
+            let tangents = document.vectors::<4>(index, &place)?;
             let tangents = tangents.into_iter().map(|[x, y, z, _]| [x, y, z]);
             self.tangents = self.per_vertex(tangents.collect(), &place)?;
         }
         for (set, name) in ["TEXCOORD_0", "TEXCOORD_1"].into_iter().enumerate() {
             if let Some((index, place)) = find(name) {
-                self.uvs[set] = self.per_vertex(document.finite_vectors(index, &place)?, &place)?;
+                self.uvs[set] = self.per_vertex(document.vectors(index, &place)?, &place)?;
             }
         }
         if let Some((index, place)) = find("COLOR_0") {
@@ -154,15 +198,19 @@ impl Surface {
         let document = context.document;
         let colors: Vec<[f32; 4]> = if document.components(index, place)? == 3 {
             let opaque = |[r, g, b]: [f32; 3]| [r, g, b, 1.0];
-            document
-                .finite_vectors(index, place)?
-                .into_iter()
-                .map(opaque)
-                .collect()
+            let colors = document.vectors(index, place)?.into_iter();
+            colors.map(opaque).collect()
         } else {
-            document.finite_vectors(index, place)?
+            document.vectors(index, place)?
         };
-        let colors = self.per_vertex(colors, place)?;
+        let mut colors = self.per_vertex(colors, place)?;
+        let repairs = Repairs {
+            colors: repair::replace_infinite(&mut colors, 1.0),
+            ..Repairs::default()
+        };
+        for warning in repairs.warnings() {
+            context.warn(place.clone(), warning);
+        }
         let Some(&first) = colors.first() else {
             return Ok(());
         };
@@ -191,7 +239,7 @@ impl Surface {
         (weights, weights_place): (usize, Place),
     ) -> Result<Vec<[(u32, f32); 4]>, GltfFault> {
         let joints = document.finite_vectors::<4>(joints, &joints_place)?;
-        let weights = document.finite_vectors::<4>(weights, &weights_place)?;
+        let weights = document.vectors::<4>(weights, &weights_place)?;
         let joints = self.per_vertex(joints, &joints_place)?;
         let weights = self.per_vertex(weights, &weights_place)?;
         let of_vertex = |(joints, weights): (&[f32; 4], &[f32; 4])| {
@@ -221,7 +269,12 @@ impl Surface {
                 let Some(&accessor) = target.get(name) else {
                     continue;
                 };
-                let deltas = document.finite_vectors::<3>(accessor, &place.key(name))?;
+                let place = place.key(name);
+                let deltas = if name == "POSITION" {
+                    document.finite_vectors::<3>(accessor, &place)?
+                } else {
+                    document.vectors(accessor, &place)?
+                };
                 for (value, delta) in values.iter_mut().zip(deltas) {
                     *value = std::array::from_fn(|k| value[k] + weight * delta[k]);
                 }

@@ -31,8 +31,8 @@ impl<'b> Body<'b> {
     pub(super) fn broken(&self, message: impl Into<String>) -> Broken {
         let is_text = self.format == Format::Ascii;
         Broken {
-            message: message.into(),
             place: is_text.then_some((self.line, self.column)),
+            ..Broken::new(message)
         }
     }
 

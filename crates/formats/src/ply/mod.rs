@@ -1,20 +1,25 @@
 //! Reads triangle meshes from PLY files: ASCII and binary of either byte order, packed or not.
 //!
 //! Reads `x y z`, `nx ny nz` and the first complete pair of `u v`, `s t`, `texture_u texture_v`,
-//! `texture_s texture_t` of the `vertex` element, and the list `vertex_indices` of the `face` element.
-//! Everything else is skipped. A quadrilateral a b c d becomes (a, b, c) and (a, c, d); faces with fewer
-//! or more corners are skipped and counted.
+//! `texture_s texture_t` of the `vertex` element, and the list `vertex_indices`, also called `vertex_index`, of
+//! the `face` element. Everything else is skipped. A quadrilateral a b c d becomes (a, b, c) and (a, c, d)
+//! if both lie within it; other polygons become triangles by `polygon`. Normals and texture coordinates that
+//! cannot be used are repaired, and counted.
 //!
 //! The crates `serde-ply` and `ply-rs-bw` are not used: they read a list of a million faces into a million
 //! vectors, and do not report which element of a file is broken.
 
 mod body;
 mod header;
+mod polygon;
 
 use crate::error::{Error, ErrorKind, Place, Result};
+use crate::repair::{self, Repairs};
 use crate::{bytes, limits};
 use body::Body;
 use header::{Element, Header, PropertyKind};
+use polygon::Splitter;
+use std::ops::Range;
 use std::path::Path;
 
 /// A mesh of triangles.
@@ -28,12 +33,23 @@ pub struct PlyMesh {
     pub uvs: Vec<[f32; 2]>,
     /// Valid indices of vertices.
     pub triangles: Vec<[u32; 3]>,
-    /// The number of faces that are neither triangles nor quadrilaterals.
-    pub skipped_faces: usize,
+    /// What was wrong, and is repaired.
+    pub repairs: Repairs,
+}
+
+impl PlyMesh {
+    /// Repairs attributes that cannot be used, and takes out faces without area.
+    pub(crate) fn repair(&mut self) {
+        let (positions, repairs) = (&self.positions, &mut self.repairs);
+        repairs.faces += repair::drop_flat(positions, &mut self.triangles);
+        repairs.uvs += repair::replace_infinite(&mut self.uvs, 0.0);
+        repairs.normals += repair::repair_normals(positions, &self.triangles, &mut self.normals);
+    }
 }
 
 /// An error within a file, whose name the caller knows.
 struct Broken {
+    kind: ErrorKind,
     message: String,
     /// Line and column, both counted from 1. None: the file is binary.
     place: Option<(usize, usize)>,
@@ -42,6 +58,7 @@ struct Broken {
 impl Broken {
     fn new(message: impl Into<String>) -> Self {
         Self {
+            kind: ErrorKind::Data,
             message: message.into(),
             place: None,
         }
@@ -65,7 +82,7 @@ pub fn read(path: &Path) -> Result<PlyMesh> {
 /// Reads the mesh in `bytes`, which are not packed.
 pub fn parse(bytes: &[u8]) -> Result<PlyMesh> {
     parse_mesh(bytes).map_err(|broken| {
-        let error = Error::new(ErrorKind::Data, broken.message);
+        let error = Error::new(broken.kind, broken.message);
         match broken.place {
             Some((line, column)) => error.at(Place {
                 line,
@@ -97,21 +114,32 @@ fn parse_mesh(bytes: &[u8]) -> Result<PlyMesh, Broken> {
     }
     let mut body = Body::new(header.format, rest, header.lines);
     let mut mesh = PlyMesh::default();
+    let mut polygons = Vec::new();
     for element in &header.elements {
         body.check_room(element)?;
         match element.name.as_str() {
             "vertex" if mesh.positions.is_empty() => read_vertices(&mut body, element, &mut mesh)?,
             "face" if mesh.triangles.is_empty() => {
-                read_faces(&mut body, element, vertices, &mut mesh)?;
+                polygons = read_faces(&mut body, element, vertices, &mut mesh)?;
             }
             _ => skip(&mut body, element)?,
         }
     }
+    // Faces may stand before their vertices.
+    let tests = limits::EARS.of(bytes.len() as u64);
+    let mut splitter = Splitter::new(&mesh.positions, tests);
+    for fan in polygons {
+        splitter.split(&mut mesh.triangles[fan])?;
+    }
+    mesh.repairs.crossing = splitter.crossing;
+    mesh.repair();
     Ok(mesh)
 }
 
 /// The numbers of a vertex: position, normal, uv.
 type VertexRow = [f32; 8];
+/// The number of slots of the position.
+const POSITION: usize = 3;
 
 /// The places of a vertex's properties in a [`VertexRow`].
 struct Columns {
@@ -184,7 +212,7 @@ fn read_vertex(
             continue;
         };
         let value = body.scalar(scalar)? as f32;
-        if !value.is_finite() {
+        if slot < POSITION && !value.is_finite() {
             return Err(body.broken(format!("`{}` is not a finite number", property.name)));
         }
         row[slot] = value;
@@ -192,73 +220,87 @@ fn read_vertex(
     Ok(row)
 }
 
+/// The names of the list of a face's corners.
+const CORNERS: [&str; 2] = ["vertex_indices", "vertex_index"];
+
+/// Reads the faces as fans. Returns those with more than three corners, each by the range of its triangles.
 fn read_faces(
     body: &mut Body<'_>,
     face: &Element,
     vertices: usize,
     mesh: &mut PlyMesh,
-) -> Result<(), Broken> {
+) -> Result<Vec<Range<usize>>, Broken> {
     let list = face.properties.iter().position(|property| {
-        property.name == "vertex_indices" && matches!(property.kind, PropertyKind::List { .. })
+        let is_list = matches!(property.kind, PropertyKind::List { .. });
+        is_list && CORNERS.contains(&property.name.as_str())
     });
     let Some(list) = list else {
-        return Err(Broken::new("the faces have no list `vertex_indices`"));
+        return Err(no_corners(face));
     };
     mesh.triangles.reserve(face.count);
+    let mut polygons = Vec::new();
     for index in 0..face.count {
         for (column, property) in face.properties.iter().enumerate() {
-            let corners = if column == list {
-                read_corners(body, property.kind, vertices)
+            let read = if column == list {
+                read_corners(body, property.kind, vertices, mesh)
             } else {
-                body.skip(property.kind).map(|()| Corners::None)
+                body.skip(property.kind).map(|()| 0..0)
             };
-            match corners.map_err(|broken| broken.of("face", index))? {
-                Corners::None => {}
-                Corners::Triangle(corners) => mesh.triangles.push(corners),
-                Corners::Quad([a, b, c, d]) => mesh.triangles.extend([[a, b, c], [a, c, d]]),
-                Corners::Other => mesh.skipped_faces += 1,
+            let fan = read.map_err(|broken| broken.of("face", index))?;
+            if fan.len() > 1 {
+                polygons.push(fan);
             }
         }
     }
-    Ok(())
+    Ok(polygons)
 }
 
-/// The corners of a face.
-enum Corners {
-    None,
-    Triangle([u32; 3]),
-    Quad([u32; 4]),
-    Other,
+/// Returns the error of faces without a list of corners, which names what they have.
+fn no_corners(face: &Element) -> Broken {
+    let found = face.properties.iter().map(|p| format!("`{}`", p.name));
+    let found = match found.collect::<Vec<_>>().join(", ") {
+        nothing if nothing.is_empty() => "nothing".into(),
+        found => found,
+    };
+    Broken::new(format!(
+        "the faces have no list `vertex_indices` or `vertex_index`, but {found}"
+    ))
 }
 
+/// Reads the corners of a face into triangles, all of which have the first one. Returns their range.
 fn read_corners(
     body: &mut Body<'_>,
     kind: PropertyKind,
     vertices: usize,
-) -> Result<Corners, Broken> {
+    mesh: &mut PlyMesh,
+) -> Result<Range<usize>, Broken> {
+    let begin = mesh.triangles.len();
     let PropertyKind::List { item, .. } = kind else {
-        return Ok(Corners::None);
+        return Ok(begin..begin);
     };
     let count = body.list_length(kind)?;
-    if count != 3 && count != 4 {
-        body.skip_scalars(item, count)?;
-        return Ok(Corners::Other);
-    }
-    let mut corners = [0; 4];
-    for corner in &mut corners[..count] {
+    let mut corner = || -> Result<u32, Broken> {
         let value = body.scalar(item)?;
-        if !(value >= 0.0 && value < vertices as f64 && value.fract() == 0.0) {
-            let message = format!("there is no vertex {value}: the mesh has {vertices}");
-            return Err(body.broken(message));
+        if value >= 0.0 && value < vertices as f64 && value.fract() == 0.0 {
+            return Ok(value as u32);
         }
-        *corner = value as u32;
+        let message = format!("there is no vertex {value}: the mesh has {vertices}");
+        Err(body.broken(message))
+    };
+    if count < 3 {
+        for _ in 0..count {
+            corner()?;
+        }
+        mesh.repairs.faces += 1;
+        return Ok(begin..begin);
     }
-    let [a, b, c, _] = corners;
-    Ok(if count == 3 {
-        Corners::Triangle([a, b, c])
-    } else {
-        Corners::Quad(corners)
-    })
+    let (first, mut last) = (corner()?, corner()?);
+    for _ in 2..count {
+        let next = corner()?;
+        mesh.triangles.push([first, last, next]);
+        last = next;
+    }
+    Ok(begin..mesh.triangles.len())
 }
 
 fn skip(body: &mut Body<'_>, element: &Element) -> Result<(), Broken> {

@@ -50,7 +50,7 @@ fn ascii_is_read_with_uv_and_skipped_faces() {
     );
     assert_eq!(mesh.uvs, [[0., 0.], [1., 0.], [1., 1.], [0., 1.]]);
     assert_eq!(mesh.triangles, [[0, 1, 2], [0, 2, 3], [2, 1, 0]]);
-    assert_eq!((mesh.normals.len(), mesh.skipped_faces), (0, 1));
+    assert_eq!((mesh.normals.len(), mesh.repairs.faces), (0, 1));
 }
 
 #[test]
@@ -99,8 +99,8 @@ fn errors_of_broken_files_name_element_and_line() {
     check_broken("element face 3", "element faces 3", "m.ply: no faces");
     check_broken(
         "vertex_indices",
-        "vertex_index",
-        "m.ply: the faces have no list `vertex_indices`",
+        "corners",
+        "m.ply: the faces have no list `vertex_indices` or `vertex_index`, but `corners`",
     );
     check_broken(
         "1 1 0 1 1 3",
@@ -150,12 +150,82 @@ fn errors_of_broken_files_name_element_and_line() {
 }
 
 #[test]
-fn a_binary_file_with_a_nan_names_the_vertex() {
+fn a_binary_file_with_a_nan_is_repaired_or_names_the_vertex() {
+    let with_nan = |back: usize| {
+        let mut bytes = binary_quad("binary_little_endian");
+        let at = bytes.len() - back;
+        bytes[at..at + 4].copy_from_slice(&f32::NAN.to_le_bytes());
+        parse(&bytes)
+    };
+    let mesh = with_nan(4).unwrap();
+    assert_eq!((mesh.normals[3], mesh.repairs.normals), ([0., 0., 1.], 1));
     let mut bytes = binary_quad("binary_little_endian");
-    let last_normal = bytes.len() - 4;
-    bytes[last_normal..].copy_from_slice(&f32::NAN.to_le_bytes());
+    let z = bytes.len() - 20;
+    bytes[z..z + 8].copy_from_slice(&f64::NAN.to_le_bytes());
     let error = parse(&bytes).unwrap_err();
-    assert_eq!(error.to_string(), "vertex 3: `nz` is not a finite number");
+    assert_eq!(error.to_string(), "vertex 3: `z` is not a finite number");
+}
+
+/// Reads a mesh of vertices, each with a normal and texture coordinates, and faces.
+fn with_attributes(vertices: &[&str], faces: &[&str]) -> PlyMesh {
+    let header = format!(
+        "ply\nformat ascii 1.0\nelement vertex {}\nproperty float x\nproperty float y\nproperty float z\n\
+         property float nx\nproperty float ny\nproperty float nz\nproperty float u\nproperty float v\n\
+         element face {}\nproperty list uchar int vertex_index\nend_header\n",
+        vertices.len(),
+        faces.len()
+    );
+    let text = header + &vertices.join("\n") + "\n" + &faces.join("\n") + "\n";
+    parse(text.as_bytes()).unwrap()
+}
+
+#[test]
+fn attributes_that_cannot_be_used_are_repaired_and_counted() {
+    let vertices = [
+        "0 0 0 nan 0 1 0 0",
+        "1 0 0 0 0 0 inf 0",
+        "1 1 0 0 1e99 0 1 1",
+        "0 1 0 0 0 -2 0 nan",
+    ];
+    let faces = ["3 0 1 2", "3 0 2 3", "3 1 1 2", "2 0 1", "0"];
+    let mesh = with_attributes(&vertices, &faces);
+    // The first triangle has no other normal; the second lies on the side of its last one.
+    assert_eq!(mesh.normals[1], [0., 0., 1.]);
+    assert_eq!(mesh.normals[3], [0., 0., -2.]);
+    assert_eq!(mesh.uvs, [[0., 0.], [0., 0.], [1., 1.], [0., 0.]]);
+    assert_eq!(mesh.triangles, [[0, 1, 2], [0, 2, 3]]);
+    let expected = Repairs {
+        faces: 3,
+        normals: 3,
+        uvs: 2,
+        ..Repairs::default()
+    };
+    assert_eq!(mesh.repairs, expected);
+}
+
+/// Returns the area of all triangles of a mesh in the plane z = 0.
+fn total_area(mesh: &PlyMesh) -> f64 {
+    let area = |&triangle: &[u32; 3]| repair::area(&mesh.positions, triangle).z / 2.0;
+    mesh.triangles.iter().map(area).sum()
+}
+
+#[test]
+fn polygons_of_any_number_of_corners_are_covered() {
+    let at = |x: i32, y: i32| format!("{x} {y} 0 0 0 1 0 0");
+    let arrow = [at(0, 0), at(4, 0), at(1, 1), at(0, 4)];
+    let hexagon = [at(0, 0), at(2, 0), at(2, 1), at(1, 1), at(1, 2), at(0, 2)];
+    let check = |corners: &[String], face: &str, area: f64| {
+        let corners: Vec<&str> = corners.iter().map(String::as_str).collect();
+        let mesh = with_attributes(&corners, &[face]);
+        assert_eq!(total_area(&mesh), area, "{face}");
+        assert_eq!(mesh.repairs, Repairs::default());
+    };
+    // Split at either diagonal.
+    check(&arrow, "4 0 1 2 3", 4.0);
+    check(&arrow, "4 1 2 3 0", 4.0);
+    check(&hexagon, "6 0 1 2 3 4 5", 3.0);
+    check(&hexagon, "6 2 3 4 5 0 1", 3.0);
+    check(&hexagon, "5 0 1 2 3 5", 2.5);
 }
 
 proptest! {

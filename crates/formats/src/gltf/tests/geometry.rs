@@ -320,3 +320,75 @@ fn vertices_far_from_their_node_are_warned_of() {
     assert_eq!(found.len(), 1, "{:?}", loaded.warnings);
     assert!(found[0].contains("meshes[0].primitives[0]: coordinates of 1.00e6"));
 }
+
+/// Attributes that cannot be used have substitutes; positions are refused elsewhere.
+#[test]
+fn attributes_are_repaired_with_a_warning() {
+    let mut draft = Draft::triangle();
+    let nan = f32::NAN;
+    let normals = draft.accessor(
+        &floats(&[nan, 0., 1., 0., 0., -1., 0., 0., 0.]),
+        (F32, "VEC3", 3),
+    );
+    let tangents = [1., 0., 0., 1., 0., nan, 0., 1., 1., 0., 0., 1.];
+    let tangents = draft.accessor(&floats(&tangents), (F32, "VEC4", 3));
+    let uvs = draft.accessor(
+        &floats(&[f32::INFINITY, 0., 1., 0., 0., 1.]),
+        (F32, "VEC2", 3),
+    );
+    let indices = draft.accessor(&[0, 1, 2, 0, 0, 1], (U8, "SCALAR", 6));
+    draft.primitive()["indices"] = json!(indices);
+    draft.primitive()["attributes"] =
+        json!({ "POSITION": 0, "NORMAL": normals, "TANGENT": tangents, "TEXCOORD_0": uvs });
+    let loaded = draft.load().unwrap();
+    let mesh = mesh(&loaded, 0);
+    check_points(&mesh.normals, &[[0.0, 0.0, -1.0]; 3]);
+    assert_eq!(mesh.uvs, [Vec2::Y, Vec2::ONE, Vec2::ZERO]);
+    assert!(mesh.tangents.is_empty() && mesh.triangles.len() == 1);
+    for expected in [
+        "meshes[0].primitives[0]: 1 faces have no area",
+        "2 normals are not finite or zero",
+        "1 tangents are not finite or zero",
+        "1 texture coordinates are not finite",
+    ] {
+        assert!(
+            loaded.warnings.iter().any(|it| it.contains(expected)),
+            "{:?}",
+            loaded.warnings
+        );
+    }
+}
+
+/// Joints that are not there do not move vertices.
+#[test]
+fn weights_of_joints_are_repaired_with_a_warning() {
+    let mut draft = Draft::triangle();
+    let joints = draft.accessor(&[0, 9, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0], (U8, "VEC4", 3));
+    let weights = [
+        0.5,
+        0.5,
+        0.0,
+        0.0,
+        1.0,
+        f32::NAN,
+        0.0,
+        0.0,
+        0.5,
+        0.5,
+        -1.0,
+        0.0,
+    ];
+    let weights = draft.accessor(&floats(&weights), (F32, "VEC4", 3));
+    draft.primitive()["attributes"] =
+        json!({ "POSITION": 0, "JOINTS_0": joints, "WEIGHTS_0": weights });
+    draft.json["skins"] = json!([{ "joints": [1, 2] }]);
+    draft.json["nodes"] = json!([
+        { "mesh": 0, "skin": 0 }, { "translation": [0, 0, 1] }, { "translation": [0, 0, 3] },
+    ]);
+    draft.json["scenes"][0]["nodes"] = json!([0, 1, 2]);
+    let loaded = draft.load().unwrap();
+    let expected = [[0.0, 0.0, 1.0], [1.0, 0.0, 3.0], [0.0, 1.0, 2.0]];
+    check_points(&mesh(&loaded, 0).positions, &expected);
+    let is_told = |it: &String| it.contains("3 weights of joints");
+    assert!(loaded.warnings.iter().any(is_told), "{:?}", loaded.warnings);
+}

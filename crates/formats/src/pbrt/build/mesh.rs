@@ -8,7 +8,8 @@ use crate::error::ErrorKind;
 use crate::limits::MOST_LEVELS;
 use crate::pbrt::parameters::{Parameter, ParameterType, Values};
 use crate::ply::PlyMesh;
-use crate::source::Fault;
+use crate::repair::Repairs;
+use crate::source::{Fault, Span};
 use glam::DVec3;
 
 pub(super) fn ply_mesh(reader: &mut Reader<'_, '_>) -> Result<PlyMesh, Fault> {
@@ -23,13 +24,14 @@ pub(super) fn ply_mesh(reader: &mut Reader<'_, '_>) -> Result<PlyMesh, Fault> {
     reader.ignore(ParameterType::Float, "edgelength");
     let path = reader.context.document.resolve(name);
     let mesh = reader.context.read_mesh(&path, span)?;
-    if mesh.skipped_faces > 0 {
-        let count = mesh.skipped_faces;
-        let message =
-            format!("{count} faces are neither triangles nor quadrilaterals and are left out");
-        reader.context.warn(span, message);
-    }
+    warn_of_repairs(reader, span, &mesh);
     Ok(mesh)
+}
+
+fn warn_of_repairs(reader: &mut Reader<'_, '_>, span: Span, mesh: &PlyMesh) {
+    for warning in mesh.repairs.warnings() {
+        reader.context.warn(span, warning);
+    }
 }
 
 /// The attributes of vertices; lists are empty, or as long as the positions.
@@ -42,24 +44,34 @@ struct Vertices {
 impl Vertices {
     fn read(reader: &mut Reader<'_, '_>) -> Result<Self, Fault> {
         let positions = positions(reader)?;
-        let normals = triples(reader.floats(ParameterType::Normal, "N"));
+        let mut normals = triples(reader.floats(ParameterType::Normal, "N"));
         let uvs = reader
             .floats(ParameterType::Point2, "uv")
             .unwrap_or_default();
-        let uvs = uvs.as_chunks::<2>().0.to_vec();
-        let vertices = positions.len();
-        for (name, count) in [("N", normals.len()), ("uv", uvs.len())] {
-            if count != 0 && count != vertices {
-                let message =
-                    format!("the mesh has {vertices} points, but {count} values of `{name}`");
-                return Err(Fault::scene(reader.span(), message));
-            }
-        }
+        let mut uvs = uvs.as_chunks::<2>().0.to_vec();
+        drop_unless_per_vertex(reader, ("N", &mut normals), positions.len());
+        drop_unless_per_vertex(reader, ("uv", &mut uvs), positions.len());
         Ok(Self {
             positions,
             normals,
             uvs,
         })
+    }
+}
+
+/// Empties the values of an attribute of which there is not one per vertex, as pbrt-v4 does.
+fn drop_unless_per_vertex<T>(
+    reader: &mut Reader<'_, '_>,
+    (name, values): (&str, &mut Vec<T>),
+    vertices: usize,
+) {
+    let count = values.len();
+    if count != 0 && count != vertices {
+        let message = format!(
+            "the mesh has {vertices} points, but {count} values of `{name}`, which have no effect"
+        );
+        reader.context.warn(reader.span(), message);
+        values.clear();
     }
 }
 
@@ -77,13 +89,16 @@ pub(super) fn triangle_mesh(reader: &mut Reader<'_, '_>) -> Result<PlyMesh, Faul
     let triangles = faces(reader, vertices.positions.len())?;
     reader.ignore(ParameterType::Vector3, "S");
     reader.ignore(ParameterType::Integer, "faceIndices");
-    Ok(PlyMesh {
+    let mut mesh = PlyMesh {
         positions: vertices.positions,
         normals: vertices.normals,
         uvs: vertices.uvs,
         triangles,
-        skipped_faces: 0,
-    })
+        repairs: Repairs::default(),
+    };
+    mesh.repair();
+    warn_of_repairs(reader, reader.span(), &mesh);
+    Ok(mesh)
 }
 
 pub(super) fn patch_mesh(reader: &mut Reader<'_, '_>) -> Result<PlyMesh, Fault> {
@@ -127,7 +142,7 @@ pub(super) fn subdivided_mesh(reader: &mut Reader<'_, '_>) -> Result<PlyMesh, Fa
         normals: normals.iter().map(single).collect(),
         uvs: Vec::new(),
         triangles: mesh.triangles,
-        skipped_faces: 0,
+        repairs: Repairs::default(),
     })
 }
 

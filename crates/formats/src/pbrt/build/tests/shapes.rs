@@ -181,3 +181,42 @@ fn patches_and_subdivided_meshes_become_triangles() {
          triangles share the edge",
     );
 }
+
+/// Normals that are zero, and attributes of which there are too few, are no reason to refuse a mesh.
+#[test]
+fn attributes_of_meshes_are_repaired_with_a_warning() {
+    let mesh = |attribute: &str| {
+        let points =
+            "\"point3 P\" [0 0 0 1 0 0 1 1 0 0 1 0] \"integer indices\" [0 1 2 0 2 3 1 1 2]";
+        load_text(
+            &format!("WorldBegin Shape \"trianglemesh\" {points}\n{attribute}"),
+            &STRICT,
+        )
+    };
+    let zero = mesh("\"normal N\" [0 0 0 0 0 -2 0 0 -2 0 0 -2]");
+    let expected = [
+        "1 faces have no area and are left out",
+        "1 normals are not finite or zero",
+    ];
+    for (warning, expected) in zero.warnings.iter().zip(expected) {
+        assert!(warning.contains(expected), "{warning}");
+    }
+    assert_eq!(zero.warnings.len(), 2, "{:?}", zero.warnings);
+    let Shape::Mesh(placed) = &zero.scene.shapes()[0] else {
+        panic!("it is a mesh");
+    };
+    assert_eq!(placed.normals, [Vec3::NEG_Z; 4]);
+    assert_eq!(placed.triangles.len(), 2);
+    for (attribute, name) in [
+        ("\"normal N\" [0 0 1]", "N"),
+        ("\"point2 uv\" [0 0 1 1]", "uv"),
+    ] {
+        let few = mesh(attribute);
+        let expected = format!("values of `{name}`, which have no effect");
+        assert!(
+            few.warnings.iter().any(|it| it.contains(&expected)),
+            "{:?}",
+            few.warnings
+        );
+    }
+}
