@@ -8,12 +8,13 @@
 use super::pose::Pose;
 use super::{CameraRay, LensSample};
 use crate::locus::Locus;
-use crate::math::{Affine3A, Vec2, Vec3};
+use crate::math::{Affine3A, Vec2, Vec3, Vec3A};
 
 /// The settings of an [`Orthographic`] camera.
 #[derive(Clone, Copy, Debug)]
 pub struct OrthographicSettings {
-    /// The camera's place: x right, y up, z forward. Even scaling and mirroring are allowed.
+    /// The camera's place: x right, y up, z forward. Any map that is not flat: the screen of a stretched
+    /// camera is stretched, and stands across its axis z.
     pub world_from_camera: Affine3A,
     /// The film's width and height. Unit: pixels.
     pub resolution: Vec2,
@@ -25,25 +26,29 @@ pub struct OrthographicSettings {
 #[derive(Clone, Copy, Debug)]
 pub struct Orthographic {
     pub(super) pose: Pose,
-    /// Place on the plane = `screen_origin` + raster · `screen_per_raster`, in the world's unit.
+    /// Place on the plane = `screen_origin` + raster · `screen_per_raster` + (raster.y · `skew`, 0), in the
+    /// world's unit.
     screen_origin: Vec2,
     screen_per_raster: Vec2,
+    skew: f32,
     /// Raster area per area of the plane.
     raster_density: f32,
 }
 
 impl Orthographic {
-    /// The camera. None: its map is no even scaling with rotation and mirroring, or the screen has
-    /// no area.
+    /// The camera. None: its map is flat, or the screen has no area.
     pub fn new(settings: &OrthographicSettings) -> Option<Self> {
-        let pose = Pose::new(&settings.world_from_camera)?;
-        let screen = settings.screen.map(|corner| corner * pose.scale);
-        let screen_per_raster = (screen[1] - screen[0]) / settings.resolution;
+        let (pose, stretch) = Pose::new(&across(&settings.world_from_camera))?;
+        let screen = settings.screen.map(|corner| corner * stretch.unit);
+        let per_raster = (screen[1] - screen[0]) / settings.resolution;
+        let [right, down] = [Vec2::X, Vec2::Y].map(|axis| stretch.vector(axis * per_raster));
+        let screen_per_raster = Vec2::new(right.x, down.y);
         let raster_density = 1.0 / (screen_per_raster.x * screen_per_raster.y).abs();
         raster_density.is_finite().then_some(Self {
             pose,
-            screen_origin: screen[0],
+            screen_origin: stretch.vector(screen[0]),
             screen_per_raster,
+            skew: down.x,
             raster_density,
         })
     }
@@ -51,6 +56,7 @@ impl Orthographic {
     pub(super) fn resized(self, factor: Vec2) -> Self {
         Self {
             screen_per_raster: self.screen_per_raster / factor,
+            skew: self.skew / factor.y,
             raster_density: self.raster_density * factor.x * factor.y,
             ..self
         }
@@ -66,7 +72,8 @@ impl Orthographic {
 
     #[inline]
     pub(super) fn sample_ray(&self, raster: Vec2) -> CameraRay {
-        let screen = self.screen_origin + raster * self.screen_per_raster;
+        let along_x = raster.y * self.skew;
+        let screen = self.screen_origin + raster * self.screen_per_raster + Vec2::X * along_x;
         CameraRay {
             lens: self.lens(),
             origin: self.pose.origin + self.pose.right * screen.x + self.pose.up * screen.y,
@@ -78,7 +85,9 @@ impl Orthographic {
     #[inline]
     pub(super) fn raster(&self, p: Vec3) -> Option<Vec2> {
         let local = self.pose.to_local(p - self.pose.origin);
-        let raster = (local.truncate() - self.screen_origin) / self.screen_per_raster;
+        let screen = local.truncate() - self.screen_origin;
+        let y = screen.y / self.screen_per_raster.y;
+        let raster = Vec2::new((screen.x - self.skew * y) / self.screen_per_raster.x, y);
         (local.z > 0.0).then_some(raster)
     }
 
@@ -102,4 +111,17 @@ impl Orthographic {
             0.0
         }
     }
+}
+
+/// The map of a camera whose axes x and y are as its axis z sees them: across it, if they are not already.
+fn across(world_from_camera: &Affine3A) -> Affine3A {
+    let m = world_from_camera.matrix3;
+    let is_square =
+        |axis: Vec3A| axis.dot(m.z_axis).abs() <= 1e-3 * axis.length() * m.z_axis.length();
+    let seen = |axis: Vec3A| match m.z_axis.try_normalize() {
+        Some(z) if !is_square(axis) => axis.reject_from_normalized(z),
+        _ => axis,
+    };
+    let translation = world_from_camera.translation;
+    Affine3A::from_cols(seen(m.x_axis), seen(m.y_axis), m.z_axis, translation)
 }

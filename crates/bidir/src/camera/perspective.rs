@@ -4,7 +4,7 @@
 //!
 //! The lens is round and ideal: no distortion and no aberration.
 
-use super::pose::Pose;
+use super::pose::{Pose, Stretch};
 use super::{CameraRay, LensSample};
 use crate::locus::Locus;
 use crate::math::{Affine3A, PI, Vec2, Vec3, sqr, warp};
@@ -12,7 +12,8 @@ use crate::math::{Affine3A, PI, Vec2, Vec3, sqr, warp};
 /// The settings of a [`Perspective`] camera.
 #[derive(Clone, Copy, Debug)]
 pub struct PerspectiveSettings {
-    /// The camera's place: x right, y up, z forward. Even scaling and mirroring are allowed.
+    /// The camera's place: x right, y up, z forward. Any map that is not flat: of a stretched camera, the
+    /// screen and the lens are stretched, and the lens stands in the plane of its axes x and y.
     pub world_from_camera: Affine3A,
     /// The film's width and height. Unit: pixels.
     pub resolution: Vec2,
@@ -28,38 +29,44 @@ pub struct PerspectiveSettings {
 #[derive(Clone, Copy, Debug)]
 pub struct Perspective {
     pub(super) pose: Pose,
-    /// Screen position = `screen_origin` + raster · `screen_per_raster`.
+    /// Screen position = `screen_origin` + raster · `screen_per_raster` + (raster.y · `skew`, 0).
     screen_origin: Vec2,
     screen_per_raster: Vec2,
+    skew: f32,
     /// Raster area per area of the plane z = 1.
     raster_density: f32,
     lens_radius: f32,
     focal_distance: f32,
+    stretch: Stretch,
 }
 
 impl Perspective {
-    /// The camera. None: its map is no even scaling with rotation and mirroring, or a size is not
-    /// finite and positive where it must be.
+    /// The camera. None: its map is flat, or a size is not finite and positive where it must be.
     pub fn new(settings: &PerspectiveSettings) -> Option<Self> {
-        let pose = Pose::new(&settings.world_from_camera)?;
-        let screen_per_raster = (settings.screen[1] - settings.screen[0]) / settings.resolution;
+        let (pose, stretch) = Pose::new(&settings.world_from_camera)?;
+        let per_raster = (settings.screen[1] - settings.screen[0]) / settings.resolution;
+        let [right, down] = [Vec2::X, Vec2::Y].map(|axis| stretch.vector(axis * per_raster));
+        let screen_per_raster = Vec2::new(right.x, down.y);
         let raster_density = 1.0 / (screen_per_raster.x * screen_per_raster.y).abs();
         let finite = raster_density.is_finite()
             && settings.lens_radius >= 0.0
             && settings.focal_distance > 0.0;
         finite.then(|| Self {
             pose,
-            screen_origin: settings.screen[0],
+            screen_origin: stretch.on_plane(settings.screen[0]),
             screen_per_raster,
+            skew: down.x,
             raster_density,
-            lens_radius: settings.lens_radius * pose.scale,
-            focal_distance: settings.focal_distance * pose.scale,
+            lens_radius: settings.lens_radius * stretch.unit,
+            focal_distance: settings.focal_distance * stretch.unit,
+            stretch,
         })
     }
 
     pub(super) fn resized(self, factor: Vec2) -> Self {
         Self {
             screen_per_raster: self.screen_per_raster / factor,
+            skew: self.skew / factor.y,
             raster_density: self.raster_density * factor.x * factor.y,
             ..self
         }
@@ -68,7 +75,8 @@ impl Perspective {
     #[inline]
     pub(super) fn sample_lens(&self, u: impl FnOnce() -> Vec2) -> LensSample {
         let offset = if self.lens_radius > 0.0 {
-            warp::concentric_disk(u()) * self.lens_radius
+            let disk = warp::concentric_disk(u()) * self.lens_radius;
+            self.stretch.vector(disk)
         } else {
             Vec2::ZERO
         };
@@ -83,7 +91,7 @@ impl Perspective {
     #[inline]
     fn lens_area(&self) -> f32 {
         if self.lens_radius > 0.0 {
-            PI * sqr(self.lens_radius)
+            PI * sqr(self.lens_radius) * self.stretch.area()
         } else {
             1.0
         }
@@ -92,7 +100,8 @@ impl Perspective {
     #[inline]
     pub(super) fn sample_ray(&self, raster: Vec2, u: impl FnOnce() -> Vec2) -> CameraRay {
         let lens = self.sample_lens(u);
-        let screen = self.screen_origin + raster * self.screen_per_raster;
+        let along_x = raster.y * self.skew;
+        let screen = self.screen_origin + raster * self.screen_per_raster + Vec2::X * along_x;
         let through_centre = self.pose.to_world(screen.extend(1.0));
         // All rays of a raster position meet in the plane of focus; a pinhole needs no plane.
         let direction = if self.lens_radius > 0.0 {
@@ -115,8 +124,12 @@ impl Perspective {
         }
         let direction = local.truncate() / local.z;
         let lens = self.pose.to_local(p - self.pose.origin).truncate();
-        let screen = direction + lens / self.focal_distance;
-        Some((screen - self.screen_origin) / self.screen_per_raster)
+        let screen = direction + lens / self.focal_distance - self.screen_origin;
+        let y = screen.y / self.screen_per_raster.y;
+        Some(Vec2::new(
+            (screen.x - self.skew * y) / self.screen_per_raster.x,
+            y,
+        ))
     }
 
     #[inline]
@@ -208,18 +221,18 @@ mod tests {
     }
 
     #[test]
-    fn nothing_leaves_backwards_and_sheared_cameras_are_refused() {
+    fn nothing_leaves_backwards_and_flat_cameras_are_refused() {
         let camera = camera(0.0);
         assert!(camera.raster(Vec3::ZERO, -Vec3::X).is_none());
         assert!(camera.importance(-Vec3::X) == 0.0 && camera.pdf_direction(-Vec3::X) == 0.0);
-        let sheared = Affine3A::from_cols(
+        let flat = Affine3A::from_cols(
             Vec3::X.into(),
-            Vec3::new(0.5, 1.0, 0.0).into(),
+            Vec3::new(0.5, 0.0, 1.0).into(),
             Vec3::Z.into(),
             Vec3::ZERO.into(),
         );
         let settings = PerspectiveSettings {
-            world_from_camera: sheared,
+            world_from_camera: flat,
             resolution: Vec2::splat(8.0),
             screen: [Vec2::new(-1.0, 1.0), Vec2::new(1.0, -1.0)],
             lens_radius: 0.0,

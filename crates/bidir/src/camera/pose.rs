@@ -1,7 +1,7 @@
 //! The position and the axes of a camera. Moves keep the frame's handedness: a mirrored
 //! camera stays mirrored, and its right is the picture's right.
 
-use crate::math::{Affine3A, PI, Vec3, sin_cos, sqr};
+use crate::math::{Affine3A, Mat3, PI, Vec2, Vec3, sin_cos, sqr};
 
 /// The largest angle between a turned camera's axis and the horizon: beyond it right and left would
 /// change places. Unit: radians.
@@ -19,8 +19,46 @@ pub struct Pose {
     pub up: Vec3,
     /// The optical axis.
     pub forward: Vec3,
-    /// Length in the world of a unit of camera space.
-    pub(super) scale: f32,
+}
+
+/// An upper triangular matrix S: with the frame Q of a [`Pose`], any camera's map to the world is Q S.
+///
+/// An even scale is the diagonal (1, 1, 1) times `unit`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Stretch {
+    /// S / S_zz. Its columns are the camera's axes in the frame.
+    pub(super) axes: [Vec3; 3],
+    /// S_zz: length in the world of a unit along the axis.
+    pub(super) unit: f32,
+}
+
+impl Stretch {
+    const EVEN: [Vec3; 3] = [Vec3::X, Vec3::Y, Vec3::Z];
+
+    /// The position on the plane z = 1 of one on the plane z = 1 of camera space.
+    #[inline]
+    pub(super) fn on_plane(&self, p: Vec2) -> Vec2 {
+        self.vector(p) + self.axes[2].truncate()
+    }
+
+    /// The vector in planes of equal depth of one in camera space, in the unit along the axis.
+    #[inline]
+    pub(super) fn vector(&self, v: Vec2) -> Vec2 {
+        let [x, y, _] = self.axes;
+        Vec2::new(x.x * v.x + y.x * v.y, y.y * v.y)
+    }
+
+    /// The area of one of camera space in planes of equal depth.
+    pub(super) fn area(&self) -> f32 {
+        (self.axes[0].x * self.axes[1].y).abs()
+    }
+
+    /// The matrix S, scaled to determinant ±1. None: it is even, which turns no direction.
+    pub(super) fn of_directions(&self) -> Option<Mat3> {
+        let [x, y, z] = self.axes;
+        let size = libm::cbrtf((x.x * y.y * z.z).abs());
+        (self.axes != Self::EVEN).then(|| Mat3::from_cols(x / size, y / size, z / size))
+    }
 }
 
 /// A change of the direction in which a camera looks. Unit: radians.
@@ -33,9 +71,9 @@ pub struct Turn {
 }
 
 impl Pose {
-    /// The place of a camera. None: the map is no even scaling with rotation and mirroring, or not
-    /// finite.
-    pub(super) fn new(world_from_camera: &Affine3A) -> Option<Self> {
+    /// The place of a camera: the frame whose axes x and y span the camera's planes of equal depth, and the
+    /// rest of its map. None: the map is flat, or not finite.
+    pub(super) fn new(world_from_camera: &Affine3A) -> Option<(Self, Stretch)> {
         let m = world_from_camera.matrix3;
         let axes = [m.x_axis, m.y_axis, m.z_axis].map(Vec3::from);
         let scale = axes[0].length();
@@ -43,14 +81,24 @@ impl Pose {
             .iter()
             .all(|axis| (axis.length() - scale).abs() <= 1e-3 * scale);
         let square = (0..3).all(|i| axes[i].dot(axes[(i + 1) % 3]).abs() <= 1e-3 * sqr(scale));
-        let [right, up, forward] = axes.map(|axis| axis / scale);
-        (even && square && scale > 0.0 && world_from_camera.is_finite()).then(|| Self {
+        let (axes, stretch) = if even && square {
+            let stretch = Stretch {
+                axes: Stretch::EVEN,
+                unit: scale,
+            };
+            (axes.map(|axis| axis / scale), stretch)
+        } else {
+            stretched(axes)?
+        };
+        let [right, up, forward] = axes;
+        let is_place = stretch.unit > 0.0 && world_from_camera.is_finite();
+        let pose = Self {
             origin: world_from_camera.translation.into(),
             right,
             up,
             forward,
-            scale,
-        })
+        };
+        is_place.then_some((pose, stretch))
     }
 
     /// A world vector in the camera's axes.
@@ -125,6 +173,26 @@ impl Pose {
     }
 }
 
+/// Splits a camera's axes into a frame and a stretch, by Gram and Schmidt. None: they are flat.
+fn stretched([x, y, z]: [Vec3; 3]) -> Option<([Vec3; 3], Stretch)> {
+    let right = x.try_normalize()?;
+    let up = y.reject_from_normalized(right).try_normalize()?;
+    let normal = right.cross(up);
+    let unit = normal.dot(z);
+    let forward = if unit < 0.0 { -normal } else { normal };
+    let in_frame = |v: Vec3| Vec3::new(right.dot(v), up.dot(v), forward.dot(v)) / unit.abs();
+    let stretch = Stretch {
+        axes: [
+            Vec3::X * in_frame(x).x,
+            in_frame(y).with_z(0.0),
+            in_frame(z).with_z(1.0),
+        ],
+        unit: unit.abs(),
+    };
+    let is_solid = stretch.axes.iter().all(|axis| axis.is_finite());
+    (is_solid && stretch.area() > 0.0).then_some(([right, up, forward], stretch))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -140,7 +208,6 @@ mod tests {
                 right,
                 up,
                 forward,
-                scale: 2.0,
             }
         };
         let level = frame(Vec3::X, Vec3::Y);

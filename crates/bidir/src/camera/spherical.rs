@@ -10,7 +10,7 @@
 use super::pose::Pose;
 use super::{CameraRay, LensSample};
 use crate::locus::Locus;
-use crate::math::{Affine3A, PI, Vec2, Vec3, direction_to_square, square_to_direction};
+use crate::math::{Affine3A, Mat3, PI, Vec2, Vec3, direction_to_square, square_to_direction};
 
 /// How directions lie on the film of a [`Spherical`] camera.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -28,21 +28,26 @@ pub struct Spherical {
     pub(super) pose: Pose,
     resolution: Vec2,
     mapping: SphericalMapping,
+    /// The map from directions of camera space to the pose's axes, of determinant ±1, and its inverse. None:
+    /// they are the same.
+    stretch: Option<[Mat3; 2]>,
 }
 
 impl Spherical {
-    /// The camera at a place: x right, y up, z forward; even scaling and mirroring are allowed. Unit
-    /// of `resolution`: pixels. None: the map is another, or the film is empty.
+    /// The camera at a place: x right, y up, z forward. Unit of `resolution`: pixels. None: the map is flat,
+    /// or the film is empty.
     pub fn new(
         world_from_camera: &Affine3A,
         resolution: Vec2,
         mapping: SphericalMapping,
     ) -> Option<Self> {
-        let pose = Pose::new(world_from_camera)?;
+        let (pose, stretch) = Pose::new(world_from_camera)?;
+        let stretch = stretch.of_directions();
         resolution.cmpgt(Vec2::ZERO).all().then_some(Self {
             pose,
             resolution,
             mapping,
+            stretch: stretch.map(|matrix| [matrix, matrix.inverse()]),
         })
     }
 
@@ -75,6 +80,7 @@ impl Spherical {
                 Vec3::new(d.x, d.z, d.y)
             }
         };
+        let local = self.stretch.map_or(local, |[stretch, _]| stretch * local);
         CameraRay {
             lens: self.lens(),
             origin: self.pose.origin,
@@ -82,9 +88,21 @@ impl Spherical {
         }
     }
 
+    /// A direction of the world in camera space, and dω_camera/dω_world = |det S⁻¹| / |S⁻¹ω|³.
+    #[inline]
+    fn to_camera(&self, w: Vec3) -> (Vec3, f32) {
+        let local = self.pose.to_local(w);
+        let Some([_, inverse]) = &self.stretch else {
+            return (local, 1.0);
+        };
+        let local = *inverse * local;
+        let length = local.length();
+        (local / length, 1.0 / (length * length * length))
+    }
+
     #[inline]
     pub(super) fn raster(&self, w: Vec3) -> Vec2 {
-        let local = self.pose.to_local(w);
+        let (local, _) = self.to_camera(w);
         let p = match self.mapping {
             SphericalMapping::Equirectangular => {
                 let around = libm::atan2f(local.z, local.x) / (2.0 * PI);
@@ -119,14 +137,15 @@ impl Spherical {
     #[inline]
     pub(super) fn density(&self, w: Vec3) -> f32 {
         let area = self.resolution.x * self.resolution.y;
-        match self.mapping {
+        let (local, change) = self.to_camera(w);
+        let density = match self.mapping {
             SphericalMapping::Equirectangular => {
-                let local = self.pose.to_local(w);
                 let sin = libm::hypotf(local.x, local.z);
                 // At the pole itself a whole row of pixels sees one direction.
                 area / (2.0 * PI * PI * sin.max(1e-6))
             }
             SphericalMapping::EqualArea => area / (4.0 * PI),
-        }
+        };
+        density * change
     }
 }

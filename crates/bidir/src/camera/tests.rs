@@ -20,8 +20,19 @@ fn turn() -> Mat3 {
     Mat3::from_rotation_y(2.0) * Mat3::from_rotation_x(0.6)
 }
 
+/// A map that is neither square nor even.
+const STRETCH: Mat3 = Mat3::from_cols(
+    Vec3::new(1.4, 0.0, 0.0),
+    Vec3::new(0.3, 0.8, 0.0),
+    Vec3::new(0.1, -0.1, 1.1),
+);
+
 fn camera(scale: Vec3, screen: [Vec2; 2], lens_radius: f32) -> Camera {
-    let map = Affine3A::from_mat3_translation(turn() * Mat3::from_diagonal(scale), EYE);
+    stretched(Mat3::from_diagonal(scale), screen, lens_radius)
+}
+
+fn stretched(stretch: Mat3, screen: [Vec2; 2], lens_radius: f32) -> Camera {
+    let map = Affine3A::from_mat3_translation(turn() * stretch, EYE);
     let settings = PerspectiveSettings {
         world_from_camera: map,
         resolution: RESOLUTION,
@@ -34,7 +45,7 @@ fn camera(scale: Vec3, screen: [Vec2; 2], lens_radius: f32) -> Camera {
 
 /// Pinholes and lenses with the radius of the lens in the world. All see nothing beyond
 /// 1 - cosθ = 0.45.
-fn examples() -> [(&'static str, Camera, f32); 5] {
+fn examples() -> [(&'static str, Camera, f32); 6] {
     let centred = [Vec2::new(-0.8, 0.6), Vec2::new(0.8, -0.6)];
     let shifted = [Vec2::new(-0.2, 0.9), Vec2::new(0.9, 0.1)];
     let mirror = Vec3::new(-1.5, 1.5, 1.5);
@@ -46,6 +57,7 @@ fn examples() -> [(&'static str, Camera, f32); 5] {
             0.0,
         ),
         ("pinhole, mirrored", camera(mirror, centred, 0.0), 0.0),
+        ("pinhole, stretched", stretched(STRETCH, centred, 0.0), 0.0),
         ("lens", camera(Vec3::splat(2.0), centred, 0.3), 0.6),
         (
             "lens, shifted and mirrored",
@@ -56,12 +68,13 @@ fn examples() -> [(&'static str, Camera, f32); 5] {
 }
 
 /// Cameras without a lens: of parallel rays, and of all directions.
-fn others() -> [(&'static str, Camera); 4] {
+fn others() -> [(&'static str, Camera); 5] {
     let map = |scale| Affine3A::from_mat3_translation(turn() * Mat3::from_diagonal(scale), EYE);
+    let uneven = Affine3A::from_mat3_translation(turn() * STRETCH, EYE);
     let mirror = Vec3::new(-1.5, 1.5, 1.5);
-    let parallel = |scale| {
+    let parallel = |world_from_camera| {
         let settings = OrthographicSettings {
-            world_from_camera: map(scale),
+            world_from_camera,
             resolution: RESOLUTION,
             screen: [Vec2::new(-0.8, 0.6), Vec2::new(0.9, -0.4)],
         };
@@ -71,8 +84,9 @@ fn others() -> [(&'static str, Camera); 4] {
         Camera::Spherical(Spherical::new(&map(scale), RESOLUTION, mapping).unwrap())
     };
     [
-        ("parallel", parallel(Vec3::splat(2.0))),
-        ("parallel, mirrored", parallel(mirror)),
+        ("parallel", parallel(map(Vec3::splat(2.0)))),
+        ("parallel, mirrored", parallel(map(mirror))),
+        ("parallel, stretched", parallel(uneven)),
         (
             "longitude and latitude",
             around(mirror, SphericalMapping::Equirectangular),
@@ -290,6 +304,59 @@ fn the_density_of_rays_without_a_lens_is_the_jacobian() {
             let extent = dx.cross(dy).length() / sqr(2.0 * h);
             let w = camera.sample_ray(raster, || Vec2::splat(0.5)).direction;
             check_close(extent * camera.pdf_direction(w), 1.0, 5e-3, name);
+        }
+    }
+}
+
+/// A stretched camera sees through each point of the film what its map takes the point of camera space to.
+#[test]
+fn stretched_cameras_see_what_their_map_says() {
+    let map = Affine3A::from_mat3_translation(turn() * STRETCH, EYE);
+    let screen = [Vec2::new(-0.8, 0.6), Vec2::new(0.8, -0.6)];
+    let raster = Vec2::new(31.0, 4.5);
+    let at = screen[0] + (screen[1] - screen[0]) * raster / RESOLUTION;
+    for u_lens in [Vec2::splat(0.5), Vec2::new(0.02, 0.3)] {
+        // The plane of focus of camera space is at a distance of 4.
+        let focus = map.transform_point3((at * 4.0).extend(4.0));
+        let camera = stretched(STRETCH, screen, 0.2);
+        let ray = camera.sample_ray(raster, || u_lens);
+        let towards = (focus - ray.origin).normalize();
+        assert!(ray.direction.distance(towards) < 1e-5);
+        let lens = map.inverse().transform_point3(ray.origin);
+        assert!(lens.z.abs() < 1e-5 && lens.length() < 0.2 + 1e-5, "{lens}");
+        let area = camera.pdf_direction(ray.direction) / camera.importance(ray.direction);
+        let cos = ray.lens.locus.n_g.dot(ray.direction);
+        check_close(
+            area / cos,
+            PI * sqr(0.2) * 1.4 * 0.8,
+            1e-4,
+            "area of the lens",
+        );
+    }
+    let (_, parallel) = others()[2];
+    let ray = parallel.sample_ray(Vec2::ZERO, || Vec2::ZERO);
+    let corner = map.transform_point3(Vec3::new(-0.8, 0.6, 0.0));
+    assert!(
+        ray.direction
+            .distance(map.transform_vector3(Vec3::Z).normalize())
+            < 1e-5
+    );
+    assert!((corner - ray.origin).cross(ray.direction).length() < 1e-4);
+}
+
+#[test]
+fn a_stretched_picture_of_all_directions_has_the_density_of_its_rays() {
+    let map = Affine3A::from_mat3_translation(turn() * STRETCH, EYE);
+    for mapping in [
+        SphericalMapping::Equirectangular,
+        SphericalMapping::EqualArea,
+    ] {
+        let camera = Camera::Spherical(Spherical::new(&map, RESOLUTION, mapping).unwrap());
+        for raster in [(33.3, 7.2), (3.1, 22.6), (21.7, 16.4)].map(Vec2::from) {
+            let w = camera.sample_ray(raster, || Vec2::splat(0.5)).direction;
+            assert!((camera.raster(EYE + w, w).unwrap() - raster).length() < 2e-3);
+            let extent = solid_angle(&camera, raster, Vec2::splat(0.5));
+            check_close(extent * camera.pdf_direction(w), 1.0, 2e-2, "stretched");
         }
     }
 }

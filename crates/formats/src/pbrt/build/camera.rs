@@ -197,8 +197,7 @@ impl CameraSettings {
             }
         };
         camera.ok_or_else(|| {
-            let message =
-                "the camera's screen is empty, or its transformation is sheared or scaled unevenly";
+            let message = "the camera's screen is empty, or its transformation is flat";
             Fault::scene(self.span, message)
         })
     }

@@ -28,6 +28,30 @@ fn parallel_rays_begin_on_the_screen() {
     assert_eq!(corner, (Vec3::new(-4.0, 2.0, 0.0), Vec3::Z));
 }
 
+/// Stretched and sheared cameras look where pbrt-v4 looks: at the screen point that the map takes to the world.
+#[test]
+fn cameras_may_be_scaled_unevenly() {
+    let [centre, corner] = rays("Scale 2 1 1 Camera \"orthographic\"");
+    assert_eq!(centre, (Vec3::ZERO, Vec3::Z));
+    assert_eq!(corner, (Vec3::new(-1.0, 1.0, 0.0), Vec3::Z));
+    let [_, corner] = rays("Scale 1 4 2 Camera \"perspective\"");
+    let expected = Vec3::new(-2.0, 0.25, 0.5).normalize();
+    assert!(corner.1.distance(expected) < 1e-6, "{corner:?}");
+    // The columns are the images of the axes of the world: x' = x + y/2.
+    let shear = "ConcatTransform [1 0 0 0 .5 1 0 0 0 0 1 0 0 0 0 1]";
+    let [_, corner] = rays(&format!("{shear} Camera \"perspective\""));
+    let expected = Vec3::new(-2.5, 1.0, 1.0).normalize();
+    assert!(corner.1.distance(expected) < 1e-6, "{corner:?}");
+    let [_, corner] = rays(&format!("{shear} Camera \"orthographic\""));
+    assert!(
+        corner.0.distance(Vec3::new(-2.5, 1.0, 0.0)) < 1e-6,
+        "{corner:?}"
+    );
+    let [centre, _] =
+        rays("Scale 1 2 1 Camera \"spherical\" \"string mapping\" \"equirectangular\"");
+    assert!(centre.1.distance(Vec3::NEG_X) < 1e-6, "{centre:?}");
+}
+
 /// The rays of one raster position meet where the parallel ray crosses the plane of focus.
 #[test]
 fn a_lens_of_parallel_rays_is_sharp_at_its_focal_distance() {
