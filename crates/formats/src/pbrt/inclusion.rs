@@ -1,6 +1,7 @@
 //! Includes texts within texts, and checks their limits.
 
-use super::parser::{Parser, decode};
+use super::decode::decode;
+use super::parser::Parser;
 use super::state::Scope;
 use crate::bytes::FileBytes;
 use crate::error::{ErrorKind, Result};

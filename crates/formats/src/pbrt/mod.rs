@@ -10,6 +10,7 @@
 //! their places.
 
 mod build;
+mod decode;
 mod definitions;
 mod directives;
 mod inclusion;

@@ -1,5 +1,6 @@
 //! Parses files into a [`SceneDescription`].
 
+use super::decode::decode;
 use super::directives;
 use super::inclusion::Counts;
 use super::known::{self, Block, DIRECTIVES};
@@ -9,12 +10,12 @@ use super::scene::{Entity, MaterialDescription, SceneDescription, TextureKind};
 use super::state::{OpenBlock, Opener, Scope};
 use super::v3;
 use crate::bytes::{self, FileBytes};
-use crate::error::{Error, ErrorKind, Place, Result};
+use crate::error::{ErrorKind, Result};
 use crate::files::Files;
 use crate::foreign;
 use crate::import::warn;
 use crate::limits::{self, LONGEST_TEXT};
-use crate::source::{Fault, FileId, Span, line_and_column};
+use crate::source::{Fault, FileId, Span};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -59,27 +60,6 @@ fn parse(
         Ok(()) => Ok(parser.scene),
         Err(fault) => Err(parser.scene.sources.error(fault)),
     }
-}
-
-/// Decodes bytes as UTF-8 text.
-pub(super) fn decode(path: &Path, bytes: Vec<u8>) -> Result<String> {
-    if bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff]) {
-        let error = Error::new(ErrorKind::Syntax, "the text is UTF-16").in_file(path);
-        return Err(error.with_hint("save it as UTF-8"));
-    }
-    String::from_utf8(bytes).map_err(|error| {
-        let before = &error.as_bytes()[..error.utf8_error().valid_up_to()];
-        let before = String::from_utf8_lossy(before);
-        let (line, column) = line_and_column(&before, before.len());
-        let error = Error::new(ErrorKind::Syntax, "the text is not UTF-8").in_file(path);
-        error
-            .at(Place {
-                line,
-                column,
-                excerpt: None,
-            })
-            .with_hint("save it as UTF-8")
-    })
 }
 
 /// The whole state of the parser.

@@ -83,7 +83,8 @@ pub(super) fn check_emission(span: Span, emission: Rgb) -> Result<Rgb, Fault> {
     ))
 }
 
-fn rgb(parameter: &Parameter, purpose: Purpose) -> Result<Rgb, Fault> {
+/// Returns the colour of an `rgb`.
+pub(super) fn rgb(parameter: &Parameter, purpose: Purpose) -> Result<Rgb, Fault> {
     let value = three(parameter)?;
     if value.iter().any(|&channel| channel > purpose.most()) {
         return Err(above_one(parameter));

@@ -18,9 +18,26 @@ use bidir::material::{
     Material, Mixture, NormalMap, Relief, Roughness, RoughnessMapping,
 };
 use bidir::scene::RenderSpace;
-use bidir::texture::{ColorTexture, FloatTexture, Scale};
+use bidir::texture::{ColorTexture, FloatTexture, Mix, Scale};
 use std::collections::BTreeMap;
 use std::sync::Arc;
+
+/// A material, and the part of the surface that has it.
+#[derive(Clone)]
+pub(super) struct Built {
+    pub(super) material: Material,
+    /// None: all. Rays pass through the rest, which is an `interface` of a mixture.
+    pub(super) coverage: Option<FloatTexture>,
+}
+
+impl From<Material> for Built {
+    fn from(material: Material) -> Self {
+        Self {
+            material,
+            coverage: None,
+        }
+    }
+}
 
 /// Builds the materials of a description one by one.
 pub(super) struct Materials<'a> {
@@ -60,10 +77,10 @@ impl<'a> Materials<'a> {
         context: &mut Context<'_>,
         textures: &mut Textures<'_>,
         index: usize,
-    ) -> Result<Option<Material>, Fault> {
+    ) -> Result<Option<Built>, Fault> {
         let described = self.described;
         let Some(entity) = described[index].entity.as_ref() else {
-            return Ok(Some(grey()));
+            return Ok(Some(grey().into()));
         };
         let mut parameters = Parameters {
             textures,
@@ -87,23 +104,29 @@ impl<'a> Materials<'a> {
             "mix" => {
                 let material = self.mix(&mut parameters, index)?;
                 parameters.reader.finish()?;
-                return Ok(Some(material));
+                return Ok(material);
             }
             "interface" | "none" | "" => {
                 parameters.reader.finish()?;
                 return Ok(None);
             }
-            kind => return parameters.substitute(kind).map(Some),
+            kind => return parameters.substitute(kind).map(|grey| Some(grey.into())),
         };
         let relief = parameters.relief()?;
         parameters.reader.finish()?;
-        Ok(Some(match relief {
+        let material = match relief {
             Some(relief) => material.embossed(relief),
             None => material,
-        }))
+        };
+        Ok(Some(material.into()))
     }
 
-    fn mix(&mut self, from: &mut Parameters<'_, '_, '_>, index: usize) -> Result<Material, Fault> {
+    /// Builds a mixture. None: no part of it is visible.
+    fn mix(
+        &mut self,
+        from: &mut Parameters<'_, '_, '_>,
+        index: usize,
+    ) -> Result<Option<Built>, Fault> {
         let amount = from.float("amount", 0.5)?;
         let reader = &mut from.reader;
         let Some(parameter) = reader.find(ParameterType::String, "materials") else {
@@ -121,10 +144,14 @@ impl<'a> Materials<'a> {
         let parts = [first, second].map(|name| self.part(from, name, span));
         self.open.pop();
         let [first, second] = parts;
-        Ok(Material::Mix(Arc::new(Mixture {
-            materials: [first?, second?],
-            amount,
-        })))
+        match (first?, second?) {
+            (None, None) => Ok(None),
+            (Some(first), None) => Ok(Some(first.covering(inverted(amount)))),
+            (None, Some(second)) => Ok(Some(second.covering(amount))),
+            (Some(first), Some(second)) => {
+                mixed(from.reader.context, span, [first, second], amount).map(Some)
+            }
+        }
     }
 
     /// Builds the part `name` of a mixture.
@@ -133,7 +160,7 @@ impl<'a> Materials<'a> {
         from: &mut Parameters<'_, '_, '_>,
         name: &str,
         span: Span,
-    ) -> Result<Material, Fault> {
+    ) -> Result<Option<Built>, Fault> {
         let Some(&index) = self.named.get(&*known::normalized(name)) else {
             let fault = Fault::scene(span, format!("unknown material `{}`", shorten(name)));
             return Err(fault.with_nearest(name, self.named.keys().copied()));
@@ -152,10 +179,77 @@ impl<'a> Materials<'a> {
             let substitute = "its part is clear glass";
             from.reader.context.unsupported(span, what, substitute)?;
         }
-        part.ok_or_else(|| {
-            let message = format!("the material `{}` is not a surface", shorten(name));
-            Fault::scene(span, message).with_hint("a mixture needs two surfaces")
-        })
+        Ok(part)
+    }
+}
+
+impl Built {
+    /// The material on a part of what it covers.
+    fn covering(self, part: FloatTexture) -> Self {
+        let coverage = match self.coverage {
+            None => part,
+            Some(texture) => FloatTexture::Scale(Arc::new(Scale {
+                texture,
+                factor: part,
+            })),
+        };
+        Self {
+            coverage: Some(coverage),
+            ..self
+        }
+    }
+}
+
+/// Returns 1 - `amount`.
+fn inverted(amount: FloatTexture) -> FloatTexture {
+    FloatTexture::Mix(Arc::new(Mix {
+        textures: [1.0, 0.0].map(FloatTexture::Constant),
+        amount,
+    }))
+}
+
+/// Mixes two materials of which neither is an `interface`, though their parts may be.
+///
+/// With coverages c₁ and c₂ and an amount a, c = (1 - a) c₁ + a c₂ is covered, the part a c₂ / c of it by the
+/// second.
+fn mixed(
+    context: &mut Context<'_>,
+    span: Span,
+    parts: [Built; 2],
+    amount: FloatTexture,
+) -> Result<Built, Fault> {
+    let [c1, c2] = parts.each_ref().map(|part| match &part.coverage {
+        None => Some(1.0),
+        Some(coverage) => constant(coverage),
+    });
+    let is_whole = parts.iter().all(|part| part.coverage.is_none());
+    let materials = parts.map(|part| part.material);
+    let mixture = |amount| Material::Mix(Arc::new(Mixture { materials, amount }));
+    if is_whole {
+        return Ok(mixture(amount).into());
+    }
+    let (Some(c1), Some(c2), Some(a)) = (c1, c2, constant(&amount)) else {
+        let what = "a mixture of a textured mixture with `interface`";
+        context.unsupported(span, what, "all of it is a surface")?;
+        return Ok(mixture(amount).into());
+    };
+    let covered = (1.0 - a) * c1 + a * c2;
+    let of_second = if covered > 0.0 { a * c2 / covered } else { 0.0 };
+    let built = Built::from(mixture(FloatTexture::Constant(of_second)));
+    Ok(built.covering(FloatTexture::Constant(covered)))
+}
+
+/// The value of a texture that is the same everywhere, between 0 and 1. None: it is not.
+fn constant(texture: &FloatTexture) -> Option<f32> {
+    match texture {
+        FloatTexture::Constant(value) => Some(value.clamp(0.0, 1.0)),
+        FloatTexture::Scale(scale) => Some(constant(&scale.texture)? * constant(&scale.factor)?),
+        FloatTexture::Mix(mix) => {
+            let [first, second] = mix.textures.each_ref().map(constant);
+            let amount = constant(&mix.amount)?;
+            Some((1.0 - amount) * first? + amount * second?)
+        }
+        _ => None,
     }
 }
 

@@ -35,6 +35,7 @@ use crate::source::{Fault, Span};
 use bidir::medium::MediumId;
 use bidir::scene::{Emission, MaterialId};
 use bidir::shape::Shape;
+use bidir::texture::{FloatTexture, Scale};
 use context::Context;
 use emission::AreaEmission;
 use glam::{DAffine3, DVec3};
@@ -73,8 +74,8 @@ struct Builder<'a> {
     assembly: Assembly,
     textures: Textures<'a>,
     media: Media,
-    /// By index; None where there is no surface.
-    materials: Vec<Option<MaterialId>>,
+    /// By index, with the part of a surface that has it; None where there is no surface.
+    materials: Vec<Option<(MaterialId, Option<FloatTexture>)>>,
     /// The media within their surfaces.
     contents: Vec<Option<MediumId>>,
     /// The emission of the last shape.
@@ -147,8 +148,9 @@ impl<'a> Builder<'a> {
                 context.unused(build)?.flatten()
             };
             self.assembly.summary.materials += usize::from(built.is_some());
-            let id = built.map(|material| self.assembly.builder.material(material));
-            self.materials.push(id);
+            let builder = &mut self.assembly.builder;
+            let built = built.map(|built| (builder.material(built.material), built.coverage));
+            self.materials.push(built);
             let content = materials
                 .take_content(index)
                 .filter(|_| used.contains(&index));
@@ -180,13 +182,15 @@ impl<'a> Builder<'a> {
             }
             media.inside = content;
         }
-        let material = self.materials.get(shape.material).copied().flatten();
+        let material = self.materials.get(shape.material).cloned().flatten();
+        let (material, part) = material.unzip();
+        let coverage = all_of(alpha, part.flatten());
         if material.is_none() && !media.is_boundary() {
             return Ok(());
         }
         let skin = Skin {
             material,
-            coverage: alpha.as_ref(),
+            coverage: coverage.as_ref(),
             media,
         };
         let emission = match &shape.area_light {
@@ -282,6 +286,16 @@ fn size(
         primitives: geometry.primitives() * copies,
         vertices: geometry.vertices() * copies,
         shapes: parts * copies,
+    }
+}
+
+/// The product of two coverages.
+fn all_of(first: Option<FloatTexture>, second: Option<FloatTexture>) -> Option<FloatTexture> {
+    match (first, second) {
+        (Some(texture), Some(factor)) => {
+            Some(FloatTexture::Scale(Arc::new(Scale { texture, factor })))
+        }
+        (first, second) => first.or(second),
     }
 }
 

@@ -1,14 +1,15 @@
 //! Reads spectra given by samples, names, files or temperatures.
 
+use super::color::{self, Purpose};
 use super::context::Context;
 use super::reader::{Reader, single};
 use crate::pbrt::lexer::shorten;
 use crate::pbrt::parameters::{Parameter, ParameterType, Values};
-use crate::source::Fault;
+use crate::source::{Fault, Span};
 use crate::spectra::{self, Beyond, Spectrum};
 use crate::text::number;
 use bidir::names::nearest;
-use bidir::spectrum::Rgb;
+use bidir::spectrum::{Rgb, luminance};
 
 /// The range of temperatures, beyond which no light is visible. Unit: K.
 const TEMPERATURES: [f32; 2] = [100.0, 1e8];
@@ -110,24 +111,46 @@ pub(super) fn copper() -> (Rgb, Rgb) {
     }
 }
 
-/// Reads the index of refraction `name` of a dielectric: a number, or the value of a spectrum at the d
-/// line.
+/// Reads the index of refraction `name` of a dielectric: a number, the luminance of a colour, or the value of
+/// a spectrum at the d line.
 pub(super) fn read_eta(
     reader: &mut Reader<'_, '_>,
     name: &'static str,
     default: f32,
 ) -> Result<f32, Fault> {
-    if let Some(eta) = reader.optional_float(name)? {
-        return positive(reader, name, eta);
-    }
-    let Some((spectrum, parameter)) = read(reader, name)? else {
-        return Ok(default);
+    let number = reader.optional_float(name)?;
+    let Some((eta, span)) = spectral_eta(reader, name)? else {
+        return positive(reader, name, number.unwrap_or(default));
     };
-    let eta = spectrum.at(D_LINE) as f32;
-    let message =
-        format!("`{name}` has no dispersion here: the index is {eta:.4} at every wavelength");
-    reader.context.warn(parameter.value_span, message);
+    if number.is_some() {
+        let message = format!("`float {name}` has no effect beside the spectrum `{name}`");
+        reader.context.warn(span, message);
+    }
     positive(reader, name, eta)
+}
+
+/// Reads an index of refraction that depends on the wavelength, and is replaced by one that does not. None: the
+/// file has none.
+fn spectral_eta(
+    reader: &mut Reader<'_, '_>,
+    name: &'static str,
+) -> Result<Option<(f32, Span)>, Fault> {
+    let (eta, span, is_constant) = if let Some(parameter) = reader.find(ParameterType::Rgb, name) {
+        let rgb = color::rgb(parameter, Purpose::Unbounded)?;
+        let is_grey = rgb.iter().all(|channel| *channel == rgb[0]);
+        let eta = if is_grey { rgb[0] } else { luminance(rgb) };
+        (eta, parameter.value_span, is_grey)
+    } else if let Some((spectrum, parameter)) = read(reader, name)? {
+        (spectrum.at(D_LINE) as f32, parameter.value_span, false)
+    } else {
+        return Ok(None);
+    };
+    if !is_constant {
+        let message =
+            format!("`{name}` has no dispersion here: the index is {eta:.4} at every wavelength");
+        reader.context.warn(span, message);
+    }
+    Ok(Some((eta, span)))
 }
 
 fn positive(reader: &Reader<'_, '_>, name: &str, eta: f32) -> Result<f32, Fault> {

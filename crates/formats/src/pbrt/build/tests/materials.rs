@@ -2,6 +2,8 @@ use super::{check_world, world};
 use bidir::bsdf::{Bsdf, TransportMode};
 use bidir::material::Material;
 use bidir::math::{Vec2, Vec3};
+use bidir::sampler::{Domain, Sampler, SamplerKind};
+use bidir::scene::{Chances, Scene};
 use bidir::spectrum::{ColorModel, Wavelengths};
 use bidir::texture::TexturePoint;
 
@@ -118,6 +120,97 @@ fn a_mixture_is_its_second_material_with_probability_amount() {
     let mixtures = scene.materials().iter();
     let mixtures = mixtures.filter(|material| matches!(material, Material::Mix(_)));
     assert_eq!(mixtures.count(), 2);
+}
+
+/// The part of a sphere that rays meet, whose material is the last one.
+#[track_caller]
+fn covered(materials: &str) -> (f64, Scene) {
+    let text = format!("{PARTS}MakeNamedMaterial \"i\" \"string type\" \"interface\"\n{materials}");
+    let scene = world(&format!("{text} Shape \"sphere\""));
+    let sampler = Sampler::new(SamplerKind::Independent, 7);
+    let rays = 4096;
+    let meets = |i: &u64| {
+        let stream = sampler.stream(Domain::Camera, 0, *i);
+        let chances = Chances::new(&stream, 1);
+        scene.intersect(Vec3::ZERO, Vec3::Z, chances).is_some()
+    };
+    let met = (0..rays).filter(meets).count();
+    (met as f64 / rays as f64, scene)
+}
+
+#[track_caller]
+fn check_covered(materials: &str, expected: f64) -> Scene {
+    let (part, scene) = covered(materials);
+    // Four standard errors.
+    assert!(
+        (part - expected).abs() < 0.03,
+        "{materials}: {part} instead of {expected}"
+    );
+    scene
+}
+
+/// Rays pass through the `interface` of a mixture, as in pbrt-v4.
+#[test]
+fn a_mixture_with_an_interface_is_there_in_part() {
+    let mix = |first: &str, second: &str, amount: &str| {
+        format!(
+            "Material \"mix\" \"string materials\" [\"{first}\" \"{second}\"] \
+             \"float amount\" {amount}"
+        )
+    };
+    check_covered(&mix("a", "i", ".25"), 0.75);
+    check_covered(&mix("i", "a", ".25"), 0.25);
+    check_covered(&mix("i", "i", ".25"), 0.0);
+    let named = |name: &str, parts: [&str; 2], amount: &str| {
+        let [first, second] = parts;
+        format!(
+            "MakeNamedMaterial \"{name}\" \"string type\" \"mix\" \"string materials\" \
+             [\"{first}\" \"{second}\"] \"float amount\" {amount}\n"
+        )
+    };
+    let half = named("h", ["i", "a"], ".5");
+    check_covered(&(half.clone() + &mix("h", "i", ".5")), 0.25);
+    // 0.75 · 0.5 of the first and 0.25 of the second: 0.4 of what is there is glass.
+    let scene = check_covered(&(half + &mix("h", "b", ".25")), 0.625);
+    let Some(Material::Mix(mixture)) = scene.materials().last() else {
+        panic!("it is a mixture");
+    };
+    let of_second = mixture
+        .amount
+        .eval(&TexturePoint::of_parameters(Vec2::ZERO));
+    assert!((of_second - 0.4).abs() < 1e-6, "{of_second}");
+    // With `alpha` it is their product.
+    let text = mix("i", "a", ".5");
+    let (part, _) = covered(&format!(
+        "{text} Shape \"sphere\" \"float radius\" .5 \"float alpha\" .5\n\
+        Material \"interface\""
+    ));
+    assert!((part - 0.25).abs() < 0.03, "{part}");
+}
+
+/// An index may have any of the format's types of spectra, or be a number.
+#[test]
+fn an_index_of_refraction_is_a_number_or_any_spectrum() {
+    let eta = |parameter: &str| {
+        let scene = world(&format!(
+            "Material \"dielectric\" {parameter} Shape \"sphere\""
+        ));
+        let Some(Material::Dielectric { eta, .. }) = scene.materials().last() else {
+            panic!("it is glass");
+        };
+        *eta
+    };
+    let check = |parameter: &str, expected: f32| {
+        let eta = eta(parameter);
+        assert!((eta - expected).abs() < 1e-4, "{parameter}: {eta}");
+    };
+    check("", 1.5);
+    check("\"float eta\" 1.3", 1.3);
+    check("\"rgb eta\" [1.7 1.7 1.7]", 1.7);
+    check("\"spectrum eta\" [300 1.2 800 1.2]", 1.2);
+    check("\"spectrum eta\" \"glass-BK7\"", 1.5168);
+    // The luminance of the colour; the spectrum has priority over the number.
+    check("\"rgb eta\" [1.5 1.6 1.7] \"float eta\" 3", 1.5859);
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! Scenes in a few lines: the built scenes, and errors.
 
+mod accepted;
 mod digest;
 mod film;
 mod lights;
