@@ -4,6 +4,7 @@ use super::document::{Context, Document};
 use super::material::{Built as BuiltMaterial, Materials};
 use super::mesh::Surface;
 use super::node::Nodes;
+use super::outlook::{Needs, Outlook};
 use super::outside::{self, Extent};
 use super::place::{GltfFault, Place};
 use super::{SETTINGS, light, mesh, view};
@@ -15,6 +16,7 @@ use bidir::math::Affine3A;
 use bidir::medium::MediumSides;
 use bidir::shape::{Mesh, Shape};
 use glam::{DAffine3, DVec3};
+use std::cell::Cell;
 use std::collections::BTreeMap;
 
 type Assembly = import::Assembly<Place>;
@@ -29,6 +31,8 @@ pub(super) struct Builder<'a> {
     extent: Extent,
     /// Places of meshes.
     places: u64,
+    /// Lights of the file that are no surfaces.
+    punctual: usize,
 }
 
 /// A mesh of the file where a scene has it.
@@ -44,8 +48,12 @@ struct MeshUse<'a> {
 type MeshKey = (usize, Vec<u32>);
 
 impl<'a> Builder<'a> {
-    /// Reads everything and puts it in its place.
-    pub(super) fn gather(context: &mut Context<'a>) -> Gathered<Place> {
+    /// Reads everything and puts it in its place, with the defaults of `outlook`. Notes those that it `needs`.
+    pub(super) fn gather(
+        context: &mut Context<'a>,
+        outlook: &Outlook,
+        needs: &Cell<Needs>,
+    ) -> Gathered<Place> {
         let document = context.document;
         document.start_counting(context.log.stored());
         let nodes = Nodes::of(document, context.layout.render_from_world())?;
@@ -59,14 +67,17 @@ impl<'a> Builder<'a> {
             materials: Materials::default(),
             extent: Extent::NONE,
             places: 0,
+            punctual: 0,
         };
         if !document.root.animations.is_empty() {
             let message = "animations have no effect: nodes keep their own transformations";
             context.warn(Place::TOP.key("animations"), message);
         }
         builder.add_meshes(context)?;
-        let world_from_camera = view.placed(context, resolution, &builder.extent);
-        builder.add_lights(context, &world_from_camera)?;
+        let inside = outlook.inside.as_ref();
+        let world_from_camera = view.placed(context, resolution, (&builder.extent, inside));
+        builder.add_lights(context, &world_from_camera, outlook)?;
+        needs.set(builder.needs(view.eye().is_none()));
         let mut assembly = builder.assembly;
         assembly.summary.materials = builder.materials.count();
         assembly.summary.textures = document.root.textures.len();
@@ -210,7 +221,10 @@ impl<'a> Builder<'a> {
         let render_from_node = &self.nodes.render_from_node;
         let joints = mesh::joints(self.document, render_from_node, skin, &place)?;
         let whole = context.layout.render_from_world();
-        for (surface, material, place) in self.surfaces(context, mesh, weights)? {
+        for (mut surface, material, place) in self.surfaces(context, mesh, weights)? {
+            for warning in surface.repair_weights(joints.len()).warnings() {
+                context.warn(place.clone(), warning);
+            }
             let user = (&material.uv, &mut self.assembly.survey);
             let shape = if surface.joints.is_empty() {
                 surface.place(&whole, user, &place)?
@@ -287,15 +301,22 @@ impl<'a> Builder<'a> {
         self.assembly.add_error(place, error);
     }
 
-    /// Adds the lights that are no shapes; a soft one from behind the viewer where there is no light.
+    /// Adds the lights that are no shapes; a soft one from behind the viewer where it is dark.
     fn add_lights(
         &mut self,
         context: &mut Context<'_>,
         world_from_camera: &Affine3A,
+        outlook: &Outlook,
     ) -> Result<(), GltfFault> {
         let mut lights = light::all(context, &self.nodes)?;
-        if lights.is_empty() && self.assembly.summary.area_lights == 0 {
-            let message = "the scene has no light; using a soft one from behind the viewer";
+        self.punctual = lights.len();
+        let emits = self.assembly.summary.area_lights > 0;
+        if lights.is_empty() && (!emits || outlook.is_dark) {
+            let message = if emits {
+                "the surfaces that emit leave the scene dark; adding a soft light from behind the viewer"
+            } else {
+                "the scene has no light; using a soft one from behind the viewer"
+            };
             context.warn(Place::TOP, message);
             let sky = Light::Infinite(outside::surroundings(world_from_camera));
             lights.push((Place::TOP, sky));
@@ -304,6 +325,16 @@ impl<'a> Builder<'a> {
             self.assembly.add_light(light, place);
         }
         Ok(())
+    }
+
+    /// The defaults that the file needs.
+    fn needs(&self, camera: bool) -> Needs {
+        let emits = self.assembly.summary.area_lights > 0;
+        Needs {
+            camera,
+            light: self.punctual == 0 && emits,
+            has_own_light: self.punctual > 0 || emits,
+        }
     }
 }
 

@@ -7,8 +7,8 @@
 //! feature is a warning. A required feature that the renderer does not support is an error, or with
 //! [`LoadOptions::lenient`] replaced by a similar one. docs/reference/gltf.md lists all of them.
 //!
-//! A file without a camera is shown as a whole, and one without light is lit from behind the viewer
-//! (`outside`). Units are not converted: nothing is divided by 683 lm/W.
+//! A file without a camera is shown as a whole (`outside`), or from within if it is closed, and one that is
+//! dark is lit from behind the viewer (`outlook`). Units are not converted: nothing is divided by 683 lm/W.
 
 mod accessor;
 mod assembly;
@@ -19,6 +19,7 @@ mod light;
 mod material;
 mod mesh;
 mod node;
+mod outlook;
 mod outside;
 mod place;
 mod texture;
@@ -34,6 +35,8 @@ use assembly::Builder;
 use bidir::integrator::IntegratorKind;
 use bidir::sampler::SamplerKind;
 use document::Document;
+use outlook::{Needs, Outlook};
+use std::cell::Cell;
 use std::path::Path;
 
 /// The default settings of a render, as the format has none.
@@ -65,5 +68,17 @@ pub fn load(path: &Path, options: &LoadOptions) -> Result<Loaded> {
 /// Does the same as [`load`] with files from `files`.
 pub fn load_from(path: &Path, options: &LoadOptions, files: &Files) -> Result<Loaded> {
     let (document, log) = Document::open(path, options, files)?;
-    import::load(&document, options, log, Builder::gather)
+    let needs = Cell::new(Needs::default());
+    let load = |outlook: Outlook| {
+        let gather = |context: &mut _| Builder::gather(context, &outlook, &needs);
+        import::load(&document, options, log.clone(), gather)
+    };
+    let loaded = load(Outlook::default())?;
+    match outlook::better(&loaded, needs.get()) {
+        None => Ok(loaded),
+        Some(outlook) => {
+            drop(loaded);
+            load(outlook)
+        }
+    }
 }

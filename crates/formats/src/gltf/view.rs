@@ -3,6 +3,7 @@
 use super::document::{Context, Document};
 use super::json;
 use super::node::Nodes;
+use super::outlook;
 use super::outside::Extent;
 use super::place::{GltfFault, Place};
 use crate::text::number;
@@ -175,20 +176,27 @@ impl View {
         Ok(film)
     }
 
-    /// Returns the frame of the camera: that of the file, else one with all of `extent` in view.
+    /// Returns the frame of the camera: that of the file, else one at the place `inside`, else one with all of
+    /// `extent` in view.
     pub(super) fn placed(
         &self,
         context: &mut Context<'_>,
         resolution: [u32; 2],
-        extent: &Extent,
+        (extent, inside): (&Extent, Option<&outlook::Place>),
     ) -> Affine3A {
-        self.world_from_camera.unwrap_or_else(|| {
-            let viewpoint = extent.viewpoint();
-            let name = viewpoint.name;
-            let message = format!("the scene has no camera; using one {name} that sees everything");
+        if let Some(own) = self.world_from_camera {
+            return own;
+        }
+        if let Some(inside) = inside {
+            let message = "the scene has no camera; using one inside it, as it is closed";
             context.warn(Place::TOP, message);
-            viewpoint.camera(extent, self.half(resolution))
-        })
+            return inside.camera(&context.layout.render_from_world());
+        }
+        let viewpoint = extent.viewpoint();
+        let name = viewpoint.name;
+        let message = format!("the scene has no camera; using one {name} that sees everything");
+        context.warn(Place::TOP, message);
+        viewpoint.camera(extent, self.half(resolution))
     }
 
     /// Returns the camera for a film of `resolution`. The view of the file's camera is contained in that of
