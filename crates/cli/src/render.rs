@@ -180,6 +180,12 @@ impl Job<'_> {
             summary.is_denoised = self.filter.is_some();
             summary
         };
+        // One without a light was warned of before it was rendered.
+        let is_lit = !self.loaded.scene.lights().is_empty();
+        let blank = session.blank_warning().filter(|_| is_lit);
+        blank
+            .iter()
+            .for_each(|warning| self.console.warning(warning));
         self.print_end(&summary, &report, &writer, end);
         Ok(match end {
             End::Signal(exit) => self.exit(exit),

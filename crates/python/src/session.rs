@@ -219,6 +219,9 @@ impl Session {
     /// Copies the film, with the given stopping rule.
     fn film(&self, py: Python<'_>, stopping: &str) -> PyResult<Film> {
         let stopping = stopping_of(py, stopping)?;
+        if let Some(blank) = self.with(py, |state| state.session.blank_warning()) {
+            warn(py, &blank)?;
+        }
         let film = self.with(py, |state| {
             let header = FilmHeader {
                 stopping,

@@ -7,6 +7,7 @@
 //!
 //! A host that wants a time budget gives [`Budget`] its own time between passes: there is no clock here.
 
+mod blank;
 mod budget;
 mod deposit;
 mod features;

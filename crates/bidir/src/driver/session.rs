@@ -10,6 +10,7 @@ pub use handle::SceneHandle;
 
 use order::Order;
 
+use super::blank::blank_warning;
 use super::deposit::Deposit;
 use super::features::{Features, Meter};
 use super::threads::{Shortage, Threads, Workers};
@@ -402,6 +403,21 @@ impl<'a> Session<'a> {
     /// was interrupted ends where it would have ended.
     pub fn looks_at_noise(passes: u64) -> bool {
         passes >= 16 && passes.is_multiple_of(1 << (passes.ilog2() - 3))
+    }
+
+    /// A warning that the image is black, or the same everywhere, with the reason. None: it has content, or no
+    /// pass was rendered. Takes as long as developing the film.
+    pub fn blank_warning(&self) -> Option<String> {
+        let is_empty = self.film.passes().is_empty();
+        let warn = || {
+            blank_warning(
+                &self.scene,
+                &self.view,
+                &self.settings,
+                &self.film.develop(),
+            )
+        };
+        (!is_empty).then(warn)?
     }
 
     /// The counters so far, without training.

@@ -224,6 +224,7 @@ impl RenderController {
             header: self.header(&settings, &session),
             session,
             view: RenderView::new(lane, course, wanted),
+            blank: None,
         })
     }
 
@@ -248,9 +249,10 @@ impl RenderController {
         self.published = Instant::now();
         let slots = self.slots.iter();
         let lanes: Vec<_> = slots.map(|slot| slot.view.status(&slot.session)).collect();
+        let blank = self.slots.iter().find_map(|slot| slot.blank.clone());
         self.queue.state().update(|before| Status {
             state: self.state,
-            message: self.message.clone(),
+            message: self.message.clone().or(blank),
             camera: Some(self.camera.status()),
             split: self.wanted.len() > 1,
             // None for the moment: the last ones say more than nothing.

@@ -15,6 +15,8 @@ pub(super) struct RenderSlot {
     pub(super) view: RenderView,
     /// The header of its empty film.
     pub(super) header: FilmHeader,
+    /// A warning that the image has no content.
+    pub(super) blank: Option<String>,
 }
 
 /// Gives a pass up where a command ends it.
@@ -61,6 +63,10 @@ impl RenderSlot {
             return None;
         }
         self.view.add_pass(&self.session, time, state);
+        // Now and then, as it develops the film.
+        if self.session.film().passes().len().is_power_of_two() {
+            self.blank = self.session.blank_warning();
+        }
         Some(time)
     }
 
