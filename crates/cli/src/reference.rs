@@ -232,6 +232,13 @@ impl Job<'_> {
             ));
         }
         self.say(format_args!("{}; wrote {folder}", provenance.summary()));
+        if !agreement.decided {
+            let effective = agreement.effective.unwrap_or_default();
+            self.console.warning(format_args!(
+                "the estimators cannot be compared: a few bright samples make most of the light, so that \
+                 all count as {effective:.1} even ones; add more with --extend"
+            ));
+        }
         if agreement.agree {
             if let Some(bias) = agreement.smallest_bias {
                 let percent = 100.0 * bias;

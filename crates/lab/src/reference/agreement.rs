@@ -1,6 +1,7 @@
 //! The test that the two estimators of a reference have the same expectation.
 
 use super::LEVEL;
+use crate::blocks::Blocks;
 use crate::image::Pixels;
 use crate::statistics::{Difference, WHOLE, smallest_bias, welch_test};
 use serde::{Deserialize, Serialize};
@@ -9,6 +10,9 @@ use serde::{Deserialize, Serialize};
 const BLOCKS: usize = 8;
 /// The smallest side of a block: means of few pixels have heavy tails. Unit: pixels.
 const SMALLEST_BLOCK: usize = 8;
+/// The fewest effective samples of a mean that is compared. With fewer, a mean without its rare bright samples is too
+/// small, and so is its variance.
+const ENOUGH: f64 = 64.0;
 
 /// The result of the agreement test.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -27,6 +31,12 @@ pub struct Agreement {
     pub comparisons: usize,
     /// The side of a block. Unit: pixels.
     pub block: usize,
+    /// Effective samples of the mean of a block, of the estimator that has fewer. None: the film is black.
+    #[serde(default)]
+    pub effective: Option<f64>,
+    /// False where even the mean of the film has too few of them for a verdict.
+    #[serde(default = "yes")]
+    pub decided: bool,
     /// The channel whose film means differ most.
     pub film: Difference,
     /// The block and channel whose means differ most.
@@ -36,15 +46,69 @@ pub struct Agreement {
     pub smallest_bias: Option<f64>,
 }
 
-/// Compares the replicates of two estimators. None: there are too few, or no pixels.
-pub(super) fn agreement(a: &[Pixels], b: &[Pixels]) -> Option<Agreement> {
+/// The renders of an estimator.
+pub(super) struct Renders<'a> {
+    /// An image of each replicate.
+    pub(super) replicates: &'a [Pixels],
+    /// The image of all passes, and the variance of its pixels.
+    pub(super) whole: &'a [Pixels; 2],
+    pub(super) passes: u64,
+}
+
+const fn yes() -> bool {
+    true
+}
+
+impl Renders<'_> {
+    /// The effective number of samples of a mean over `block` × `block` pixels: N samples have N E[x]² / E[x²],
+    /// with the mean of E[x²] / E[x]² over blocks, as some have missed what is rare. The fewest of all channels.
+    fn effective(&self, block: usize) -> f64 {
+        let [mean, variance] = self.whole;
+        let blocks = Blocks::new(mean.size, block);
+        let passes = self.passes as f64;
+        // Per channel: blocks with light, their pixels, and the sum of E[x²] / E[x]².
+        let mut channels = [[0.0; 3]; 3];
+        let variances = blocks.sums(variance);
+        let both = blocks.sums(mean).into_iter().zip(variances);
+        for (i, (mean, variance)) in both.enumerate() {
+            let square = mean.mean() * mean.mean();
+            if square > 0.0 {
+                let second = (mean.squares + passes * variance.sum) / mean.count;
+                let of_block = [1.0, mean.count, second / square];
+                let sums = &mut channels[i % 3];
+                *sums = std::array::from_fn(|k| sums[k] + of_block[k]);
+            }
+        }
+        let lit = channels.iter().filter(|[count, ..]| *count > 0.0);
+        let effective = lit.map(|[_, pixels, ratios]| passes * pixels / ratios);
+        effective.fold(f64::INFINITY, f64::min)
+    }
+}
+
+/// Compares the renders of two estimators. None: there are too few, or no pixels.
+pub(super) fn agreement(renders: [Renders<'_>; 2]) -> Option<Agreement> {
+    let [a, b] = renders.each_ref().map(|renders| renders.replicates);
     let size = a.first()?.size;
-    let block = size[0].max(size[1]).div_ceil(BLOCKS).max(SMALLEST_BLOCK);
+    let longest = size[0].max(size[1]);
+    let effective = |block| {
+        let [a, b] = renders.each_ref().map(|renders| renders.effective(block));
+        a.min(b)
+    };
+    let mut block = longest.div_ceil(BLOCKS).max(SMALLEST_BLOCK);
+    while block < longest && effective(block) < ENOUGH {
+        block *= 2;
+    }
     let film = welch_test(a, b, WHOLE)?;
     let blocks = welch_test(a, b, block)?;
+    let effective = effective(block);
+    let decided = effective >= ENOUGH;
     // 1 - (1 - p)² [Sidak67], exact for small p too.
-    let p = film.p.min(blocks.p);
-    let p = p * (2.0 - p);
+    let smallest = film.p.min(blocks.p);
+    let p = if decided {
+        smallest * (2.0 - smallest)
+    } else {
+        1.0
+    };
     // The level of the film's part alone.
     let level = LEVEL / (1.0 + (1.0 - LEVEL).sqrt());
     Some(Agreement {
@@ -58,8 +122,13 @@ pub(super) fn agreement(a: &[Pixels], b: &[Pixels]) -> Option<Agreement> {
         replicates: a.len(),
         comparisons: film.tests + blocks.tests,
         block,
+        effective: effective.is_finite().then_some(effective),
+        decided,
         film,
         blocks,
         smallest_bias: smallest_bias(a, b, level),
     })
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,6 +1,6 @@
 //! Making and extending references.
 
-use super::agreement::agreement;
+use super::agreement::{Renders, agreement};
 use super::provenance::{EstimatorRecord, FORMAT, Provenance};
 use super::replicate::{Estimator, Replicates, film};
 use super::{AGAINST, Error, FILMS, PICTURE, PROVENANCE, REPLICATES, Reference, picture};
@@ -184,7 +184,13 @@ fn finish(
     plan: &Plan,
     made: [&Replicates; 2],
 ) -> Result<Reference, Error> {
-    let agreement = agreement(&made[0].pictures, &made[1].pictures)
+    let wholes = made.map(|replicates| picture::of(replicates.film.develop()));
+    let renders = [0, 1].map(|i| Renders {
+        replicates: &made[i].pictures,
+        whole: &wholes[i],
+        passes: made[i].header.passes.len(),
+    });
+    let agreement = agreement(renders)
         .ok_or_else(|| Error::damaged(folder, "the films have no pixels, or not one size"))?;
     let mut files = BTreeMap::new();
     for (name, replicates) in [PICTURE, AGAINST].into_iter().zip(made) {
@@ -194,7 +200,7 @@ fn finish(
         let bytes = std::fs::read(&path).map_err(|error| Error::io(&path, error))?;
         files.insert(name.to_owned(), sha256(&bytes));
     }
-    let [picture, variance] = picture::of(made[0].film.develop());
+    let [[picture, variance], _] = wholes;
     let header = &made[0].header;
     let provenance = Provenance {
         format: FORMAT,

@@ -153,7 +153,9 @@ impl Provenance {
     pub fn summary(&self) -> String {
         let [first, second] = self.estimators.each_ref().map(EstimatorRecord::summary);
         let Agreement { p, level, .. } = &self.agreement;
-        let agree = if self.agreement.agree {
+        let agree = if !self.agreement.decided {
+            "cannot be compared"
+        } else if self.agreement.agree {
             "agrees"
         } else {
             "does not agree"
