@@ -6,7 +6,7 @@ use crate::spectrum::Spectrum;
 use crate::strategy::Strategy;
 
 /// The term of a strategy and one path, before selection and visibility.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Term {
     /// The strategy.
     pub strategy: Strategy,
@@ -79,6 +79,5 @@ impl Contribution {
 /// True where a film can sum `value`.
 #[inline]
 pub fn is_summable(value: Spectrum) -> bool {
-    let mut lanes = value.0.iter();
-    lanes.all(|lane| lane.abs() <= LARGEST_CONTRIBUTION)
+    value.is_within(LARGEST_CONTRIBUTION)
 }

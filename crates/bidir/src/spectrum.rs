@@ -57,6 +57,12 @@ impl Spectrum {
         self.lanes().cmpeq(Vec4::ZERO).all()
     }
 
+    /// True where no lane is larger than `limit`, or NaN.
+    #[inline]
+    pub fn is_within(self, limit: f32) -> bool {
+        self.lanes().abs().cmple(Vec4::splat(limit)).all()
+    }
+
     /// True where no lane is NaN or infinite.
     #[inline]
     pub fn is_finite(self) -> bool {

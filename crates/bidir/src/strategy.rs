@@ -6,7 +6,7 @@ use std::fmt;
 use std::str::FromStr;
 
 /// A way to make a path: `s` vertices from the light, `t` from the camera.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Strategy {
     /// Vertices of the light subpath.
     pub s: u16,

@@ -33,8 +33,8 @@ DIFFUSE_ENDS = [
     (
         "light vertices lost behind the last four",
         CONNECT,
-        "ends.chunks(4)",
-        "ends.chunks_exact(4)",
+        "if !others.is_empty() {",
+        "if others.len() > 3 {",
         analytic("a_closed_sphere"),
     ),
     (

@@ -11,13 +11,13 @@ use std::cmp::Ordering;
 
 /// A cell, by number.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Cell(u16);
+pub struct Cell(u8);
 
 impl Cell {
     /// The cell of every vertex where nothing is learned.
     pub(crate) const FIRST: Self = Self(0);
 
-    /// Its number, below [`Cells::COUNT`].
+    /// Its number, below [`Cells::COUNT`], so that tables of [`Cells::NAMES`] entries need no check.
     #[inline]
     pub(crate) fn index(self) -> usize {
         usize::from(self.0)
@@ -54,6 +54,8 @@ struct Plane {
 impl Cells {
     /// How many there are.
     pub const COUNT: usize = BOXES * NORMALS;
+    /// How many a [`Cell`] could name.
+    pub(crate) const NAMES: usize = 1 << u8::BITS;
 
     /// The number of a pair of cells, by that of camera vertices first, among the square of as many.
     #[inline]
@@ -64,7 +66,7 @@ impl Cells {
     /// The cell of a number.
     #[inline]
     pub(crate) fn cell(index: usize) -> Cell {
-        Cell(index as u16)
+        Cell(index as u8)
     }
 
     /// Divides space so that each box has about as many of `points`.

@@ -9,7 +9,7 @@ mod cells;
 mod proposals;
 
 pub use cells::{Cell, Cells};
-pub(crate) use proposals::{CellDraw, ProposalRow};
+pub(crate) use proposals::{CellDraw, Part, ProposalRow};
 pub use proposals::{LightProposals, PairSums};
 
 use crate::light::LightChoice;
@@ -32,24 +32,35 @@ impl<'a> Guide<'a> {
         self.proposals.map_or(Cell::default(), cell)
     }
 
-    /// The choice of light vertices for camera vertices in the cell `y`. None: each is as likely as others.
+    /// The knowledge of connections of camera vertices in the cell `y`.
     #[inline]
-    pub(crate) fn row(&self, y: Cell) -> Option<&'a ProposalRow> {
-        self.proposals.map(|all| all.row(y))
+    pub(crate) fn of_camera(&self, y: Cell) -> CellGuide<'a> {
+        CellGuide(self.proposals.map(|all| (all, all.row(y))))
+    }
+}
+
+/// The knowledge of the connections of camera vertices of one cell.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct CellGuide<'a>(Option<(&'a LightProposals, &'a ProposalRow)>);
+
+impl<'a> CellGuide<'a> {
+    /// The choice of light vertices. None: each is as likely as others.
+    #[inline]
+    pub(crate) fn row(self) -> Option<&'a ProposalRow> {
+        self.0.map(|(_, row)| row)
     }
 
-    /// n κ / M: the number of samples of a connection of these cells, relative to uniform proposals; 1 without
+    /// n κ / M: the number of samples of a connection with the cell `light`, relative to uniform proposals; 1 without
     /// proposals. It is a function of the path alone.
-    #[inline]
-    pub(crate) fn count_factor(&self, light: Cell, camera: Cell) -> f64 {
-        self.proposals
-            .map_or(1.0, |all| all.count_factor(light, camera))
+    #[inline(always)]
+    pub(crate) fn count_factor(self, light: Cell) -> f64 {
+        self.0
+            .map_or(1.0, |(all, row)| all.count_factor(light, row))
     }
 
-    /// √V̂ of shadow rays between these cells; 1 without proposals.
-    #[inline]
-    pub(crate) fn root_visibility(&self, light: Cell, camera: Cell) -> f32 {
-        self.proposals
-            .map_or(1.0, |all| all.root_visibility(light, camera))
+    /// √V̂ of shadow rays from the cell `light`; 1 without proposals.
+    #[inline(always)]
+    pub(crate) fn root_visibility(self, light: Cell) -> f32 {
+        self.0.map_or(1.0, |(_, row)| row.root_visibility(light))
     }
 }

@@ -23,24 +23,34 @@
 use super::cells::{Cell, Cells};
 use std::array::from_fn;
 
-/// ε: the fraction of uniform proposals. Connections that training did not see cost at most 1/ε times as much as
-/// without it.
-const UNIFORM_PART: f32 = 0.2;
+/// The bits of a unit's number. Γ and ε come in whole units, of which all proposals to a vertex have 2^16: numbers
+/// lead to each cell with exactly the probability that weights and shares are told, and all pairs of cells stay in the
+/// cache beside the vertices.
+const UNIT_BITS: u32 = 16;
+const UNITS: u32 = 1 << UNIT_BITS;
+
+/// ε in units, a fifth: the uniform proposals. Connections that training did not see cost at most 1/ε times as much as
+/// without them.
+const UNIFORM_UNITS: u16 = 13_107;
+/// ε.
+const UNIFORM_PART: f64 = UNIFORM_UNITS as f64 / UNITS as f64;
 
 /// The least V̂: where all connections of training were blocked, others are chosen a quarter as often
 /// as if all had arrived.
 const LEAST_VISIBILITY: f64 = 1.0 / 16.0;
 
-/// Γ and √V̂ come in whole numbers of units, so that all pairs of cells stay in the cache beside the vertices.
-const UNITS: u16 = u16::MAX;
+/// √V̂ comes in whole units as well.
 const VISIBILITY_UNITS: u8 = u8::MAX;
 
 /// Into how many parts the numbers of a draw are divided, each of which knows the first cell that it
 /// may lead to: a guide table \[Chen74\].
-const PARTS: usize = 128;
+const PARTS: usize = 512;
 /// The units of a part.
-const UNITS_OF_PART: u16 = UNITS / PARTS as u16 + 1;
-const _: () = assert!(Cells::COUNT <= 256, "the number of a cell takes a byte");
+const UNITS_OF_PART: u16 = (UNITS / PARTS as u32) as u16;
+const _: () = assert!(
+    Cells::COUNT <= Cells::NAMES,
+    "the number of a cell takes a byte"
+);
 
 /// The proposals of light vertices of a cache to camera vertices.
 #[derive(Clone, Debug)]
@@ -48,20 +58,23 @@ pub struct LightProposals {
     cells: Cells,
     /// By the cell of camera vertices.
     rows: Vec<ProposalRow>,
-    /// For each cell of light vertices (1 - ε) κ / κ_c for a unit of Γ; 0 where κ_c is 0.
-    count_factors: Vec<f64>,
+    /// For each cell of light vertices κ / κ_c for a unit of (1 - ε) Γ; 0 where κ_c is 0.
+    count_factors: [f64; Cells::NAMES],
 }
 
 /// The proposals to camera vertices of one cell r.
 #[derive(Clone, Debug)]
 pub(crate) struct ProposalRow {
-    /// Σ_{c' < c} Γ(c' | r), in units.
-    cumulative: [u16; Cells::COUNT + 1],
+    /// The last unit of all uniform proposals, which come first; then, cell by cell, the last unit of (1 - ε) Γ(c | r),
+    /// which is that of the cell before where Γ is 0; then the last unit of all.
+    last: LastUnits,
     /// The first cell c that numbers of each part lead to: draws begin there instead of at the first cell of all.
     first: [u8; PARTS],
     /// √V̂, in units, by the cell of light vertices.
-    root_visibility: [u8; Cells::COUNT],
+    root_visibility: [u8; Cells::NAMES],
 }
+
+type LastUnits = [u16; 1 + Cells::NAMES];
 
 /// The results of training for pairs of cells.
 #[derive(Clone, Debug)]
@@ -101,9 +114,33 @@ impl PairSums {
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum CellDraw {
     /// None: all light vertices, at this part of them.
-    All(f64),
+    All(Part),
     /// One, at this part of its light vertices.
-    One(Cell, f64),
+    One(Cell, Part),
+}
+
+/// A part of a whole: how many of so many numbers come before.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Part(u32, f64);
+
+impl Part {
+    /// The part `number` / 2^32.
+    #[inline]
+    pub(crate) fn of_all(number: u32) -> Self {
+        Self(number, 4_294_967_296.0)
+    }
+
+    /// The number of the thing at this part of `count`; below it, unless it is 0.
+    #[inline]
+    pub(crate) fn pick(self, count: u32) -> usize {
+        /// The last digits of a sum with it are the nearest whole number, in one step on every machine.
+        const WHOLE: f64 = 1.5 * 4_503_599_627_370_496.0;
+        // Divisions of f64 are faster than those of integers, and what they round is far less than the numbers tell
+        // apart.
+        let Self(before, all) = self;
+        let middle = f64::from(before) * f64::from(count) / all - 0.5;
+        (middle + WHOLE).to_bits() as u32 as usize
+    }
 }
 
 impl LightProposals {
@@ -111,8 +148,8 @@ impl LightProposals {
     pub fn new(cells: Cells, sums: &PairSums) -> Self {
         let kappa = &sums.light_vertices;
         let all: f64 = kappa.iter().sum();
-        let learned = (1.0 - f64::from(UNIFORM_PART)) * all / f64::from(UNITS);
-        let count_factor = |&kappa: &f64| if kappa > 0.0 { learned / kappa } else { 0.0 };
+        let unit = all / f64::from(UNITS);
+        let count_factor = |kappa: f64| if kappa > 0.0 { unit / kappa } else { 0.0 };
         let squares = sums.squares.chunks_exact(Cells::COUNT);
         let arrived = sums.arrived.chunks_exact(Cells::COUNT);
         let pairs = squares.zip(arrived);
@@ -121,7 +158,9 @@ impl LightProposals {
             rows: pairs
                 .map(|(squares, arrived)| ProposalRow::new(kappa, squares, arrived))
                 .collect(),
-            count_factors: kappa.iter().map(count_factor).collect(),
+            count_factors: from_fn(|cell| {
+                kappa.get(cell).map_or(0.0, |&kappa| count_factor(kappa))
+            }),
         }
     }
 
@@ -131,18 +170,10 @@ impl LightProposals {
         &self.cells
     }
 
-    /// n κ / M of a light vertex in the cell `light` for a camera vertex in the cell `camera`.
+    /// n κ / M of a light vertex in the cell `light` for a camera vertex with the proposals `row`.
     #[inline]
-    pub(super) fn count_factor(&self, light: Cell, camera: Cell) -> f64 {
-        let learned = self.count_factors[light.index()] * self.row(camera).units(light);
-        f64::from(UNIFORM_PART) + learned
-    }
-
-    /// √V̂ of a light vertex in the cell `light` and a camera vertex in the cell `camera`.
-    #[inline]
-    pub(super) fn root_visibility(&self, light: Cell, camera: Cell) -> f32 {
-        let units = self.row(camera).root_visibility[light.index()];
-        f32::from(units) * (1.0 / f32::from(VISIBILITY_UNITS))
+    pub(super) fn count_factor(&self, light: Cell, row: &ProposalRow) -> f64 {
+        UNIFORM_PART + self.count_factors[light.index()] * f64::from(row.units(light))
     }
 
     /// The proposals to camera vertices in the cell `camera`.
@@ -154,80 +185,92 @@ impl LightProposals {
 
 impl ProposalRow {
     fn new(kappa: &[f64], squares: &[f64], arrived: &[[u32; 2]]) -> Self {
-        let cumulative = accumulated(kappa, squares);
+        let last = last_units(kappa, squares);
         Self {
-            cumulative,
-            first: from_fn(|part| first_end_beyond(&cumulative, part)),
-            root_visibility: from_fn(|light| root_visibility(arrived[light])),
+            last,
+            first: from_fn(|part| first_cell_of_part(&last, part)),
+            root_visibility: from_fn(|light| root_visibility(arrived.get(light))),
         }
     }
 
-    /// Draws a cell of light vertices.
+    /// Draws a cell of light vertices by `number`, one of 2^32.
     #[inline]
-    pub(crate) fn draw(&self, u: f64) -> CellDraw {
-        let part = f64::from(UNIFORM_PART);
-        if u < part {
-            return CellDraw::All(u * (1.0 / part));
+    pub(crate) fn draw(&self, number: u32) -> CellDraw {
+        let unit = (number >> UNIT_BITS) as u16;
+        if unit < UNIFORM_UNITS {
+            return CellDraw::All(Part(number, numbers_of(UNIFORM_UNITS)));
         }
-        let units = (u - part) * (f64::from(UNITS) / (1.0 - part));
-        let unit = (units as u16).min(UNITS - 1);
-        let mut cell = usize::from(self.first[usize::from(unit / UNITS_OF_PART)]);
-        while self.cumulative[cell + 1] <= unit {
-            cell += 1;
+        let mut cell = self.first[usize::from(unit / UNITS_OF_PART)];
+        while self.last[usize::from(cell) + 1] < unit {
+            cell = cell.wrapping_add(1);
         }
-        let [from, to] = [self.cumulative[cell], self.cumulative[cell + 1]].map(f64::from);
-        CellDraw::One(Cells::cell(cell), (units - from) / (to - from))
+        let light = Cells::cell(cell.into());
+        let begin = (u32::from(self.last[usize::from(cell)]) + 1) << UNIT_BITS;
+        CellDraw::One(light, Part(number - begin, numbers_of(self.units(light))))
     }
 
     /// 1 / P(z | y) for a light vertex in the cell `light`, where `[K, K_c]` = `counts`.
     #[inline]
-    pub(crate) fn inverse_prob(&self, light: Cell, counts: [usize; 2]) -> f64 {
-        let [all, of_cell] = counts.map(|count| count as f64);
-        let part = f64::from(UNIFORM_PART);
-        let learned = (1.0 - part) / f64::from(UNITS) * self.units(light);
-        all * of_cell / (part * of_cell + learned * all)
+    pub(crate) fn inverse_prob(&self, light: Cell, counts: [u32; 2]) -> f32 {
+        let [all, of_cell] = counts.map(|count| count as f32);
+        let units = f32::from(UNIFORM_UNITS) * of_cell + f32::from(self.units(light)) * all;
+        UNITS as f32 * all * of_cell / units
     }
 
-    /// Γ(c | r) of the cell c = `light`, in units.
+    /// (1 - ε) Γ(c | r) of the cell c = `light`, in units.
     #[inline]
-    fn units(&self, light: Cell) -> f64 {
+    fn units(&self, light: Cell) -> u16 {
         let cell = light.index();
-        f64::from(self.cumulative[cell + 1] - self.cumulative[cell])
+        self.last[cell + 1] - self.last[cell]
+    }
+
+    /// √V̂ of a light vertex in the cell `light`.
+    #[inline]
+    pub(crate) fn root_visibility(&self, light: Cell) -> f32 {
+        f32::from(self.root_visibility[light.index()]) * (1.0 / f32::from(VISIBILITY_UNITS))
     }
 }
 
-/// The first cell that ends behind the begin of this part.
-fn first_end_beyond(cumulative: &[u16; Cells::COUNT + 1], part: usize) -> u8 {
+/// How many of 2^32 numbers lead to so many units.
+#[inline]
+const fn numbers_of(units: u16) -> f64 {
+    units as f64 * UNITS as f64
+}
+
+/// The first cell that has a unit of this part, or one behind it.
+fn first_cell_of_part(last: &LastUnits, part: usize) -> u8 {
     let begin = part as u16 * UNITS_OF_PART;
-    let ends = &cumulative[1..Cells::COUNT];
-    ends.partition_point(|&end| end <= begin) as u8
+    last[1..Cells::COUNT].partition_point(|&last| last < begin) as u8
 }
 
 /// √V̂ in units if so many connections were traced and arrived. Pairs of cells that training did not see count as
 /// visible, and none counts as hidden for sure.
-fn root_visibility([traced, arrived]: [u32; 2]) -> u8 {
+fn root_visibility(arrived: Option<&[u32; 2]>) -> u8 {
+    let [traced, arrived] = arrived.copied().unwrap_or_default();
     let visible = f64::from(arrived + 1) / f64::from(traced + 1);
     let root = visible.max(LEAST_VISIBILITY).sqrt();
     (root * f64::from(VISIBILITY_UNITS)).round() as u8
 }
 
-/// The sums of Γ(c | r) ∝ √(κ_c Σ X²), or of κ_c where nothing was found, in units.
-fn accumulated(kappa: &[f64], squares: &[f64]) -> [u16; Cells::COUNT + 1] {
+/// The last units of all uniform proposals and of each cell, with Γ(c | r) ∝ √(κ_c Σ X²), or κ_c where nothing was
+/// found.
+fn last_units(kappa: &[f64], squares: &[f64]) -> LastUnits {
     let learned = || kappa.iter().zip(squares).map(|(k, q)| (k * q).sqrt());
     let total: f64 = learned().sum();
     let all: f64 = kappa.iter().sum();
-    let mut sums = [0; Cells::COUNT + 1];
+    let mut last = [u16::MAX; 1 + Cells::NAMES];
+    last[0] = UNIFORM_UNITS - 1;
     let mut sum = 0.0;
-    for ((end, kappa), learned) in sums[1..].iter_mut().zip(kappa).zip(learned()) {
+    for ((last, kappa), learned) in last[1..Cells::COUNT].iter_mut().zip(kappa).zip(learned()) {
         sum += if total > 0.0 {
             learned / total
         } else {
             kappa / all
         };
-        *end = (sum * f64::from(UNITS)).round() as u16;
+        let units = sum * f64::from(UNITS - u32::from(UNIFORM_UNITS));
+        *last = UNIFORM_UNITS - 1 + units.round() as u16;
     }
-    sums[Cells::COUNT] = UNITS;
-    sums
+    last
 }
 
 #[cfg(test)]
@@ -246,7 +289,7 @@ mod tests {
             sums.see(Cells::pair(hidden, y), false);
         }
         let proposals = LightProposals::new(cells, &sums);
-        let root = |light| f64::from(proposals.root_visibility(light, y));
+        let root = |light| f64::from(proposals.row(y).root_visibility(light));
         let half_a_unit = 0.5 / f64::from(VISIBILITY_UNITS);
         let check = |light, expected: f64| {
             let error = (root(light) - expected).abs();
@@ -269,10 +312,10 @@ mod tests {
             sums.see(Cells::pair(z, y), i % 4 == 0);
         }
         let after = LightProposals::new(cells, &sums);
-        let root = f64::from(after.root_visibility(z, y));
+        let root = f64::from(after.row(y).root_visibility(z));
         assert!((root - libm::sqrt(0.26)).abs() < 1.0 / f64::from(VISIBILITY_UNITS));
         for (after, before) in after.rows.iter().zip(&before.rows) {
-            assert_eq!(after.cumulative, before.cumulative);
+            assert_eq!(after.last, before.last);
         }
         assert_eq!(after.count_factors, before.count_factors);
     }
@@ -289,45 +332,85 @@ mod tests {
         let all: f64 = sums.light_vertices.iter().sum();
         let proposals = LightProposals::new(Cells::new(&mut []), &sums);
         for cell in 0..Cells::COUNT {
-            let (z, counts) = (
-                Cells::cell(cell),
-                [all, kappa(cell)].map(|k| 2 * k as usize),
-            );
-            let drawn = 2.0 * all / proposals.row(y).inverse_prob(z, counts);
-            let counted = proposals.count_factor(z, y);
+            let (z, counts) = (Cells::cell(cell), [all, kappa(cell)].map(|k| 2 * k as u32));
+            let row = proposals.row(y);
+            let drawn = 2.0 * all / f64::from(row.inverse_prob(z, counts));
+            let counted = proposals.count_factor(z, row);
             assert!(
-                (drawn - counted).abs() < 1e-12 * counted,
+                (drawn - counted).abs() < 1e-6 * counted,
                 "{drawn}, {counted}"
             );
         }
     }
 
-    #[test]
-    fn every_number_leads_to_the_cell_that_holds_it() {
-        let cells = Cells::new(&mut []);
+    /// Some cells take most of the numbers, others none.
+    fn uneven() -> LightProposals {
         let mut sums = PairSums::uniform(vec![1.0; Cells::COUNT]);
-        let y = Cells::cell(5);
-        // Some cells take most of the numbers, others none.
-        for light in (0..Cells::COUNT).filter(|light| light % 7 > 2) {
+        for light in (0..Cells::COUNT).filter(|light| light % 11 > 2) {
             let square = (light % 7 * light % 11) as f64;
-            sums.add(Cells::pair(Cells::cell(light), y), square);
+            sums.add(Cells::pair(Cells::cell(light), Cells::cell(5)), square);
         }
-        let proposals = LightProposals::new(cells.clone(), &sums);
-        let row = proposals.row(y);
-        let ends = &row.cumulative;
-        let uniform = f64::from(UNIFORM_PART);
-        let last = 1.0 - f64::EPSILON / 2.0;
-        let within = (0..4096).map(|i| (f64::from(i) + 0.5) / 4096.0);
-        for u in within.chain([0.0, last]) {
-            let units = u * f64::from(UNITS);
-            let CellDraw::One(cell, _) = row.draw((uniform + (1.0 - uniform) * u).min(last)) else {
-                panic!("the part of all vertices ends at {uniform}");
+        LightProposals::new(Cells::new(&mut []), &sums)
+    }
+
+    /// Each cell gets as many of all units as it is told to have: probabilities sum to 1 exactly.
+    #[test]
+    fn every_unit_leads_to_a_cell_that_has_it() {
+        let proposals = uneven();
+        // Cell 7 learned nothing.
+        for row in [5, 7].map(|y| proposals.row(Cells::cell(y))) {
+            let (mut uniform, mut of_cell) = (0_u32, [0_u32; Cells::COUNT]);
+            for unit in 0..UNITS {
+                let number = unit << UNIT_BITS | unit;
+                match row.draw(number) {
+                    CellDraw::All(_) => uniform += 1,
+                    CellDraw::One(cell, _) => of_cell[cell.index()] += 1,
+                }
+            }
+            assert_eq!(uniform, u32::from(UNIFORM_UNITS));
+            for (cell, &count) in of_cell.iter().enumerate() {
+                assert_eq!(
+                    count,
+                    u32::from(row.units(Cells::cell(cell))),
+                    "cell {cell}"
+                );
+            }
+        }
+    }
+
+    /// The parts of a cell's numbers are evenly spaced from 0 to 1, and so are those of all vertices.
+    #[test]
+    fn numbers_of_a_cell_lead_to_all_parts_of_it() {
+        let proposals = uneven();
+        let row = proposals.row(Cells::cell(5));
+        let count = 1000;
+        let mut begin = 0;
+        for cell in 0..=Cells::COUNT {
+            let units = match cell.checked_sub(1) {
+                Some(cell) => row.units(Cells::cell(cell)),
+                None => UNIFORM_UNITS,
             };
-            let [from, to] = [ends[cell.index()], ends[cell.index() + 1]].map(f64::from);
-            assert!(
-                from <= units && units < to,
-                "{units} leads to {from} .. {to}"
-            );
+            let numbers = u64::from(units) << UNIT_BITS;
+            // The first and the last number of each thousandth.
+            for i in (0..count).filter(|_| numbers > 0) {
+                let ends = [i * numbers / 1000, (i + 1) * numbers / 1000].map(|part| begin + part);
+                for number in [ends[0] + 1, ends[1] - 1] {
+                    let (CellDraw::All(part) | CellDraw::One(_, part)) = row.draw(number as u32);
+                    assert_eq!(part.pick(count as u32), i as usize);
+                }
+            }
+            begin += numbers;
+        }
+        assert_eq!(begin, 1 << 32);
+    }
+
+    #[test]
+    fn parts_of_nothing_are_found_nowhere() {
+        for number in [0, 1, u32::MAX] {
+            let part = Part::of_all(number);
+            assert_eq!(part.pick(0), 0);
+            assert_eq!(part.pick(1), 0);
+            assert!(part.pick(1 << 22) < 1 << 22);
         }
     }
 }

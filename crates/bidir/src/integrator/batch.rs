@@ -2,7 +2,7 @@
 
 use super::cache::{LightCache, Place};
 use super::stages::{ShadowPassage, lens_vertex};
-use super::{Entry, Fate, Link};
+use super::{Entry, Fate, Link, List};
 use crate::contribution::{Term, is_summable};
 use crate::path::{
     Arrival, ConnectionPart, Job, JoinedPath, PathContext, PathDensities, RunningSums, Shares,
@@ -62,7 +62,7 @@ impl Sample {
 }
 
 /// A light vertex that a camera vertex is connected with.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(super) struct LightEnd {
     /// Its place.
     pub(super) place: Place,
@@ -117,11 +117,11 @@ pub struct Batch {
     pub(super) weights: Weights,
     pub(super) cache: LightCache,
     /// The vertices of light subpaths that camera vertices are connected with, camera vertex by camera vertex.
-    pub(super) light_ends: Vec<LightEnd>,
+    pub(super) light_ends: List<LightEnd>,
     /// For each camera vertex from t = 2 on the end of its light vertices.
     pub(super) light_ends_end: Vec<usize>,
     /// The connections that may be traced, sample by sample.
-    pub candidates: Vec<Candidate>,
+    pub candidates: List<Candidate>,
     /// For each sample the end of its candidates.
     pub(super) candidates_end: Vec<usize>,
     /// Connections that are not offered: their value is zero, or no film can sum it.

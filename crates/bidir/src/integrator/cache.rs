@@ -1,8 +1,9 @@
 //! The light vertex cache: which vertices of a group's light subpaths can be connected, and draws of them.
 
-use crate::guide::{Cell, CellDraw, Cells, LightProposals, ProposalRow};
+use super::curve::Curve;
+use crate::guide::{Cell, CellDraw, Cells, LightProposals, Part, ProposalRow};
+use crate::math::Vec3;
 use crate::path::{LightPointChoice, RunningSums, Subpath, Subpaths, Vertex};
-use std::ops::Range;
 
 /// An index of the light vertices that can be connected.
 #[derive(Debug, Default)]
@@ -11,12 +12,46 @@ pub(super) struct LightCache {
     entries: Vec<CachedVertex>,
     /// The same vertices, in the order of the subpaths.
     unsorted: Vec<CachedVertex>,
+    /// Where those lie.
+    points: Vec<Vec3>,
+    /// Memory for sorting.
+    keys: Vec<u64>,
     /// The number of subpaths.
     subpaths: usize,
-    /// For each cell where its entries begin, and where the last ones end. Empty: there are no cells.
-    begins: Vec<u32>,
-    /// For each cell, where its next entry goes while they are sorted.
-    next: Vec<u32>,
+    cells: CellTable,
+}
+
+/// The bits of the number of an entry, below those of its place on the curve and of its cell.
+const INDEX_BITS: u32 = 26;
+const _: () = assert!(u8::BITS + Curve::BITS + INDEX_BITS == u64::BITS);
+
+/// The entries of each cell; none where there are no cells.
+#[derive(Debug)]
+struct CellTable(Box<[Entries; Cells::NAMES]>);
+
+/// Entries that follow each other.
+#[derive(Clone, Copy, Debug, Default)]
+struct Entries {
+    first: u32,
+    count: u32,
+}
+
+impl Default for CellTable {
+    fn default() -> Self {
+        Self(Box::new([Entries::default(); Cells::NAMES]))
+    }
+}
+
+impl CellTable {
+    /// The entries of a cell.
+    #[inline]
+    fn of(&self, cell: Cell) -> Entries {
+        self.0[cell.index()]
+    }
+
+    fn of_mut(&mut self, cell: Cell) -> &mut Entries {
+        &mut self.0[cell.index()]
+    }
 }
 
 /// A vertex that can be connected.
@@ -59,8 +94,8 @@ impl Place {
 struct Draw {
     /// The number of the vertex.
     entry: usize,
-    /// 1 / (N P), with N subpaths and P the probability of drawing it.
-    share: f64,
+    /// 1 / P, with P the probability of drawing it.
+    inverse_prob: f32,
 }
 
 impl LightCache {
@@ -68,7 +103,7 @@ impl LightCache {
     pub(super) fn clear(&mut self) {
         self.entries.clear();
         self.unsorted.clear();
-        self.begins.clear();
+        self.points.clear();
         self.subpaths = 0;
     }
 
@@ -85,11 +120,14 @@ impl LightCache {
         for subpath in 0..walks.count() {
             let subpath = walks.get(subpath);
             let connectable = connectable(light_point, subpath.vertices);
-            self.unsorted.extend(connectable.filter_map(|i| {
-                let place = Place::new(&subpath, i, sums)?;
-                let cell = subpath.vertices[i].cell;
-                Some(CachedVertex { place, cell })
-            }));
+            for i in connectable {
+                let Some(place) = Place::new(&subpath, i, sums) else {
+                    continue;
+                };
+                let Vertex { cell, locus, .. } = subpath.vertices[i];
+                self.unsorted.push(CachedVertex { place, cell });
+                self.points.push(locus.point);
+            }
         }
         match proposals {
             None => std::mem::swap(&mut self.entries, &mut self.unsorted),
@@ -97,81 +135,104 @@ impl LightCache {
         }
     }
 
+    /// Sorts the entries by their cells, and within each along a curve that fills space: draws by numbers that are
+    /// evenly spaced then lie evenly in the cell.
     fn sort(&mut self) {
-        self.begins.resize(Cells::COUNT + 1, 0);
-        for entry in &self.unsorted {
-            self.begins[entry.cell.index() + 1] += 1;
-        }
-        for i in 0..Cells::COUNT {
-            self.begins[i + 1] += self.begins[i];
-        }
-        self.next.clone_from(&self.begins);
-        self.entries
-            .resize(self.unsorted.len(), CachedVertex::default());
-        for entry in &self.unsorted {
-            let place = &mut self.next[entry.cell.index()];
-            self.entries[*place as usize] = *entry;
-            *place += 1;
+        let curve = Curve::around(&self.points);
+        let of_entry = self.unsorted.iter().zip(&self.points).zip(0u64..);
+        self.keys.clear();
+        self.keys.extend(of_entry.map(|((entry, &point), i)| {
+            let cell = entry.cell.index() as u64;
+            (cell << Curve::BITS | curve.place(point)) << INDEX_BITS | i
+        }));
+        self.keys.sort_unstable();
+        self.entries.clear();
+        let entry = |key: &u64| self.unsorted[(key % (1 << INDEX_BITS)) as usize];
+        self.entries.extend(self.keys.iter().map(entry));
+        self.cells.0.fill(Entries::default());
+        for (entry, i) in self.entries.iter().zip(0..) {
+            let of_cell = self.cells.of_mut(entry.cell);
+            if of_cell.count == 0 {
+                of_cell.first = i;
+            }
+            of_cell.count += 1;
         }
     }
 
     /// Draws `count` vertices for a camera vertex with the proposals `row`, one of each of as many parts of the
-    /// proposals, at the part `u` of each: their numbers, and how much each counts, 1 / (`count` N P). A part in which
-    /// there is no vertex counts as a draw that finds nothing.
+    /// proposals, at the part `u` / 2^32 of each. Calls `found` with their numbers and places, and how much each
+    /// counts, 1 / (`count` N P) with N subpaths. A part in which there is no vertex counts as a draw that finds
+    /// nothing.
     #[inline]
     pub(super) fn draw_all(
         &self,
         row: Option<&ProposalRow>,
-        count: u16,
-        u: f64,
-    ) -> impl Iterator<Item = (usize, f32)> {
-        let part = 1.0 / f64::from(count);
-        (0..count).filter_map(move |m| {
-            let draw = self.draw(row, (f64::from(m) + u) * part)?;
-            Some((draw.entry, (draw.share * part) as f32))
-        })
+        (count, u): (u16, u32),
+        mut found: impl FnMut(usize, &Place, f32),
+    ) {
+        let of_draw = 1.0 / (self.subpaths as f32 * f32::from(count));
+        for number in numbers(count, u) {
+            let draw = match row {
+                Some(row) => self.draw_learned(row, number),
+                None => self.draw_any(number),
+            };
+            if let Some((place, draw)) = draw {
+                found(draw.entry, place, draw.inverse_prob * of_draw);
+            }
+        }
     }
 
-    /// Draws a vertex by the number `u` for a camera vertex with the proposals `row`. None: there is none, and the
-    /// draw counts as one that finds nothing.
+    /// Draws a vertex by `number`, one of 2^32, each as likely as others. None: there is none, and the draw counts as
+    /// one that finds nothing.
     #[inline]
-    fn draw(&self, row: Option<&ProposalRow>, u: f64) -> Option<Draw> {
-        let all = 0..self.entries.len();
-        let of_subpath = 1.0 / self.subpaths as f64;
-        let Some(row) = row else {
-            let share = all.len() as f64 * of_subpath;
-            return pick(&all, u).map(|entry| Draw { entry, share });
+    fn draw_any(&self, number: u32) -> Option<(&Place, Draw)> {
+        let all = self.entries.len() as u32;
+        let entry = Part::of_all(number).pick(all);
+        let inverse_prob = all as f32;
+        let place = &self.entries.get(entry)?.place;
+        let draw = Draw {
+            entry,
+            inverse_prob,
         };
-        let (entry, cell) = match row.draw(u) {
-            CellDraw::All(u) => pick(&all, u).map(|entry| (entry, self.entries[entry].cell)),
-            CellDraw::One(cell, u) => pick(&self.of_cell(cell), u).map(|entry| (entry, cell)),
-        }?;
-        let counts = [all.len(), self.of_cell(cell).len()];
-        let share = row.inverse_prob(cell, counts) * of_subpath;
-        Some(Draw { entry, share })
+        Some((place, draw))
     }
 
-    /// The entries of a cell.
+    /// The same for a camera vertex with the proposals `row`.
     #[inline]
-    fn of_cell(&self, cell: Cell) -> Range<usize> {
-        let cell = cell.index();
-        self.begins[cell] as usize..self.begins[cell + 1] as usize
-    }
-
-    /// The place of entry number `i`.
-    #[inline]
-    pub(super) fn place(&self, i: usize) -> Place {
-        self.entries[i].place
+    fn draw_learned(&self, row: &ProposalRow, number: u32) -> Option<(&Place, Draw)> {
+        let all = self.entries.len() as u32;
+        let (entry, cell) = match row.draw(number) {
+            CellDraw::All(part) => {
+                let entry = part.pick(all);
+                (entry, self.entries.get(entry)?.cell)
+            }
+            CellDraw::One(cell, part) => {
+                let Entries { first, count } = self.cells.of(cell);
+                if count == 0 {
+                    return None;
+                }
+                (first as usize + part.pick(count), cell)
+            }
+        };
+        let place = &self.entries.get(entry)?.place;
+        let inverse_prob = row.inverse_prob(cell, [all, self.cells.of(cell).count]);
+        Some((
+            place,
+            Draw {
+                entry,
+                inverse_prob,
+            },
+        ))
     }
 }
 
-/// The number at the part `u` of a range. None: it is empty.
+/// A number below 2^32 in each of `count` equal parts, at the part `u` / 2^32 of it.
 #[inline]
-fn pick(range: &Range<usize>, u: f64) -> Option<usize> {
-    // Numbers of 32 bits are converted much faster than those of 64.
-    let i = range.start + (u * range.len() as f64) as u32 as usize;
-    // Rounding may lead to the end.
-    (!range.is_empty()).then(|| i.min(range.end - 1))
+fn numbers(count: u16, u: u32) -> impl Iterator<Item = u32> {
+    // With 32 more bits than the numbers have, so that the parts are equal.
+    let count = u64::from(count);
+    let (first, part) = ((u64::from(u) << 32) / count, u64::MAX / count);
+    (0..count).map(move |m| ((first + m * part) >> 32) as u32)
 }
 
 /// The vertices of a light subpath that camera vertices may be connected with, by number.

@@ -8,7 +8,9 @@
 
 mod batch;
 mod cache;
+mod curve;
 mod journal;
+mod list;
 mod lvc;
 mod method;
 mod stages;
@@ -16,6 +18,7 @@ mod stages;
 pub use batch::{Batch, Sample};
 pub(crate) use cache::connectable;
 pub use journal::{Entry, Fate, Link};
+pub use list::List;
 pub use lvc::*;
 pub(crate) use method::group_size;
 pub use method::{Method, begin_group, end_group, walk_group};

@@ -251,7 +251,7 @@ impl PathContext<'_> {
         if z.locus.is_infinite() {
             1.0
         } else {
-            self.job.guide.root_visibility(z.cell, y.cell)
+            self.job.guide.of_camera(y.cell).root_visibility(z.cell)
         }
     }
 }

@@ -7,7 +7,7 @@
 
 use super::{JoinedPath, PathContext};
 use crate::film::FilmSettings;
-use crate::guide::Cell;
+use crate::guide::{Cell, CellGuide};
 
 /// How many samples of a path strategies take in a pass, before the [`Guide`](crate::guide::Guide) shares
 /// them out.
@@ -55,8 +55,14 @@ impl PathContext<'_> {
 
     /// n_j of a strategy that takes part and links a vertex of a light subpath with camera vertex number `t` ≥ 2.
     #[inline]
-    pub(crate) fn count_walked(&self, t: usize, [z, y]: [Cell; 2]) -> f64 {
-        self.job.counts.connections[usize::from(t > 2)] * self.job.guide.count_factor(z, y)
+    fn count_walked(&self, t: usize, [z, y]: [Cell; 2]) -> f64 {
+        self.count_from(t, self.job.guide.of_camera(y), z)
+    }
+
+    /// The same, where it is known what the guide knows of the camera vertex.
+    #[inline(always)]
+    pub(crate) fn count_from(&self, t: usize, of_camera: CellGuide<'_>, z: Cell) -> f64 {
+        self.job.counts.connections[usize::from(t > 2)] * of_camera.count_factor(z)
     }
 
     /// n_j of s = 0, which links nothing.

@@ -223,15 +223,11 @@ pub struct DiffuseConnections<'a> {
 }
 
 impl DiffuseConnections<'_> {
-    /// C and the weight of number `lane`. None: C is zero.
+    /// C, which may be zero, and the weight of number `lane`.
     #[inline]
-    pub fn get(&self, lane: usize) -> Option<(Spectrum, f32)> {
-        let factor = self.factors[lane];
-        if factor == 0.0 {
-            return None;
-        }
-        let contribution = self.z[lane].flux * self.y.flux * factor;
-        (!contribution.is_black()).then_some((contribution, self.weights[lane]))
+    pub fn get(&self, lane: usize) -> (Spectrum, f32) {
+        let contribution = self.z[lane].flux * self.y.flux * self.factors[lane];
+        (contribution, self.weights[lane])
     }
 }
 

@@ -14,6 +14,7 @@ use super::{
     DiffuseEnd, JoinedPath, Junction, PathContext, PathDensities, PathSettings, Subpath, Vertex,
 };
 use crate::bsdf::TransportMode;
+use std::slice;
 
 /// Sums of shares along the walks of a batch.
 #[derive(Debug, Default)]
@@ -201,10 +202,18 @@ impl RunningSums {
         self.diffuse.get(vertex).and_then(DiffuseEnd::get)
     }
 
+    /// The same; [`DiffuseEnd::NONE`] in place of any other vertex.
+    #[inline]
+    pub(crate) fn diffuse_or_none(&self, vertex: usize) -> &DiffuseEnd {
+        self.diffuse.get(vertex).unwrap_or(&DiffuseEnd::NONE)
+    }
+
     /// Begins to load what `diffuse` gives.
     #[inline]
     pub(crate) fn load_ahead(&self, vertex: usize) {
-        accel::load_ahead(self.diffuse.get(vertex..=vertex).unwrap_or_default());
+        if let Some(end) = self.diffuse.get(vertex) {
+            accel::load_ahead(slice::from_ref(end));
+        }
     }
 }
 

@@ -155,12 +155,18 @@ impl SampleStream {
     /// The number of `dimension`. Range: `[0, 1)`.
     #[inline]
     pub fn get_1d(&self, dimension: Dimension) -> f32 {
+        unit(self.get_bits(dimension))
+    }
+
+    /// The number of `dimension` in units of 2⁻³², of which [`get_1d`](Self::get_1d) has the upper 24 bits.
+    #[inline]
+    pub fn get_bits(&self, dimension: Dimension) -> u32 {
         let key = mix(self.key ^ dimension.key());
-        unit(match self.source {
+        match self.source {
             Source::Independent => key as u32,
             Source::Sequence(index) => Digits::new(index, key).x(),
             Source::Product(index, member) => Digits::moved(index, member, key).x(),
-        })
+        }
     }
 
     /// The number of `dimension` for one of many things that have no order, each with a key of its own.

@@ -29,7 +29,7 @@ use std::fmt;
 use std::str::FromStr;
 
 /// A connection that may be traced.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Candidate {
     /// Its term; s ≥ 1 and t ≥ 2.
     pub term: Term,

@@ -46,22 +46,26 @@ fn cache(proposals: Option<&LightProposals>, cells: &Cells) -> LightCache {
     cache
 }
 
-/// Each vertex comes up as often as 1 / (N share).
+/// Each vertex comes up as often as it is said to.
 fn check(proposals: Option<&LightProposals>, cells: &Cells) {
     let cache = cache(proposals, cells);
     let connectable = (0..SUBPATHS).map(|i| i % 4).sum();
     let mut found = vec![(0u32, 0.0); connectable];
     let row = proposals.map(|all| all.row(cell(cells, 1)));
     for i in 0..DRAWS {
-        let u = (f64::from(i) + 0.5) / f64::from(DRAWS);
-        if let Some(draw) = cache.draw(row, u) {
+        let number = (u64::from(2 * i + 1) << 31) / u64::from(DRAWS);
+        let draw = match row {
+            Some(row) => cache.draw_learned(row, number as u32),
+            None => cache.draw_any(number as u32),
+        };
+        if let Some((_, draw)) = draw {
             found[draw.entry].0 += 1;
-            found[draw.entry].1 = draw.share;
+            found[draw.entry].1 = f64::from(draw.inverse_prob);
         }
     }
-    for (i, (count, share)) in found.into_iter().enumerate() {
+    for (i, (count, inverse_prob)) in found.into_iter().enumerate() {
         let prob = f64::from(count) / f64::from(DRAWS);
-        let told = 1.0 / (share * SUBPATHS as f64);
+        let told = 1.0 / inverse_prob;
         assert!(
             (prob - told).abs() < 3.0 / f64::from(DRAWS),
             "{i}: {prob} instead of {told}"
@@ -82,5 +86,20 @@ fn draws_have_the_probability_that_they_say() {
     let [learned, uniform] = [sums, uniform].map(|sums| LightProposals::new(cells.clone(), &sums));
     for proposals in [None, Some(&uniform), Some(&learned)] {
         check(proposals, &cells);
+    }
+}
+
+/// The numbers of all `u` together are all numbers, each as often as others.
+#[test]
+fn numbers_are_one_of_each_of_as_many_parts() {
+    for count in [1, 2, 3, 7, 24, 48, 4096] {
+        for u in [0, 1, 1 << 31, u32::MAX] {
+            let drawn: Vec<_> = numbers(count, u).map(u64::from).collect();
+            assert_eq!(drawn.len(), usize::from(count));
+            for (m, number) in (0..).zip(drawn) {
+                let exact = (m << 32 | u64::from(u)) / u64::from(count);
+                assert!(number.abs_diff(exact) <= 1, "{number} instead of {exact}");
+            }
+        }
     }
 }

@@ -1,8 +1,9 @@
 //! s ≥ 1 and t ≥ 2: the connections of light vertices with camera vertices, before visibility.
 
 use super::super::batch::{LightEnd, drop_term};
-use super::super::{Batch, Sample};
+use super::super::{Batch, List, Sample};
 use crate::contribution::{Term, is_summable};
+use crate::guide::CellGuide;
 use crate::path::{
     DiffuseEnd, EndSums, Job, JoinedPath, PathContext, PathSums, RunningSums, Subpath, Subpaths,
     Weights,
@@ -28,6 +29,7 @@ pub(in super::super) fn connect(job: &Job<'_>, batch: &mut Batch) {
             light: &batch.light,
             light_sums: &batch.light_sums,
             weights: &mut batch.weights,
+            first: [batch.candidates.len(), batch.unoffered.len()],
             candidates: &mut batch.candidates,
             unoffered: &mut batch.unoffered,
             stats: &mut batch.stats,
@@ -35,6 +37,7 @@ pub(in super::super) fn connect(job: &Job<'_>, batch: &mut Batch) {
         for t in 2..=connector.camera.vertices.len() {
             let is_due = |of: [u32; 2]| of == [number as u32, t as u32];
             while let Some(event) = next_events.next_if(|it| is_due([it.sample, it.t])) {
+                connector.candidates.make_room(1);
                 connector.offer_next_event(t, &event.end, event.pdf);
             }
             let end = *ends_of_lists.next().expect("each vertex has a list");
@@ -42,6 +45,7 @@ pub(in super::super) fn connect(job: &Job<'_>, batch: &mut Batch) {
             connector.offer_all(t, of_vertex);
             (light_ends, begin) = (others, end);
         }
+        connector.count();
         batch.candidates_end.push(batch.candidates.len());
     }
     debug_assert!(next_events.next().is_none() && ends_of_lists.next().is_none());
@@ -67,7 +71,9 @@ struct Connector<'a> {
     light: &'a Subpaths,
     light_sums: &'a RunningSums,
     weights: &'a mut Weights,
-    candidates: &'a mut Vec<Candidate>,
+    /// How many candidates, and connections that are not offered, other samples have.
+    first: [usize; 2],
+    candidates: &'a mut List<Candidate>,
     unoffered: &'a mut Vec<Candidate>,
     stats: &'a mut Stats,
 }
@@ -76,34 +82,58 @@ impl Connector<'_> {
     /// Connects camera vertex number `t` with vertices of light subpaths: diffuse ones four at a time, if it is
     /// diffuse itself.
     fn offer_all(&mut self, t: usize, ends: &[LightEnd]) {
+        self.candidates.make_room(ends.len().next_multiple_of(4));
         let Some(y) = self.camera_sums.diffuse(self.camera.first + t - 1) else {
             for end in ends {
                 self.offer_general(t, end, None);
             }
             return;
         };
-        for four in ends.chunks(4) {
-            let z = from_fn(|lane| match four.get(lane).map(|end| end.place) {
-                Some(place) if place.is_diffuse => self.light_sums.diffuse(place.z as usize),
-                _ => None,
-            });
-            let count = |z: &DiffuseEnd| self.context.count_walked(t, [z.cell(), y.cell()]) as f32;
-            let counts = z.map(|z| z.map_or(1.0, count));
-            let connections = y.connect(z.map(|z| z.unwrap_or(&DiffuseEnd::NONE)), counts);
-            for (lane, end) in four.iter().enumerate() {
-                let Some(z) = z[lane] else {
-                    self.offer_general(t, end, None);
-                    continue;
+        let of_camera = self.context.job.guide.of_camera(y.cell());
+        let (fours, others) = ends.as_chunks();
+        for four in fours {
+            self.offer_four(t, (y, of_camera), four);
+        }
+        if !others.is_empty() {
+            let last = from_fn(|lane| others.get(lane).copied().unwrap_or_default());
+            self.offer_four(t, (y, of_camera), &last);
+        }
+    }
+
+    /// Connects the diffuse camera vertex `y`, number `t`, with four vertices of light subpaths, or with less: s = 0
+    /// stands for none.
+    #[inline]
+    fn offer_four(
+        &mut self,
+        t: usize,
+        (y, of_camera): (&DiffuseEnd, CellGuide<'_>),
+        four: &[LightEnd; 4],
+    ) {
+        let light_sums = self.light_sums;
+        let z = |lane: usize| {
+            let place = &four[lane].place;
+            let z = light_sums.diffuse_or_none(place.z as usize);
+            if place.is_diffuse {
+                z
+            } else {
+                &DiffuseEnd::NONE
+            }
+        };
+        // Written out, so that lanes stay in registers.
+        let z = [z(0), z(1), z(2), z(3)];
+        let count = |lane: usize| self.context.count_from(t, of_camera, z[lane].cell()) as f32;
+        let connections = y.connect(z, [count(0), count(1), count(2), count(3)]);
+        for (lane, end) in four.iter().enumerate() {
+            if end.place.is_diffuse {
+                let (contribution, weight) = connections.get(lane);
+                let connection = Connection {
+                    contribution,
+                    weight,
+                    root_visibility: of_camera.root_visibility(z[lane].cell()),
                 };
-                if let Some((contribution, weight)) = connections.get(lane) {
-                    let guide = &self.context.job.guide;
-                    let connection = Connection {
-                        contribution,
-                        weight,
-                        root_visibility: guide.root_visibility(z.cell(), y.cell()),
-                    };
-                    self.offer(t, end, connection);
-                }
+                self.offer(t, end, connection);
+            } else if end.place.s > 0 {
+                self.offer_general(t, end, None);
             }
         }
     }
@@ -166,8 +196,9 @@ impl Connector<'_> {
         })
     }
 
-    /// Offers a connection for selection. It is compared by its luminance times the √V̂ of its shadow ray.
-    #[inline]
+    /// Offers a connection for selection, unless it is zero. It is compared by its luminance times the √V̂ of its shadow
+    /// ray.
+    #[inline(always)]
     fn offer(&mut self, t: usize, end: &LightEnd, connection: Connection) {
         let term = Term {
             strategy: Strategy::new(end.place.s.into(), t),
@@ -175,7 +206,6 @@ impl Connector<'_> {
             contribution: connection.contribution * end.share,
             weight: connection.weight,
         };
-        self.stats.count_candidate(term.strategy);
         let value = term.value();
         let luminance = self.context.luminance(value.map(f32::abs));
         let candidate = Candidate {
@@ -184,8 +214,10 @@ impl Connector<'_> {
             vertices: [end.place.z, (self.camera.first + t - 1) as u32],
             light_vertex: end.number,
         };
-        if is_summable(value) && !value.is_black() {
-            self.candidates.push(candidate);
+        // Half of all connections may be zero, at random: no branch tells them apart.
+        let is_zero = connection.contribution.is_black();
+        if is_zero | (is_summable(value) & !value.is_black()) {
+            self.candidates.write(candidate, usize::from(!is_zero));
         } else {
             self.set_aside(candidate);
         }
@@ -197,5 +229,14 @@ impl Connector<'_> {
             drop_term(self.stats, self.sample, candidate.term.strategy);
         }
         self.unoffered.push(candidate);
+    }
+
+    /// Counts all that was found.
+    fn count(self) {
+        let [offered, others] = self.first;
+        let all = self.candidates[offered..]
+            .iter()
+            .chain(&self.unoffered[others..]);
+        all.for_each(|candidate| self.stats.count_candidate(candidate.term.strategy));
     }
 }

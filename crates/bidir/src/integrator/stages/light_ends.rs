@@ -29,6 +29,7 @@ pub(in super::super) fn own_light(job: &Job<'_>, batch: &mut Batch) {
         for (t, y) in (2..).zip(camera.get(number).vertices.iter().skip(1)) {
             let longest = subpath.vertices.len().min(settings.max_vertices() - t);
             let longest = if y.is_delta() { 0 } else { longest };
+            light_ends.make_room(longest);
             for s in settings.light_point.first_walked()..=longest {
                 // Every pair in turn, whatever becomes of it: each moves the pointer.
                 let share = pairs.take(s + t);
@@ -37,13 +38,12 @@ pub(in super::super) fn own_light(job: &Job<'_>, batch: &mut Batch) {
                     continue;
                 };
                 let connects = place.is_diffuse || !subpath.vertices[s - 1].is_delta();
-                if connects && context.takes(s, t) {
-                    light_ends.push(LightEnd {
-                        place,
-                        number: s as u32 - 1,
-                        share,
-                    });
-                }
+                let end = LightEnd {
+                    place,
+                    number: s as u32 - 1,
+                    share,
+                };
+                light_ends.write(end, usize::from(connects && context.takes(s, t)));
             }
             light_ends_end.push(light_ends.len());
         }
@@ -65,29 +65,31 @@ pub(in super::super) fn draw_cached(job: &Job<'_>, batch: &mut Batch, counts: Ca
         light_ends_end,
         ..
     } = batch;
+    let takes_all = job.settings.strategies.is_all();
     for (number, sample) in samples.iter().enumerate() {
         let context = sample.context(job);
         for (t, y) in (2..).zip(camera.get(number).vertices.iter().skip(1)) {
+            // s vertices at most.
+            let longest = job.settings.max_vertices().saturating_sub(t);
             if !y.is_delta() {
-                let at = Dimension::at(t - 1, Purpose::CachedVertex);
-                let u = f64::from(sample.camera.get_1d(at));
-                for (entry, share) in cache.draw_all(job.guide.row(y.cell), counts.at(t), u) {
-                    let place = cache.place(entry);
+                let u = (sample.camera).get_bits(Dimension::at(t - 1, Purpose::CachedVertex));
+                let (row, count) = (job.guide.of_camera(y.cell).row(), counts.at(t));
+                light_ends.make_room(count.into());
+                cache.draw_all(row, (count, u), |entry, place, share| {
                     let s = usize::from(place.s);
-                    if s + t > job.settings.max_vertices() || !context.takes(s, t) {
-                        continue;
-                    }
                     if place.is_diffuse {
                         light_sums.load_ahead(place.z as usize);
                     } else {
                         light.load_ahead(place.z as usize);
                     }
-                    light_ends.push(LightEnd {
-                        place,
+                    let end = LightEnd {
+                        place: *place,
                         number: entry as u32 + 1,
                         share,
-                    });
-                }
+                    };
+                    let takes = s <= longest && (takes_all || context.takes(s, t));
+                    light_ends.write(end, usize::from(takes));
+                });
             }
             light_ends_end.push(light_ends.len());
         }

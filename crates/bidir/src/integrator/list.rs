@@ -1,0 +1,72 @@
+//! Lists that are written in place.
+
+use std::ops::Deref;
+
+/// A list whose memory is overwritten rather than cleared: values are written behind its end without a branch, whether
+/// they stay or not.
+#[derive(Clone, Debug, Default)]
+pub struct List<T> {
+    /// The values, and room behind them.
+    memory: Vec<T>,
+    len: usize,
+}
+
+impl<T: Copy + Default> List<T> {
+    /// Forgets all values, and keeps the memory.
+    pub fn clear(&mut self) {
+        self.len = 0;
+    }
+
+    /// Makes room for `count` values more.
+    #[inline]
+    pub fn make_room(&mut self, count: usize) {
+        let needed = self.len + count;
+        if self.memory.len() < needed {
+            self.memory.resize(needed, T::default());
+        }
+    }
+
+    /// Writes `value` behind the end, where there is room, and moves the end by `step`: 1 if it stays, 0 if the next
+    /// one takes its place.
+    #[inline]
+    pub fn write(&mut self, value: T, step: usize) {
+        self.memory[self.len] = value;
+        self.len += step;
+    }
+}
+
+impl<T> Deref for List<T> {
+    type Target = [T];
+
+    #[inline]
+    fn deref(&self) -> &[T] {
+        &self.memory[..self.len]
+    }
+}
+
+impl<'a, T> IntoIterator for &'a List<T> {
+    type Item = &'a T;
+    type IntoIter = std::slice::Iter<'a, T>;
+
+    fn into_iter(self) -> Self::IntoIter {
+        self.iter()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_stay_if_the_end_moves() {
+        let mut list = List::default();
+        for _ in 0..2 {
+            list.clear();
+            list.make_room(3);
+            for (value, step) in [(1, 1), (2, 0), (3, 1), (4, 0)] {
+                list.write(value, step);
+            }
+            assert_eq!(*list, [1, 3]);
+        }
+    }
+}
