@@ -72,6 +72,27 @@ MEDIA = [
         media("nested_media"),
     ),
     (
+        "media that are foreseen, and let all light through",
+        "crates/bidir/src/integrator/stages/connect.rs",
+        "term.contribution * connection.transmittance",
+        "term.contribution",
+        FURNACE,
+    ),
+    (
+        "media foreseen behind boundaries",
+        "crates/bidir/src/scene/builder.rs",
+        "foresees_media: is_opaque && ",
+        "foresees_media: ",
+        media("nested_media"),
+    ),
+    (
+        "grids foreseen like media that are even",
+        "crates/bidir/src/scene/builder.rs",
+        "foresees_media: is_opaque && self.media.iter().all(is_even),",
+        "foresees_media: is_opaque,",
+        media("smoke_that_absorbs_nothing"),
+    ),
+    (
         "open boundaries between two places that are clear",
         PASSAGE,
         "self.is_opaque && place.media == MediumSides::VACUUM",

@@ -353,8 +353,11 @@ impl SceneBuilder {
             .filter(|&i| is_environment(&self.lights[i]))
             .map(|i| i as u32);
         let is_boundary = |surface: &Surface| surface.presence == Presence::Boundary;
+        let is_opaque = self.coverages.is_empty() && !self.surfaces.iter().any(is_boundary);
+        let is_even = |medium: &Medium| medium.bounds().is_none();
         let mut scene = Scene {
-            is_opaque: self.coverages.is_empty() && !self.surfaces.iter().any(is_boundary),
+            is_opaque,
+            foresees_media: is_opaque && self.media.iter().all(is_even),
             glows: glow::lights_of(&self.media, &self.lights),
             media: self.media,
             around: MediumId::VACUUM,

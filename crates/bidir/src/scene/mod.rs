@@ -107,6 +107,8 @@ pub struct Scene {
     /// True where rays pass no surface, and need not ask.
     is_opaque: bool,
     media: Vec<Medium>,
+    /// True where the media of a shadow ray are known if it is not blocked.
+    foresees_media: bool,
     /// The medium around everything.
     around: MediumId,
     /// The media on the sides of each light.

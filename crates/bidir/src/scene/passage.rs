@@ -231,6 +231,13 @@ impl Scene {
         self.is_clear_around(start) && end.kind != LocusKind::Medium
     }
 
+    /// True where the media between ends that see each other are known before any ray is traced: no ray passes a
+    /// boundary, and each medium is the same everywhere.
+    #[inline]
+    pub(crate) fn foresees_media(&self) -> bool {
+        self.foresees_media
+    }
+
     /// True where light from infinity arrives through the medium around everything.
     pub fn is_open(&self) -> bool {
         let around = self.medium(self.around);
@@ -325,25 +332,50 @@ impl Scene {
         stop: Stop<'_>,
     ) -> Option<Edge> {
         let ray = super::visibility::shadow_ray(a, b);
-        let start = if a.is_infinite() { b } else { a };
-        let unit = ray.direction.length();
         let mut crossings = SmallVec::<[Crossing; 8]>::new();
         let cross = |hit: &Hit| crossings.extend(self.crossing(&ray, hit));
         let visible = self.visible_part(&ray, stop, cross);
         if visible <= 0.0 || stop.is_asked() {
             return None;
         }
-        let passage = Passage::new(start.medium_toward(ray.direction), crossings, ray.t_max);
-        let depths = passage
-            .spans(ray.t_max)
-            .map(|span| self.depth(span.medium, &span.of(&ray, unit), Detail::Full, wavelengths));
-        let depth = depths.fold(Depth::ZERO, Depth::and);
-        let edge = self.edge_of(depth.transmittance(), [a, b], wavelengths);
+        let edge = self.edge_across(&ray, crossings, [a, b], wavelengths);
         let arrives = edge.transmittance * visible;
         (!arrives.is_black()).then_some(Edge {
             transmittance: arrives,
             ..edge
         })
+    }
+
+    /// The media between two ends if they see each other, where the scene [foresees](Self::foresees_media) them. None:
+    /// nothing arrives.
+    pub(crate) fn foreseen_edge(
+        &self,
+        a: &Locus,
+        b: &Locus,
+        wavelengths: &Wavelengths,
+    ) -> Option<Edge> {
+        let ray = super::visibility::shadow_ray(a, b);
+        let edge = self.edge_across(&ray, [], [a, b], wavelengths);
+        (!edge.transmittance.is_black()).then_some(edge)
+    }
+
+    /// The media along `ray` from one end to the other, which crosses these boundaries.
+    #[inline]
+    fn edge_across(
+        &self,
+        ray: &Ray,
+        crossings: impl IntoIterator<Item = Crossing>,
+        [a, b]: [&Locus; 2],
+        wavelengths: &Wavelengths,
+    ) -> Edge {
+        let start = if a.is_infinite() { b } else { a };
+        let unit = ray.direction.length();
+        let passage = Passage::new(start.medium_toward(ray.direction), crossings, ray.t_max);
+        let depths = passage
+            .spans(ray.t_max)
+            .map(|span| self.depth(span.medium, &span.of(ray, unit), Detail::Full, wavelengths));
+        let depth = depths.fold(Depth::ZERO, Depth::and);
+        self.edge_of(depth.transmittance(), [a, b], wavelengths)
     }
 
     /// A guess at the media between two ends from those next to them: the thinner of both, all the way. Something

@@ -57,8 +57,10 @@ pub(in super::super) fn connect(job: &Job<'_>, batch: &mut Batch) {
 struct Connection {
     /// C.
     contribution: Spectrum,
+    /// T of the media between its ends, where it is known before its shadow ray is traced; else 1.
+    transmittance: Spectrum,
     weight: f32,
-    /// √V̂ of its shadow ray.
+    /// √V̂ of its shadow ray, times a guess at the mean of T.
     root_visibility: f32,
 }
 
@@ -128,6 +130,7 @@ impl Connector<'_> {
                 let (contribution, weight) = connections.get(lane);
                 let connection = Connection {
                     contribution,
+                    transmittance: Spectrum::ONE,
                     weight,
                     root_visibility: of_camera.root_visibility(z[lane].cell()),
                 };
@@ -149,6 +152,7 @@ impl Connector<'_> {
         if let Some((contribution, weight)) = y.next_event(context, t, (x0, e), &segment) {
             let connection = Connection {
                 contribution,
+                transmittance: Spectrum::ONE,
                 weight,
                 root_visibility: context.root_visibility(x0, vertex),
             };
@@ -184,13 +188,22 @@ impl Connector<'_> {
         let (z, y) = (path.z(), path.y());
         let mut root_visibility = self.context.root_visibility(z, y);
         let scene = self.context.job.scene;
+        let mut transmittance = Spectrum::ONE;
         if !scene.is_clear(&z.locus, &y.locus) {
-            let guess = scene.guessed_edge(&z.locus, &y.locus, &self.context.wavelengths);
-            path.pass(&guess);
-            root_visibility *= scene.color().mean(guess.transmittance);
+            let (a, b, wavelengths) = (&z.locus, &y.locus, &self.context.wavelengths);
+            let edge = if scene.foresees_media() {
+                let edge = scene.foreseen_edge(a, b, wavelengths)?;
+                transmittance = edge.transmittance;
+                edge
+            } else {
+                scene.guessed_edge(a, b, wavelengths)
+            };
+            path.pass(&edge);
+            root_visibility *= scene.color().mean(edge.transmittance);
         }
         Some(Connection {
             contribution,
+            transmittance,
             weight: self.weights.weight(&self.context, &path, &sums),
             root_visibility,
         })
@@ -200,7 +213,7 @@ impl Connector<'_> {
     /// ray.
     #[inline(always)]
     fn offer(&mut self, t: usize, end: &LightEnd, connection: Connection) {
-        let term = Term {
+        let mut term = Term {
             strategy: Strategy::new(end.place.s.into(), t),
             light: end.place.light,
             contribution: connection.contribution * end.share,
@@ -208,6 +221,7 @@ impl Connector<'_> {
         };
         let value = term.value();
         let luminance = self.context.luminance(value.map(f32::abs));
+        term.contribution = term.contribution * connection.transmittance;
         let candidate = Candidate {
             term,
             score: Candidate::score(luminance * connection.root_visibility),

@@ -1,5 +1,5 @@
-//! Shadow rays through media. A weight depends on all of the media that a ray goes through, which only the ray finds
-//! out: so each is traced before its term is weighed.
+//! Shadow rays through media. A weight depends on all of the media that a ray goes through. Where only the ray finds
+//! them out, each is traced before its term is weighed.
 //!
 //! A candidate has the weight of a guess, by which it is chosen. Its probability depends on guesses alone, and the
 //! estimate remains unbiased with the weight that the ray leads to (docs/derivations/media.md).

@@ -55,7 +55,7 @@ pub(in super::super) fn select(rule: &dyn Selector, batch: &mut Batch) {
 /// Traces the shadow rays of all entries for the samples' own pixels.
 #[inline(never)]
 pub(in super::super) fn shadow_rays(job: &Job<'_>, batch: &mut Batch) {
-    if job.scene.has_media() {
+    if job.scene.has_media() && !job.scene.foresees_media() {
         settle_chosen(job, batch);
     }
     let Batch {
