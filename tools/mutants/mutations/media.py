@@ -3,6 +3,8 @@
 from .tests import formats, media, unit
 
 PASSAGE = "crates/bidir/src/scene/passage.rs"
+NESTING = "crates/bidir/src/scene/nesting.rs"
+ENCLOSURE = "crates/formats/src/import/enclosure.rs"
 GLOW = "crates/formats/src/pbrt/build/media/glow.rs"
 FURNACE = media("a_furnace_full_of_fog")
 EQUILIBRIUM = media("glow::matter_in_equilibrium")
@@ -224,5 +226,75 @@ MEDIA = [
         "self.fill(range, bytes.f32(entry)?);",
         "self.fill(range, 0.0 * bytes.f32(entry)?);",
         formats("nanovdb::"),
+    ),
+    (
+        "volumes around what is not within them",
+        NESTING,
+        "if crossing.leaves { -1 } else { 1 }",
+        "if crossing.leaves { 1 } else { -1 }",
+        formats("nested::behind_an_inner_volume"),
+    ),
+    (
+        "the larger of two volumes fills what they share",
+        NESTING,
+        "let by_size = other.size.total_cmp(&self.size);",
+        "let by_size = self.size.total_cmp(&other.size);",
+        formats("nested::of_volumes_that_overlap"),
+    ),
+    (
+        "priorities without effect",
+        NESTING,
+        "self.volume.priority.cmp(&other.volume.priority)",
+        "0.cmp(&(0 * other.volume.priority))",
+        formats("nested::the_higher_priority"),
+    ),
+    (
+        "air around every volume",
+        NESTING,
+        "other.map_or(1.0, |other| other.volume.index)",
+        "other.map_or(1.0, |_| 1.0)",
+        formats("nested::surfaces_reflect_by_the_index"),
+    ),
+    (
+        "a surface between equal substances",
+        NESTING,
+        "a == b || a.map(substance) == b.map(substance)",
+        "a == b",
+        formats("nested::a_substance_within_itself"),
+    ),
+    (
+        "air between volumes that touch",
+        NESTING,
+        "if gap <= position_error(reach) {",
+        "if gap < 0.0 {",
+        formats("nested::a_liquid_meets_glass"),
+    ),
+    (
+        "boundaries within a volume counted",
+        NESTING,
+        "if before.is_none() {",
+        "if before.is_none() || true {",
+        formats("nested::boundaries_within"),
+    ),
+    (
+        "no mesh open",
+        ENCLOSURE,
+        "part.is_open |= area.length() > OPEN * part.area;",
+        "part.is_open |= area.length() > f64::INFINITY * part.area;",
+        formats("enclosure::"),
+    ),
+    (
+        "two-sided sheets closed",
+        ENCLOSURE,
+        "part.is_open |= part.volume.abs() <= FLAT",
+        "part.is_open |= part.volume.abs() < 0.0 * FLAT",
+        formats("enclosure::a_sheet"),
+    ),
+    (
+        "cavities turned",
+        ENCLOSURE,
+        "wrong.filter(|&i| hull.winding(i, &roots) <= 0)",
+        "wrong.filter(|&i| hull.winding(i, &roots) <= i32::MAX)",
+        formats("enclosure::parts_within"),
     ),
 ]

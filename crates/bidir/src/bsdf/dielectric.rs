@@ -39,6 +39,12 @@ pub(super) struct Crossing {
 }
 
 impl Dielectric {
+    /// The interface with `index` outside in place of 1.
+    pub(super) fn within(self, index: f32) -> Self {
+        let eta = self.eta / index;
+        Self { eta, ..self }
+    }
+
     /// An index-matched interface bends nothing, so roughness has no meaning there.
     #[inline]
     pub(crate) fn is_smooth(&self) -> bool {

@@ -211,6 +211,25 @@ impl Bsdf {
         sample.filter(|sample| sample.pdf > 0.0)
     }
 
+    /// The same surface with `index` around it in place of air, of which only its transparent part takes notice.
+    #[inline]
+    #[must_use]
+    pub fn within(self, index: f32) -> Self {
+        if index.to_bits() == 1f32.to_bits() {
+            return self;
+        }
+        match self {
+            Self::Dielectric(bsdf) => Self::Dielectric(bsdf.within(index)),
+            Self::Principled(bsdf) => Self::Principled(bsdf.within(index)),
+            Self::Diffuse(_)
+            | Self::Conductor(_)
+            | Self::ThinDielectric(_)
+            | Self::DiffuseTransmission(_)
+            | Self::CoatedDiffuse(_)
+            | Self::CoatedConductor(_) => self,
+        }
+    }
+
     /// True where all scattering is a Dirac distribution.
     #[inline]
     pub fn is_delta(&self) -> bool {

@@ -147,7 +147,8 @@ impl Vertex {
             at = at.seen(context.job.view.footprint(surface.point), differentials);
         }
         let material = scene.material(hit.material).choose(&at, u_mix);
-        let bsdf = material.bsdf(&at, scene.color(), &context.wavelengths);
+        let in_air = material.bsdf(&at, scene.color(), &context.wavelengths);
+        let bsdf = in_air.within(hit.around);
         let frame = match (material.relief(), &hit.differentials) {
             (Some(relief), Some(differentials)) => relief.frame(surface, differentials, &at),
             _ => surface.shading,

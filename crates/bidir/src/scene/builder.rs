@@ -2,6 +2,7 @@
 //! everything (metres) that lights at infinity shine through. All errors of a scene are found here.
 
 use super::check::check_shape;
+use super::nesting::{self, Enclosed, Volume};
 use super::object::{Geometry, ObjectId, Objects};
 use super::{Presence, RenderSpace, Scene, Surface, glow};
 use crate::light::{
@@ -16,7 +17,7 @@ use crate::texture::{ColorTexture, FloatTexture, clamped_coverage};
 use thiserror::Error;
 
 /// A material added to a [`SceneBuilder`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct MaterialId(u32);
 
 /// The light that a shape emits.
@@ -109,6 +110,7 @@ pub struct SceneBuilder {
     objects: Objects,
     coverages: Vec<FloatTexture>,
     media: Vec<Medium>,
+    volumes: Vec<Volume>,
     /// A point, and the medium there.
     around: Option<(Vec3, MediumId)>,
     materials: Vec<Material>,
@@ -174,6 +176,7 @@ impl SceneBuilder {
             light,
             presence: Presence::Whole,
             sides: None,
+            volume: None,
             is_detailed: self.materials[material.0 as usize].needs().footprint,
         });
         self.shapes.push(shape);
@@ -211,6 +214,34 @@ impl SceneBuilder {
     /// its surroundings is on both.
     pub fn sides(&mut self, shape: usize, media: MediumSides) -> &mut Self {
         self.surfaces[shape].sides = media.is_boundary().then_some(media);
+        self
+    }
+
+    /// Shape number `shape`.
+    pub fn shape_of(&self, shape: usize) -> &Shape {
+        &self.shapes[shape]
+    }
+
+    /// Shape number `shape`, to be turned.
+    pub fn shape_mut(&mut self, shape: usize) -> &mut Shape {
+        &mut self.shapes[shape]
+    }
+
+    /// Gives shape number `shape` another material.
+    pub fn dress(&mut self, shape: usize, material: MaterialId) -> &mut Self {
+        let needs = self.materials[material.0 as usize].needs();
+        let surface = &mut self.surfaces[shape];
+        (surface.material, surface.is_detailed) = (material.0, needs.footprint);
+        self
+    }
+
+    /// Makes shapes, all in the world or all of one object, the closed surface of a volume.
+    pub fn enclose(&mut self, shapes: &[usize], volume: Volume) -> &mut Self {
+        let number = self.volumes.len() as u32;
+        self.volumes.push(volume);
+        for &shape in shapes {
+            self.surfaces[shape].volume = Some(number);
+        }
         self
     }
 
@@ -348,16 +379,20 @@ impl SceneBuilder {
         };
         let light_choice = LightChoice::new(&self.lights, &context);
         let light_tree = LightTree::new(&self.lights, &context);
+        let volumes = self.nested_volumes();
         let is_environment = |light: &Light| light.is_infinite() && !light.is_delta();
         let environment = (0..self.lights.len())
             .filter(|&i| is_environment(&self.lights[i]))
             .map(|i| i as u32);
         let is_boundary = |surface: &Surface| surface.presence == Presence::Boundary;
-        let is_opaque = self.coverages.is_empty() && !self.surfaces.iter().any(is_boundary);
+        let is_opaque = self.coverages.is_empty()
+            && volumes.is_empty()
+            && !self.surfaces.iter().any(is_boundary);
         let is_even = |medium: &Medium| medium.bounds().is_none();
         let mut scene = Scene {
             is_opaque,
             foresees_media: is_opaque && self.media.iter().all(is_even),
+            volumes,
             glows: glow::lights_of(&self.media, &self.lights),
             media: self.media,
             around: MediumId::VACUUM,
@@ -392,13 +427,38 @@ impl SceneBuilder {
     }
 }
 
+impl SceneBuilder {
+    /// The volumes with what they enclose, if any touches another. Forgets them where none does.
+    fn nested_volumes(&mut self) -> Vec<Enclosed> {
+        let boxes = nesting::boxes(&self.shapes, &self.surfaces, &self.objects);
+        if !nesting::keep_touching(&mut self.surfaces, boxes) {
+            return Vec::new();
+        }
+        let mut volumes: Vec<_> = std::mem::take(&mut self.volumes)
+            .into_iter()
+            .map(|volume| Enclosed { volume, size: 0.0 })
+            .collect();
+        for (surface, shape) in self.surfaces.iter().zip(&self.shapes) {
+            if let Some(volume) = surface.volume {
+                volumes[volume as usize].size += shape.enclosed();
+            }
+        }
+        volumes
+    }
+}
+
 /// The media on the sides of a light: those of its shape, or the one that some point of it lies in.
 fn media_of(scene: &Scene, light: &Light) -> MediumSides {
     let at = match light {
         Light::Area(light) => {
             let surface = scene.surfaces[light.shape_index()];
             match surface.sides {
-                Some(sides) if surface.presence != Presence::Absent => return sides,
+                Some(sides) if surface.presence != Presence::Absent => {
+                    let point = scene.point_on(light.shape_index());
+                    return scene
+                        .sides_of_nested(surface.volume, point)
+                        .unwrap_or(sides);
+                }
                 _ => scene.point_on(light.shape_index()),
             }
         }

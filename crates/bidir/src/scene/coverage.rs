@@ -23,7 +23,7 @@ use std::ops::ControlFlow;
 pub struct Chances<'a> {
     stream: &'a SampleStream,
     dimension: Dimension,
-    stop: Stop<'a>,
+    pub(super) stop: Stop<'a>,
 }
 
 impl<'a> Chances<'a> {
@@ -63,7 +63,7 @@ impl<'a> Chances<'a> {
 impl Scene {
     /// α where a surface is hit: 1 where it is opaque, or where a texture is no number.
     #[inline]
-    fn coverage(&self, ray: &accel::Ray, hit: &Hit) -> f32 {
+    pub(super) fn coverage(&self, ray: &accel::Ray, hit: &Hit) -> f32 {
         let (_, primitive) = self.resolve(hit);
         let (number, index) = (primitive.shape as usize, primitive.index as usize);
         let texture = match self.surfaces[number].presence {
@@ -98,8 +98,7 @@ impl Scene {
             if stop.is_asked() {
                 return true;
             }
-            let alpha = self.coverage(ray, hit);
-            let stops = alpha >= 1.0 || alpha > 0.0 && chances.draw(hit) < alpha;
+            let stops = self.stops(ray, hit, chances);
             if !stops {
                 cross(hit);
             }
@@ -107,8 +106,16 @@ impl Scene {
         })
     }
 
-    /// Π (1 - α) over everything that a shadow ray meets. Calls `cross` for surfaces that it passes, all of them where
-    /// anything arrives. Any number where nobody waits for it, because `stop` was asked for.
+    /// True where a surface is there for a ray of a walk.
+    #[inline]
+    pub(super) fn stops(&self, ray: &accel::Ray, hit: &Hit, chances: Chances<'_>) -> bool {
+        let alpha = self.coverage(ray, hit);
+        alpha >= 1.0 || alpha > 0.0 && chances.draw(hit) < alpha
+    }
+
+    /// Π (1 - α) over everything that a shadow ray meets, but for volumes within each other. Calls `cross` for surfaces
+    /// that it passes, all of them where anything arrives. Any number where nobody waits for it, because `stop` was
+    /// asked for.
     #[inline]
     pub(super) fn visible_part(
         &self,
@@ -123,6 +130,7 @@ impl Scene {
         let mut factors = Factors::default();
         let flow = bvh.each_hit(ray, |hit| match self.coverage(ray, hit) {
             _ if stop.is_asked() => ControlFlow::Break(()),
+            _ if self.is_of_nested(hit) => ControlFlow::Continue(()),
             alpha if alpha >= 1.0 => ControlFlow::Break(()),
             alpha => {
                 cross(hit);

@@ -7,6 +7,7 @@ mod builder;
 mod check;
 mod coverage;
 mod glow;
+mod nesting;
 mod object;
 mod passage;
 mod space;
@@ -17,11 +18,13 @@ pub use builder::{
     DEFAULT_GROUP, ENVIRONMENT_GROUP, Emission, MaterialId, SceneBuilder, SceneError,
 };
 pub use coverage::Chances;
+pub use nesting::Volume;
 pub use object::ObjectId;
 pub use passage::{Advance, Edge, Interaction, Transmittance};
 pub use space::RenderSpace;
 pub(crate) use visibility::ShadowRays;
 
+use nesting::Enclosed;
 use object::Placed;
 
 use crate::light::{Light, LightChoice, LightContext, LightPoint, LightTree};
@@ -48,6 +51,8 @@ struct Surface {
     presence: Presence,
     /// The media that it parts. None: the same is on both sides.
     sides: Option<MediumSides>,
+    /// The volume that it bounds, by index, if others touch that.
+    volume: Option<u32>,
     /// True where the material asks how the surface changes along its parameters.
     is_detailed: bool,
 }
@@ -61,6 +66,7 @@ impl Surface {
             light: None,
             presence: sides.map_or(Presence::Absent, |_| Presence::Boundary),
             sides,
+            volume: None,
             is_detailed: false,
         }
     }
@@ -90,6 +96,8 @@ pub struct SurfaceHit {
     pub material: u32,
     /// The light that the surface is, by index, with the light point that was hit.
     pub light: Option<(u32, LightPoint)>,
+    /// The index of refraction around the volume that it bounds; 1 for air.
+    pub around: f32,
 }
 
 /// A built scene.
@@ -109,6 +117,8 @@ pub struct Scene {
     media: Vec<Medium>,
     /// True where the media of a shadow ray are known if it is not blocked.
     foresees_media: bool,
+    /// The volumes, if any touch each other.
+    volumes: Vec<Enclosed>,
     /// The medium around everything.
     around: MediumId,
     /// The media on the sides of each light.
@@ -278,6 +288,7 @@ impl Scene {
             differentials,
             material: of_shape.material,
             light,
+            around: 1.0,
         }
     }
 

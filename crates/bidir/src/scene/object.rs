@@ -12,6 +12,12 @@ use std::sync::Arc;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct ObjectId(pub(super) u32);
 
+impl ObjectId {
+    pub(super) fn index(self) -> usize {
+        self.0 as usize
+    }
+}
+
 /// An object in its place.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Placed {

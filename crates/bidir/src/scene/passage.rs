@@ -3,6 +3,7 @@
 //! A ray begins in the medium of its origin, and the last boundary that it crossed decides. Surfaces that are nothing
 //! but boundaries (`Presence::Boundary`) stop no ray; surfaces with holes let some rays through.
 
+use super::nesting::Interface;
 use super::{Chances, Presence, Scene, SurfaceHit};
 use crate::locus::{Locus, LocusKind};
 use crate::math::Vec3;
@@ -11,7 +12,6 @@ use crate::spectrum::{Spectrum, Wavelengths};
 use accel::{Hit, Ray, Stop};
 use smallvec::SmallVec;
 use std::cell::RefCell;
-use std::ops::ControlFlow;
 
 /// The place that a ray of a walk comes to.
 #[derive(Clone, Copy, Debug)]
@@ -63,22 +63,25 @@ pub struct Edge {
 
 /// A boundary of media that a ray crosses.
 #[derive(Clone, Copy, Debug)]
-struct Crossing {
+pub(super) struct Crossing {
     /// The distance along the ray.
-    t: f32,
+    pub(super) t: f32,
     /// True where the ray leaves the inside of the shape.
-    leaves: bool,
+    pub(super) leaves: bool,
     /// The boundary, by instance and primitive.
-    surface: (u32, u32),
-    from: MediumId,
-    into: MediumId,
+    pub(super) surface: (u32, u32),
+    pub(super) from: MediumId,
+    pub(super) into: MediumId,
 }
+
+/// The boundaries that a ray crosses, in any order.
+pub(super) type Crossings = SmallVec<[Crossing; 8]>;
 
 /// The boundaries that a ray crosses, in order.
 #[derive(Debug)]
-struct Passage {
+pub(super) struct Passage {
     start: MediumId,
-    crossings: SmallVec<[Crossing; 8]>,
+    crossings: Crossings,
 }
 
 /// A part of a ray in one medium.
@@ -157,9 +160,13 @@ impl Depth {
 
 impl Passage {
     /// The passage of a ray that begins in `start` and ends at `end`.
-    fn new(start: MediumId, crossings: impl IntoIterator<Item = Crossing>, end: f32) -> Self {
+    pub(super) fn new(
+        start: MediumId,
+        crossings: impl IntoIterator<Item = Crossing>,
+        end: f32,
+    ) -> Self {
         let crossings = crossings.into_iter().filter(|crossing| crossing.t < end);
-        let mut crossings: SmallVec<_> = crossings.collect();
+        let mut crossings: Crossings = crossings.collect();
         // Where two shapes touch, the one is left before the other is entered. Hits arrive in any order.
         let order = |a: &Crossing, b: &Crossing| {
             let by_side = b.leaves.cmp(&a.leaves);
@@ -182,6 +189,13 @@ impl Passage {
             .map(|((begin, end), medium)| Span { medium, begin, end })
     }
 
+    /// The medium at the start, as the first boundary has it.
+    pub(super) fn first(&self) -> MediumId {
+        self.crossings
+            .first()
+            .map_or(self.start, |first| first.from)
+    }
+
     /// The medium at the end.
     fn last(&self) -> MediumId {
         self.crossings.last().map_or(self.start, |last| last.into)
@@ -200,7 +214,7 @@ impl Scene {
     /// True where rays may go through media.
     #[inline]
     pub fn has_media(&self) -> bool {
-        !self.media.is_empty()
+        !self.media.is_empty() || self.nests()
     }
 
     /// All media.
@@ -268,11 +282,10 @@ impl Scene {
         chances: Chances<'_>,
         wavelengths: &Wavelengths,
     ) -> Advance {
-        let crossings = RefCell::new(SmallVec::<[Crossing; 8]>::new());
-        let cross = |hit: &Hit| crossings.borrow_mut().extend(self.crossing(ray, hit));
-        let hit = self.closest(ray, chances, cross);
+        let mut crossings = Crossings::new();
+        let (hit, interface) = self.first(ray, chances, &mut crossings);
         let end = hit.map_or(f32::INFINITY, |hit| hit.t);
-        let passage = Passage::new(medium, crossings.into_inner(), end);
+        let passage = Passage::new(medium, crossings, end);
         let lanes = |rgb| self.color.unbounded(rgb, wavelengths);
         let mut drawn = None;
         let mut depth = Depth::ZERO;
@@ -296,12 +309,43 @@ impl Scene {
         let surface = |hit: Hit| {
             let (_, primitive) = self.resolve(&hit);
             let sides = self.surfaces[primitive.shape as usize].sides;
-            let media = sides.unwrap_or(MediumSides::all(passage.last()));
-            Interaction::Surface(self.surface_hit(ray, &hit), media)
+            let mut at = self.surface_hit(ray, &hit);
+            let Some(interface) = interface else {
+                return Interaction::Surface(at, sides.unwrap_or(MediumSides::all(passage.last())));
+            };
+            at.around = interface.around;
+            Interaction::Surface(at, interface.sides(at.surface.n_g, ray.direction))
         };
         Advance {
             interaction: hit.map_or(Interaction::Escape, surface),
             transmittance: depth.transmittance(),
+        }
+    }
+
+    /// The nearest surface that a ray of a walk does not pass; of a volume among others, what is around it. Adds the
+    /// boundaries on the way, some behind it perhaps among them.
+    fn first(
+        &self,
+        ray: &Ray,
+        chances: Chances<'_>,
+        crossings: &mut Crossings,
+    ) -> (Option<Hit>, Option<Interface>) {
+        if self.nests() {
+            return self.closest_of_nested(ray, chances, crossings);
+        }
+        let passed = RefCell::new(crossings);
+        let cross = |hit: &Hit| passed.borrow_mut().extend(self.crossing(ray, hit));
+        (self.closest(ray, chances, cross), None)
+    }
+
+    /// Π (1 - α) over everything that a shadow ray meets. Adds the boundaries that it crosses.
+    pub(super) fn visible(&self, ray: &Ray, stop: Stop<'_>, crossings: &mut Crossings) -> f32 {
+        let cross = |hit: &Hit| crossings.extend(self.crossing(ray, hit));
+        let visible = self.visible_part(ray, stop, cross);
+        if visible > 0.0 && self.nests() {
+            visible * self.visible_past_nested(ray, stop, crossings)
+        } else {
+            visible
         }
     }
 
@@ -332,9 +376,8 @@ impl Scene {
         stop: Stop<'_>,
     ) -> Option<Edge> {
         let ray = super::visibility::shadow_ray(a, b);
-        let mut crossings = SmallVec::<[Crossing; 8]>::new();
-        let cross = |hit: &Hit| crossings.extend(self.crossing(&ray, hit));
-        let visible = self.visible_part(&ray, stop, cross);
+        let mut crossings = Crossings::new();
+        let visible = self.visible(&ray, stop, &mut crossings);
         if visible <= 0.0 || stop.is_asked() {
             return None;
         }
@@ -434,7 +477,7 @@ impl Scene {
     }
 
     /// The boundary that a ray crosses at `hit`. None: the surface is none.
-    fn crossing(&self, ray: &Ray, hit: &Hit) -> Option<Crossing> {
+    pub(super) fn crossing(&self, ray: &Ray, hit: &Hit) -> Option<Crossing> {
         let sides = self.parted(hit)?;
         let leaves = self.surface_at(ray, hit).n_g.dot(ray.direction) > 0.0;
         Some(Crossing {
@@ -452,6 +495,9 @@ impl Scene {
         let is_boundary = |hit: &Hit| self.crosses(hit);
         by_most(|direction| {
             let ray = Ray::new(point, direction);
+            if self.nests() {
+                return self.passage_from(&ray, self.around).first();
+            }
             let hit = self.bvh.closest(&ray, is_boundary);
             let crossing = hit.and_then(|hit| self.crossing(&ray, &hit));
             crossing.map_or(self.around, |crossing| crossing.from)
@@ -462,12 +508,7 @@ impl Scene {
     pub(super) fn medium_beyond(&self, point: Vec3, medium: MediumId) -> MediumId {
         by_most(|direction| {
             let ray = Ray::new(point, direction);
-            let mut crossings = SmallVec::<[Crossing; 8]>::new();
-            let _ = self.bvh.each_hit(&ray, |hit| {
-                crossings.extend(self.crossing(&ray, hit));
-                ControlFlow::Continue(())
-            });
-            Passage::new(medium, crossings, f32::INFINITY).last()
+            self.passage_from(&ray, medium).last()
         })
     }
 

@@ -4,6 +4,7 @@
 //! Both ends are pushed off their surface by the error of their point, so that none shadows itself.
 
 use super::Scene;
+use super::passage::Crossings;
 use crate::locus::Locus;
 use accel::Stop;
 
@@ -20,7 +21,7 @@ impl Scene {
     /// lies between, 1 where nothing does. At most one end is at infinity.
     #[inline]
     pub fn transmittance(&self, a: &Locus, b: &Locus) -> f32 {
-        self.visible_part(&shadow_ray(a, b), Stop::NEVER, |_| ())
+        self.visible(&shadow_ray(a, b), Stop::NEVER, &mut Crossings::new())
     }
 
     /// The [transmittance](Self::transmittance) between each of these pairs of ends, in their order: less work for
@@ -43,7 +44,7 @@ impl Scene {
             self.bvh.until(stop).are_blocked(rays, blocked);
             transmittances.extend(blocked.iter().map(|&is_blocked| f32::from(!is_blocked)));
         } else {
-            let visible = |ray| self.visible_part(ray, stop, |_| ());
+            let visible = |ray| self.visible(ray, stop, &mut Crossings::new());
             transmittances.extend(rays.iter().map(visible));
         }
         transmittances

@@ -69,6 +69,25 @@ impl Mesh {
         }
     }
 
+    /// The normal of the front of triangle `i` by its winding alone, of any length.
+    #[inline]
+    pub(crate) fn front(&self, place: Option<&Place>, i: usize) -> Vec3 {
+        let own = self.corners(i);
+        let corners = match place {
+            None => own,
+            Some(place) => own.at(place),
+        };
+        let [a, b, c] = corners.positions;
+        (b - a).cross(c - a) * corners.winding_sign
+    }
+
+    /// The volume within a closed mesh, negative where its front is within. Unit: m³.
+    pub(super) fn enclosed(&self) -> f64 {
+        let corners = (0..self.triangle_count()).map(|i| self.triangle(i).map(Vec3::as_dvec3));
+        let sum: f64 = corners.map(|[a, b, c]| a.dot(b.cross(c))).sum();
+        sum / 6.0 * f64::from(self.orientation.sign())
+    }
+
     #[inline]
     pub(super) fn sample(&self, i: usize, u: Vec2) -> ShapeSample {
         let corners = self.corners(i);

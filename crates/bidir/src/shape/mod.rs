@@ -202,6 +202,22 @@ impl Shape {
         }
     }
 
+    /// Two corners of a box around it.
+    pub fn corners(&self) -> [Vec3; 2] {
+        let bounds = (0..self.primitive_count()).map(|i| self.primitive(i).bounds());
+        let all = bounds.fold(accel::Aabb::EMPTY, accel::Aabb::union);
+        [all.min, all.max]
+    }
+
+    /// The volume that the shape encloses by itself; 0 for pieces that do not. Unit: m³.
+    pub fn enclosed(&self) -> f64 {
+        match self {
+            Self::Mesh(mesh) => mesh.enclosed(),
+            Self::Sphere(sphere) => sphere.enclosed(),
+            Self::Disk(_) | Self::Cylinder(_) => 0.0,
+        }
+    }
+
     /// The geometric normals of primitive `i`.
     pub fn normals(&self, i: usize) -> Normals {
         match self {
@@ -285,7 +301,7 @@ impl Orientation {
 /// A bound of the rounding error of a surface point computed from coordinates up to `magnitude`:
 /// interpolation, the intersector's translation and its own arithmetic, with room.
 #[inline]
-fn position_error(magnitude: f32) -> f32 {
+pub(crate) fn position_error(magnitude: f32) -> f32 {
     32.0 * f32::EPSILON * magnitude
 }
 

@@ -5,6 +5,7 @@
 
 use super::position_error;
 use crate::math::{Affine3A, DAffine3, Vec3};
+use accel::Aabb;
 use glam::{DMat3, DVec3};
 
 /// The place of an object, under any invertible affine map.
@@ -45,6 +46,22 @@ impl Place {
     pub(super) fn sign(&self) -> f32 {
         let [x, y, z] = self.columns();
         if x.dot(y.cross(z)) < 0.0 { -1.0 } else { 1.0 }
+    }
+
+    /// A box in the world around a box of the object.
+    pub(crate) fn bounds(&self, own: Aabb) -> Aabb {
+        let corners = [own.min, own.max];
+        let corner = |i: usize| {
+            let [x, y, z] = std::array::from_fn(|axis| corners[i >> axis & 1][axis]);
+            self.point(Vec3::new(x, y, z))
+        };
+        Aabb::around(&std::array::from_fn::<_, 8, _>(corner))
+    }
+
+    /// |det M|: the volume in the world of what has volume 1 in the object.
+    #[inline]
+    pub(crate) fn volume_scale(&self) -> f64 {
+        self.0.matrix3.determinant().abs()
     }
 
     #[inline]

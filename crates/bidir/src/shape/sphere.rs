@@ -71,10 +71,20 @@ impl Sphere {
         self.local_area() * mean as f32
     }
 
+    /// True where nothing is cut off.
+    pub fn is_whole(&self) -> bool {
+        self.z_min <= -self.radius && self.z_max >= self.radius && self.phi_max >= 2.0 * PI - 1e-6
+    }
+
+    /// The volume within, negative where the front is; 0 for parts. Unit: m³.
+    pub(super) fn enclosed(&self) -> f64 {
+        let [radius, scale] = [self.radius, self.placement.volume_scale].map(f64::from);
+        let ball = 4.0 / 3.0 * std::f64::consts::PI * radius * radius * radius * scale;
+        f64::from(u8::from(self.is_whole())) * ball * f64::from(self.orientation.sign())
+    }
+
     fn whole_ball(&self) -> Option<(Vec3, f32)> {
-        let whole = self.z_min <= -self.radius
-            && self.z_max >= self.radius
-            && self.phi_max >= 2.0 * PI - 1e-6;
+        let whole = self.is_whole();
         let m = self.placement.world_from_local.matrix3;
         let scale = m.x_axis.length();
         let lengths = [m.y_axis.length(), m.z_axis.length()];

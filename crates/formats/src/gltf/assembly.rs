@@ -9,13 +9,13 @@ use super::outside::{self, Extent};
 use super::place::{GltfFault, Place};
 use super::{SETTINGS, light, mesh, view};
 use crate::error::ErrorKind;
-use crate::import::{self, Gathered, Size, VertexError};
+use crate::import::{self, Gathered, Size, Skin, VertexError};
 use crate::limits;
 use bidir::light::Light;
 use bidir::math::Affine3A;
-use bidir::medium::MediumSides;
+use bidir::scene::Emission;
 use bidir::shape::{Mesh, Shape};
-use glam::{DAffine3, DVec3};
+use glam::DAffine3;
 use std::cell::Cell;
 use std::collections::BTreeMap;
 
@@ -33,6 +33,8 @@ pub(super) struct Builder<'a> {
     places: u64,
     /// Lights of the file that are no surfaces.
     punctual: usize,
+    /// Families of shapes that close each other's openings: those of a mesh in one place.
+    families: usize,
 }
 
 /// A mesh of the file where a scene has it.
@@ -68,6 +70,7 @@ impl<'a> Builder<'a> {
             extent: Extent::NONE,
             places: 0,
             punctual: 0,
+            families: 0,
         };
         if !document.root.animations.is_empty() {
             let message = "animations have no effect: nodes keep their own transformations";
@@ -169,16 +172,18 @@ impl<'a> Builder<'a> {
                 let shape = surface.place(&object.kept_from_own(), user, &place)?;
                 self.count(context, &shape, &place)?;
                 self.include(&shape, places.iter().map(|map| object.place_kept(map)));
-                let (shape, skin) = (Shape::Mesh(shape), material.skin());
+                let (shape, skin) = (Shape::Mesh(shape), material.skin(self.families));
                 self.assembly.add_to_object(object, shape, &skin, &place);
                 continue;
             }
-            for map in places {
+            for (i, map) in places.iter().enumerate() {
                 let user = (&material.uv, &mut self.assembly.survey);
                 let shape = surface.place(map, user, &place)?;
-                self.add_to_world(context, shape, &material, &place)?;
+                let skin = material.skin(self.families + i);
+                self.add_to_world(context, (shape, material.emission.clone()), &skin, &place)?;
             }
         }
+        self.families += places.len();
         let Some(object) = object else {
             return Ok(());
         };
@@ -207,7 +212,6 @@ impl<'a> Builder<'a> {
             let material = self.materials.get(tools, user, surface.color)?;
             surfaces.push((surface, material, place));
         }
-        clear_open_volumes(context, &mut surfaces);
         Ok(surfaces)
     }
 
@@ -231,8 +235,10 @@ impl<'a> Builder<'a> {
             } else {
                 surface.skinned(&joints, user, &place)?
             };
-            self.add_to_world(context, shape, &material, &place)?;
+            let skin = material.skin(self.families);
+            self.add_to_world(context, (shape, material.emission.clone()), &skin, &place)?;
         }
+        self.families += 1;
         Ok(())
     }
 
@@ -277,14 +283,14 @@ impl<'a> Builder<'a> {
     fn add_to_world(
         &mut self,
         context: &Context<'_>,
-        shape: Mesh,
-        material: &BuiltMaterial,
+        (shape, emission): (Mesh, Option<Emission>),
+        skin: &Skin<'_>,
         place: &Place,
     ) -> Result<(), GltfFault> {
         self.count(context, &shape, place)?;
         self.include(&shape, [DAffine3::IDENTITY]);
-        let parts = vec![(Shape::Mesh(shape), material.emission.clone())];
-        self.assembly.add_shape(parts, &material.skin(), place);
+        let parts = vec![(Shape::Mesh(shape), emission)];
+        self.assembly.add_shape(parts, skin, place);
         Ok(())
     }
 
@@ -334,28 +340,6 @@ impl<'a> Builder<'a> {
             camera,
             light: self.punctual == 0 && emits,
             has_own_light: self.punctual > 0 || emits,
-        }
-    }
-}
-
-/// Takes the media out of surfaces that enclose nothing, such as a single sheet: a ray would never leave them.
-fn clear_open_volumes(context: &mut Context<'_>, surfaces: &mut [(Surface, BuiltMaterial, Place)]) {
-    /// The least part of all area that an opening is taken for; rounding at seams leaves less.
-    const OPEN: f64 = 1e-3;
-    let volumes = || surfaces.iter().filter(|(_, it, _)| it.media.is_boundary());
-    let areas = volumes().flat_map(|(surface, ..)| surface.areas());
-    // By the divergence theorem, the areas of a closed surface add up to nothing.
-    let (sum, all) = areas.fold((DVec3::ZERO, 0.0), |(sum, all), area| {
-        (sum + area, all + area.length())
-    });
-    if sum.length() <= OPEN * all {
-        return;
-    }
-    for (_, material, place) in surfaces {
-        if material.media.is_boundary() {
-            let message = "the mesh encloses nothing: its volume does not absorb";
-            context.warn(place.clone(), message);
-            material.media = MediumSides::VACUUM;
         }
     }
 }

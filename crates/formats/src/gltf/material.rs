@@ -7,9 +7,10 @@ use super::json::{Material as Described, TextureInfo};
 use super::mesh::UvMap;
 use super::place::{GltfFault, Place};
 use super::texture::{Textures, uv_map};
-use crate::import::Skin;
-use bidir::medium::{MediumId, MediumSides};
-use bidir::scene::{Emission, MaterialId, SceneBuilder};
+use crate::import::{Skin, VolumeContent};
+use bidir::material::Material;
+use bidir::medium::{Medium, MediumId, MediumSides};
+use bidir::scene::{Emission, MaterialId, SceneBuilder, Volume};
 use bidir::texture::FloatTexture;
 use reader::Reader;
 use std::collections::BTreeMap;
@@ -19,8 +20,8 @@ use std::collections::BTreeMap;
 pub(super) struct Built {
     pub(super) id: MaterialId,
     pub(super) emission: Option<Emission>,
-    /// The media on the sides of its surfaces.
-    pub(super) media: MediumSides,
+    /// What its surfaces fill. None: they are opaque, or thin walls.
+    pub(super) content: Option<VolumeContent>,
     /// The coverage of the surface. None: it is opaque.
     pub(super) coverage: Option<FloatTexture>,
     /// The map from texture coordinates to the parameters of meshes.
@@ -28,12 +29,17 @@ pub(super) struct Built {
 }
 
 impl Built {
-    /// The surface of a shape of it.
-    pub(super) fn skin(&self) -> Skin<'_> {
+    /// The surface of a shape of it, which belongs to a family of shapes.
+    pub(super) fn skin(&self, family: usize) -> Skin<'_> {
+        let medium = self.content.map(|content| content.volume.medium);
         Skin {
             material: Some(self.id),
             coverage: self.coverage.as_ref(),
-            media: self.media,
+            media: MediumSides {
+                inside: medium.unwrap_or_default(),
+                ..MediumSides::VACUUM
+            },
+            content: self.content.map(|content| (content, family)),
         }
     }
 }
@@ -80,12 +86,13 @@ impl Materials {
         };
         let material = reader.material(color)?;
         let inside = reader.inside()?;
+        let index = reader.index();
+        let thin = inside.is_some().then(|| material.clone().into_thin());
+        let id = builder.material(material);
+        let content = inside.zip(thin);
         let built = Built {
-            media: MediumSides {
-                inside: inside.map_or(MediumId::VACUUM, |medium| builder.medium(medium)),
-                ..MediumSides::VACUUM
-            },
-            id: builder.material(material),
+            id,
+            content: content.map(|(medium, thin)| content_of(builder, (index, medium), thin)),
             emission: reader.emission()?,
             coverage: reader.coverage(color[3])?,
             uv: reader.baked,
@@ -97,6 +104,24 @@ impl Materials {
     /// Returns the number of materials.
     pub(super) fn count(&self) -> usize {
         self.built.len()
+    }
+}
+
+/// Returns what fills a volume of this index of refraction. None: it is clear.
+fn content_of(
+    builder: &mut SceneBuilder,
+    (index, medium): (f32, Option<Medium>),
+    thin: Material,
+) -> VolumeContent {
+    let medium = medium.map_or(MediumId::VACUUM, |medium| builder.medium(medium));
+    VolumeContent {
+        volume: Volume {
+            index,
+            medium,
+            priority: 0,
+        },
+        thin: Some(builder.material(thin)),
+        warning: "the mesh encloses nothing: it is a thin wall, without a volume",
     }
 }
 

@@ -10,7 +10,6 @@ use super::json::Primitive;
 use super::place::{GltfFault, Place};
 use crate::repair::{self, Repairs};
 use bidir::math::{Vec2, Vec3};
-use glam::DVec3;
 
 /// A primitive in the space of its mesh, with default morph weights applied.
 #[derive(Clone, Debug, Default)]
@@ -52,14 +51,6 @@ impl UvMap {
 }
 
 impl Surface {
-    /// The area of each triangle, along the normal of its front.
-    pub(super) fn areas(&self) -> impl Iterator<Item = DVec3> {
-        self.triangles.iter().map(|triangle| {
-            let [a, b, c] = triangle.map(|i| Vec3::from(self.positions[i as usize]).as_dvec3());
-            0.5 * (b - a).cross(c - a)
-        })
-    }
-
     /// Reads a primitive. None: it has no triangles; a warning says why.
     pub(super) fn read(
         context: &mut Context<'_>,

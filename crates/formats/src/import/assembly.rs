@@ -2,6 +2,7 @@
 
 use super::lamp::{self, Placed};
 use super::precision::{self, VertexErrors};
+use super::volumes::{Content, Space, Volumes};
 use super::{Context, Document, Layout, SceneSettings, Summary, Survey, VertexError};
 use crate::error::ErrorKind;
 use crate::source::Fault;
@@ -39,6 +40,7 @@ pub(crate) struct Assembly<P> {
     /// By number.
     instances: Vec<P>,
     lamps: Vec<Placed<P>>,
+    volumes: Volumes,
     /// The camera's point, and the medium that the file names for it.
     pub(crate) camera: Option<(Vec3, MediumId, P)>,
 }
@@ -80,6 +82,8 @@ pub(crate) struct Skin<'a> {
     pub(crate) coverage: Option<&'a FloatTexture>,
     /// The media on its sides.
     pub(crate) media: MediumSides,
+    /// What it fills, and the number of the family of shapes that it closes openings of. None: nothing.
+    pub(crate) content: Option<(Content, usize)>,
 }
 
 /// A scene that was built.
@@ -114,6 +118,7 @@ impl<P: Clone> Assembly<P> {
             shapes: Vec::new(),
             instances: Vec::new(),
             lamps: Vec::new(),
+            volumes: Volumes::default(),
             camera: None,
         }
     }
@@ -153,7 +158,7 @@ impl<P: Clone> Assembly<P> {
                 }
                 None => self.builder.boundary(part, skin.media),
             };
-            self.note_shape(number, skin, place);
+            self.note_shape(number, (skin, None), place);
         }
         if emits {
             let lights = first_light..self.builder.next_light();
@@ -161,11 +166,15 @@ impl<P: Clone> Assembly<P> {
         }
     }
 
-    fn note_shape(&mut self, number: usize, skin: &Skin<'_>, place: &P) {
+    fn note_shape(&mut self, number: usize, (skin, space): (&Skin<'_>, Space), place: &P) {
         self.summary.shapes += 1;
         self.shapes.push(place.clone());
-        if skin.material.is_some() {
+        if let Some(material) = skin.material {
             self.builder.sides(number, skin.media);
+            if let Some((content, family)) = skin.content {
+                let user = (material, content);
+                self.volumes.add(number, user, (family, space));
+            }
             if let Some(coverage) = skin.coverage {
                 self.builder.coverage(number, coverage.clone());
             }
@@ -197,7 +206,8 @@ impl<P: Clone> Assembly<P> {
             Some(material) => self.builder.object_shape(object.id, shape, material),
             None => self.builder.object_boundary(object.id, shape, skin.media),
         };
-        self.note_shape(number, skin, place);
+        let object = self.objects.len();
+        self.note_shape(number, (skin, Some(object)), place);
     }
 
     /// Adds an instance of the last object, whose own space `map` takes to where it is rendered.
@@ -233,13 +243,15 @@ impl<P: Clone> Assembly<P> {
 
     /// Builds the scene, which `view` sees.
     pub(super) fn finish<D: Document<Place = P>>(
-        self,
+        mut self,
         view: View,
         context: &mut Context<'_, D>,
     ) -> Result<Built<P>, Fault<P>> {
         if let Some((place, message)) = self.vertex_errors.warning() {
             context.warn(place, message);
         }
+        self.volumes
+            .settle(&mut self.builder, context, &self.shapes);
         let scene = self.builder.build();
         let scene = scene.map_err(|error| {
             let place = match error {

@@ -9,12 +9,14 @@
 
 mod assembly;
 mod digest;
+mod enclosure;
 mod lamp;
 mod log;
 mod options;
 mod precision;
 mod reading;
 mod space;
+mod volumes;
 
 pub(crate) use assembly::{Assembly, SharedObject, Size, Skin};
 pub(crate) use digest::Content;
@@ -25,6 +27,7 @@ pub(crate) use log::{Log, warn};
 pub use options::{Crop, LoadOptions};
 pub(crate) use precision::VertexError;
 pub(crate) use space::{Layout, Survey, box_corners};
+pub(crate) use volumes::Content as VolumeContent;
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::files::Files;

@@ -7,6 +7,7 @@
 
 mod case;
 mod matrix;
+mod nested;
 mod places;
 mod plans;
 mod subsurface;

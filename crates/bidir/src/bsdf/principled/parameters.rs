@@ -82,8 +82,15 @@ impl PrincipledParameters {
     }
 }
 
-/// Indices closer to 1 than this bend nothing that could be seen.
-const LEAST_BEND: f32 = 1e-3;
+/// The wall that a surface of this relative index is. Indices closer to 1 bend nothing that could be seen.
+fn wall(described: Wall, eta: f32) -> Wall {
+    const LEAST_BEND: f32 = 1e-3;
+    if (eta - 1.0).abs() > LEAST_BEND {
+        described
+    } else {
+        Wall::Thin
+    }
+}
 
 impl Principled {
     /// The scattering of what `parameters` describe.
@@ -108,7 +115,6 @@ impl Principled {
         } else {
             0.0
         };
-        let bends = (p.ior - 1.0).abs() > LEAST_BEND && p.ior > 0.0;
         Self {
             tint: p.color,
             f0: p.color * p.metallic + f0 * opaque,
@@ -129,7 +135,21 @@ impl Principled {
             coat_alpha: p.coat.alpha,
             sheen: p.sheen,
             sheen_alpha: p.sheen_alpha.clamp(SHEEN_ALPHA, 1.0),
-            wall: if bends { p.wall } else { Wall::Thin },
+            wall: if p.ior > 0.0 {
+                wall(p.wall, p.ior)
+            } else {
+                Wall::Thin
+            },
+        }
+    }
+
+    /// The surface of a solid with `index` around it in place of air.
+    pub(in crate::bsdf) fn within(self, index: f32) -> Self {
+        let eta = self.eta / index;
+        Self {
+            eta,
+            wall: wall(Wall::Solid, eta),
+            ..self
         }
     }
 

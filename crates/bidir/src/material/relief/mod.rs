@@ -5,7 +5,8 @@
 //! the path. Scattering handles the directions on which the two normals disagree
 //! ([`Turn::scatter`](crate::path::Turn::scatter)).
 
-use super::{Material, Mixture};
+use super::{Material, Mixture, PrincipledMaterial};
+use crate::bsdf::Wall;
 use crate::math::{Frame, Vec2, Vec3};
 use crate::shape::{Differentials, SurfacePoint};
 use crate::texture::{ColorTexture, FloatTexture, TexturePoint};
@@ -50,6 +51,22 @@ pub struct Embossed {
 }
 
 impl Material {
+    /// The wall of a principled material without what is behind it; other materials as they are.
+    #[must_use]
+    pub fn into_thin(self) -> Self {
+        match self {
+            Self::Principled(material) => Self::Principled(Arc::new(PrincipledMaterial {
+                wall: Wall::Thin,
+                ..(*material).clone()
+            })),
+            Self::Embossed(embossed) => {
+                let material = embossed.material.clone().into_thin();
+                material.embossed(embossed.relief.clone())
+            }
+            material => material,
+        }
+    }
+
     /// The material under `relief`; of a mixture every part that has none of its own.
     #[must_use]
     pub fn embossed(self, relief: Relief) -> Self {

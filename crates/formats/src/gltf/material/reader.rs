@@ -175,9 +175,16 @@ impl Reader<'_, '_> {
         volume.filter(|volume| volume.thickness_factor > 0.0)
     }
 
-    /// Reads the medium inside: at `attenuationDistance`, `attenuationColor` is left of the light. None: the inside
-    /// is clear, or no light gets in.
-    pub(super) fn inside(&self) -> Result<Option<Medium>, GltfFault> {
+    /// The index of refraction of a volume.
+    pub(super) fn index(&self) -> f32 {
+        let ior = self.described.extensions.ior.as_ref();
+        let ior = ior.and_then(|ior| ior.ior).unwrap_or(1.5);
+        if ior > 0.0 { ior } else { 1.0 }
+    }
+
+    /// Reads the medium inside: at `attenuationDistance`, `attenuationColor` is left of the light. Some(None): it is
+    /// clear. None: there is no volume, or no light gets in.
+    pub(super) fn inside(&self) -> Result<Option<Option<Medium>>, GltfFault> {
         let extensions = &self.described.extensions;
         let clear = extensions.transmission.as_ref();
         let diffuse = extensions.diffuse_transmission.as_ref();
@@ -199,7 +206,7 @@ impl Reader<'_, '_> {
         }
         let is_clear = distance == f32::INFINITY || color.iter().all(|&channel| channel >= 1.0);
         if is_clear {
-            return Ok(None);
+            return Ok(Some(None));
         }
         let unit = self.context.layout.space.unit;
         let absorption = color.map(|channel| (absorption(channel, distance) * unit) as f32);
@@ -207,10 +214,8 @@ impl Reader<'_, '_> {
             let message = format!("the distance {} is too small", number(distance));
             place.key("attenuationDistance").scene(message)
         })?;
-        Ok(Some(Medium::homogeneous(
-            coefficients,
-            HenyeyGreenstein::ISOTROPIC,
-        )))
+        let medium = Medium::homogeneous(coefficients, HenyeyGreenstein::ISOTROPIC);
+        Ok(Some(Some(medium)))
     }
 
     /// Reads coat and sheen.

@@ -2,6 +2,7 @@
 
 mod geometry;
 mod look;
+mod nested;
 mod outside;
 mod refusals;
 mod volume;

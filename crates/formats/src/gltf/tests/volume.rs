@@ -4,6 +4,13 @@ use super::*;
 use bidir::driver::{Resources, Session, Settings};
 use bidir::integrator::IntegratorKind;
 
+/// The faces of a box, seen from outside: those towards +z and -z first. Corners are counted around +z, below first.
+pub(super) const BOX: [u16; 36] = [
+    4, 5, 6, 4, 6, 7, 0, 2, 1, 0, 3, 2, // across z
+    0, 1, 5, 0, 5, 4, 1, 2, 6, 1, 6, 5, // around it
+    2, 3, 7, 2, 7, 6, 3, 0, 4, 3, 4, 7,
+];
+
 /// Glass that does not bend light, of half the attenuation distance, between a lamp and a small camera of parallel rays
 /// along -z.
 fn pane(volume: &Value) -> Draft {
@@ -17,10 +24,8 @@ fn pane_of(ior: f32, volume: &Value) -> Draft {
     let at = |z: f32| corners.map(|[x, y]| [x, y, z]);
     let positions: Vec<f32> = [at(0.0), at(0.5)].concat().concat();
     draft.accessor(&floats(&positions), (F32, "VEC3", 8));
-    // Both faces across the camera's rays, seen from outside.
-    let faces = [0, 2, 1, 0, 3, 2, 4, 5, 6, 4, 6, 7];
-    draft.accessor(&shorts(&faces), (U16, "SCALAR", 12));
-    draft.accessor(&shorts(&faces[6..]), (U16, "SCALAR", 6));
+    draft.accessor(&shorts(&BOX), (U16, "SCALAR", 36));
+    draft.accessor(&shorts(&BOX[..6]), (U16, "SCALAR", 6));
     draft.json["materials"] = json!([
         { "extensions": {
             "KHR_materials_ior": { "ior": ior },
@@ -47,17 +52,18 @@ fn pane_of(ior: f32, volume: &Value) -> Draft {
 }
 
 /// The light of the lamp that the camera gets.
-fn seen(draft: &Draft) -> [f32; 3] {
+pub(super) fn seen(draft: &Draft) -> [f32; 3] {
     seen_by(draft, IntegratorKind::Path, 1)
 }
 
-fn seen_by(draft: &Draft, integrator: IntegratorKind, passes: u32) -> [f32; 3] {
+pub(super) fn seen_by(draft: &Draft, integrator: IntegratorKind, passes: u32) -> [f32; 3] {
     let options = LoadOptions {
         resolution: Some([1, 1]),
         ..LoadOptions::default()
     };
     let loaded = load_bytes("a.gltf", &draft.gltf(), &options).expect("it is valid");
-    let (settings, resources) = (Settings::new(integrator), Resources::default());
+    let (mut settings, resources) = (Settings::new(integrator), Resources::default());
+    settings.path.max_depth = Some(32);
     let session = Session::new(&loaded.scene, &loaded.view, settings, &resources);
     let mut session = session.expect("a small film");
     for _ in 0..passes {
@@ -128,7 +134,7 @@ fn a_sheet_encloses_nothing() {
     draft.json["meshes"][0]["primitives"][0]["indices"] = json!(2);
     check(&draft, [1.0; 3]);
     let warnings = draft.load().expect("it is valid").warnings;
-    let expected = "the mesh encloses nothing: its volume does not absorb";
+    let expected = "the mesh encloses nothing: it is a thin wall, without a volume";
     assert!(
         warnings.iter().any(|it| it.contains(expected)),
         "{warnings:?}"

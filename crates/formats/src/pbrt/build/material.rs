@@ -48,6 +48,8 @@ pub(super) struct Materials<'a> {
     open: Vec<usize>,
     /// The media within surfaces, by number of the material.
     contents: BTreeMap<usize, Recipe>,
+    /// The priority and the index of refraction of materials that fill what they bound, likewise.
+    fillings: BTreeMap<usize, (i32, f32)>,
 }
 
 impl<'a> Materials<'a> {
@@ -60,12 +62,19 @@ impl<'a> Materials<'a> {
             described,
             open: Vec::new(),
             contents: BTreeMap::new(),
+            fillings: BTreeMap::new(),
         }
     }
 
     /// The medium within the surfaces of material number `index`, which was built.
     pub(super) fn take_content(&mut self, index: usize) -> Option<Recipe> {
         self.contents.remove(&index)
+    }
+
+    /// The priority and the index of what material number `index` bounds, which was built. None: its index is that of
+    /// the inside over that of the outside, whatever these are.
+    pub(super) fn take_filling(&mut self, index: usize) -> Option<(i32, f32)> {
+        self.fillings.remove(&index)
     }
 
     /// Builds material number `index`; one without an entity is the default material.
@@ -112,6 +121,11 @@ impl<'a> Materials<'a> {
             }
             kind => return parameters.substitute(kind).map(|grey| Some(grey.into())),
         };
+        if let Material::Dielectric { eta, .. } = &material {
+            let priority = parameters.reader.optional_integer("priority")?;
+            let filling = priority.map(|priority| (index, (priority, *eta)));
+            self.fillings.extend(filling);
+        }
         let relief = parameters.relief()?;
         parameters.reader.finish()?;
         let material = match relief {
@@ -177,6 +191,11 @@ impl<'a> Materials<'a> {
         if self.take_content(index).is_some() {
             let what = "a mixture with a material `subsurface`";
             let substitute = "its part is clear glass";
+            from.reader.context.unsupported(span, what, substitute)?;
+        }
+        if self.take_filling(index).is_some() {
+            let what = "a mixture with a material that has a `priority`";
+            let substitute = "its part has none";
             from.reader.context.unsupported(span, what, substitute)?;
         }
         Ok(part)

@@ -30,10 +30,12 @@ mod texture_class;
 use super::scene::{Entity, SceneDescription, ShapeDescription};
 use crate::error::Result;
 use crate::files::Files;
-use crate::import::{self, Gathered, LoadOptions, Loaded, SharedObject, Size, Skin, Survey};
+use crate::import::{
+    self, Gathered, LoadOptions, Loaded, SharedObject, Size, Skin, Survey, VolumeContent,
+};
 use crate::source::{Fault, Span};
 use bidir::medium::MediumId;
-use bidir::scene::{Emission, MaterialId};
+use bidir::scene::{Emission, MaterialId, Volume};
 use bidir::shape::Shape;
 use bidir::texture::{FloatTexture, Scale};
 use context::Context;
@@ -69,6 +71,10 @@ pub fn build(description: &SceneDescription, options: &LoadOptions) -> Result<Lo
 const REPLACED: &str =
     "the medium within the shape has no effect: the material `subsurface` has one of its own";
 
+/// The warning for a volume that is none.
+const ENCLOSES_NOTHING: &str =
+    "the shapes of a material with `priority` enclose nothing: it has no effect";
+
 /// Puts the parts of a description into an assembly.
 struct Builder<'a> {
     assembly: Assembly,
@@ -78,6 +84,8 @@ struct Builder<'a> {
     materials: Vec<Option<(MaterialId, Option<FloatTexture>)>>,
     /// The media within their surfaces.
     contents: Vec<Option<MediumId>>,
+    /// The priority and the index of refraction of what they bound. None: they have none.
+    fillings: Vec<Option<(i32, f32)>>,
     /// The emission of the last shape.
     last_emission: Option<(Arc<Entity>, Arc<AreaEmission>)>,
 }
@@ -107,6 +115,7 @@ impl<'a> Builder<'a> {
             media: Media::default(),
             materials: Vec::new(),
             contents: Vec::new(),
+            fillings: Vec::new(),
             last_emission: None,
         };
         builder.add_camera_medium(context, lens.eye)?;
@@ -156,6 +165,7 @@ impl<'a> Builder<'a> {
                 .filter(|_| used.contains(&index));
             let content = content.map(|recipe| Ok(self.assembly.builder.medium(recipe()?)));
             self.contents.push(content.transpose()?);
+            self.fillings.push(materials.take_filling(index));
         }
         Ok(())
     }
@@ -192,6 +202,7 @@ impl<'a> Builder<'a> {
             material,
             coverage: coverage.as_ref(),
             media,
+            content: self.content(shape.material, media.inside),
         };
         let emission = match &shape.area_light {
             _ if material.is_none() => None,
@@ -220,6 +231,22 @@ impl<'a> Builder<'a> {
             }
         }
         Ok(())
+    }
+
+    /// What fills the shapes of material number `index`, with this medium. None: it has no priority.
+    fn content(&self, index: usize, medium: MediumId) -> Option<(VolumeContent, usize)> {
+        let (priority, eta) = self.fillings.get(index).copied().flatten()?;
+        let volume = Volume {
+            index: eta,
+            medium,
+            priority,
+        };
+        let content = VolumeContent {
+            volume,
+            thin: None,
+            warning: ENCLOSES_NOTHING,
+        };
+        Some((content, index))
     }
 
     /// The parts of a shape that emit each for itself, in the group of their light.

@@ -6,6 +6,7 @@ mod film;
 mod lights;
 mod materials;
 mod media;
+mod nested;
 mod places;
 mod refusals;
 mod relief;

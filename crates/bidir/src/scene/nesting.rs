@@ -1,0 +1,447 @@
+//! Volumes within volumes: of all closed surfaces around a point, one fills it \[Schmidt02\].
+//!
+//! Along a ray, volume v has the winding number
+//!
+//! n_v(t) = Σ ±1 over the crossings of v beyond t, + where the ray leaves v,
+//!
+//! and is around the point at t where n_v(t) > 0. Surfaces of volumes are closed, so this is a function of the point:
+//! no walk carries a list of what it is in, and both ends of a path find the same. Of the volumes around a point the
+//! one of the highest rank fills it, and a surface is there where different substances fill its sides; rays pass the
+//! others. Boundaries within a volume count for nothing.
+//!
+//! Volumes whose boxes touch no other's need none of this: their surfaces are there, with air around them.
+
+use super::object::{Objects, Placed};
+use super::passage::{Crossing, Crossings, Passage};
+use super::{Chances, PrimitiveRef, Scene, Surface};
+use crate::math::Vec3;
+use crate::medium::{MediumId, MediumSides};
+use crate::shape::{Shape, position_error};
+use accel::{Aabb, Hit, Ray, Stop};
+use std::cmp::Ordering;
+use std::collections::{BTreeMap, BTreeSet};
+use std::ops::ControlFlow;
+
+/// What fills a closed surface. Of the volumes around a point the one of the highest priority fills it, of several the
+/// one that encloses least.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Volume {
+    /// The index of refraction, that of air being 1.
+    pub index: f32,
+    /// The medium.
+    pub medium: MediumId,
+    /// Its claim on places that it shares with others.
+    pub priority: i32,
+}
+
+/// A volume of a scene, and the space that it encloses. Unit: m³, in the space of its shapes.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Enclosed {
+    pub(super) volume: Volume,
+    pub(super) size: f64,
+}
+
+/// A volume in its place, as one of those around a point. Of two the greater fills the point.
+#[derive(Clone, Copy, Debug)]
+struct Filling {
+    volume: Volume,
+    size: f64,
+    /// The volume and the instance.
+    number: (u32, u32),
+    /// Volumes of one material are of one substance.
+    material: u32,
+}
+
+/// The volumes around a point of a ray, each with its winding number.
+#[derive(Debug, Default)]
+struct Around(BTreeMap<Filling, i32>);
+
+/// A crossing, and the hit and the volume that it is of. None: it is a boundary between media alone.
+#[derive(Clone, Copy, Debug)]
+struct Event {
+    crossing: Crossing,
+    of: Option<(Hit, Filling)>,
+}
+
+/// The surface of a volume that stops a ray.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Interface {
+    pub(super) hit: Hit,
+    /// The media before it and behind it.
+    media: [MediumId; 2],
+    /// The index of refraction around the volume.
+    pub(super) around: f32,
+}
+
+impl PartialEq for Filling {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other) == Ordering::Equal
+    }
+}
+
+impl Eq for Filling {}
+
+impl PartialOrd for Filling {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Ord for Filling {
+    fn cmp(&self, other: &Self) -> Ordering {
+        let by_priority = self.volume.priority.cmp(&other.volume.priority);
+        let by_size = other.size.total_cmp(&self.size);
+        by_priority
+            .then(by_size)
+            .then(self.number.cmp(&other.number))
+    }
+}
+
+impl Around {
+    /// Those at the start of a ray with these crossings.
+    fn start(events: &[Event]) -> Self {
+        let mut around = Self::default();
+        for event in events {
+            if let Some((_, filling)) = event.of {
+                around.add(filling, -step(&event.crossing));
+            }
+        }
+        around
+    }
+
+    fn add(&mut self, filling: Filling, step: i32) {
+        let count = self.0.entry(filling).or_default();
+        *count += step;
+        if *count == 0 {
+            self.0.remove(&filling);
+        }
+    }
+
+    /// The volume that fills the point.
+    fn filling(&self) -> Option<Filling> {
+        let mut around = self.0.iter().rev();
+        around.find_map(|(filling, &count)| (count > 0).then_some(*filling))
+    }
+}
+
+/// The change of the winding number where a ray crosses.
+fn step(crossing: &Crossing) -> i32 {
+    if crossing.leaves { -1 } else { 1 }
+}
+
+/// True where no surface parts what fills two sides.
+fn are_one(a: Option<Filling>, b: Option<Filling>) -> bool {
+    let substance = |of: Filling| (of.material, of.volume.medium, of.volume.index.to_bits());
+    a == b || a.map(substance) == b.map(substance)
+}
+
+impl Interface {
+    /// The media on the sides of the surface with normal `n_g`, where a ray along `direction` comes to it.
+    pub(super) fn sides(&self, n_g: Vec3, direction: Vec3) -> MediumSides {
+        let [before, behind] = self.media;
+        if n_g.dot(direction) > 0.0 {
+            MediumSides {
+                outside: behind,
+                inside: before,
+            }
+        } else {
+            MediumSides {
+                outside: before,
+                inside: behind,
+            }
+        }
+    }
+}
+
+impl Scene {
+    /// The nearest surface that a ray of a walk does not pass, and the boundaries on the way, in a scene where volumes
+    /// lie within each other.
+    pub(super) fn closest_of_nested(
+        &self,
+        ray: &Ray,
+        chances: Chances<'_>,
+        crossings: &mut Crossings,
+    ) -> (Option<Hit>, Option<Interface>) {
+        let is_near = std::cell::Cell::new(false);
+        let passed = std::cell::RefCell::new(Crossings::new());
+        let hit = self.bvh.until(chances.stop).closest(ray, |hit| {
+            if self.filling(hit).is_some() {
+                is_near.set(true);
+                return false;
+            }
+            let stops = self.stops(ray, hit, chances);
+            if !stops {
+                passed.borrow_mut().extend(self.crossing(ray, hit));
+            }
+            stops
+        });
+        let end = hit.map_or(f32::INFINITY, |hit| hit.t);
+        *crossings = passed.into_inner();
+        if !is_near.get() {
+            return (hit, None);
+        }
+        let stops = |hit: &Hit| self.stops(ray, hit, chances);
+        let interface = self.settle((ray, chances.stop), end, crossings, stops);
+        (
+            interface.map_or(hit, |interface| Some(interface.hit)),
+            interface,
+        )
+    }
+
+    /// Π (1 - α) of the surfaces of volumes that a shadow ray meets. Settles the boundaries on its way.
+    pub(super) fn visible_past_nested(
+        &self,
+        ray: &Ray,
+        stop: Stop<'_>,
+        crossings: &mut Crossings,
+    ) -> f32 {
+        let mut visible = 1.0;
+        let interface = self.settle((ray, stop), ray.t_max, crossings, |hit| {
+            let alpha = self.coverage(ray, hit);
+            visible *= 1.0 - alpha;
+            alpha >= 1.0
+        });
+        if interface.is_some() { 0.0 } else { visible }
+    }
+
+    /// Adds the surfaces of volumes that are there to the boundaries that a ray crosses before `end`, and takes away
+    /// those within volumes. Ends at a surface that stops the ray.
+    fn settle(
+        &self,
+        (ray, stop): (&Ray, Stop<'_>),
+        end: f32,
+        crossings: &mut Crossings,
+        mut stops: impl FnMut(&Hit) -> bool,
+    ) -> Option<Interface> {
+        let events = self.events(ray, stop, std::mem::take(crossings));
+        let mut around = Around::start(&events);
+        for Event { crossing, of } in events {
+            if crossing.t >= end {
+                break;
+            }
+            let before = around.filling();
+            let Some((hit, filling)) = of else {
+                if before.is_none() {
+                    crossings.push(crossing);
+                }
+                continue;
+            };
+            around.add(filling, step(&crossing));
+            let behind = around.filling();
+            if are_one(before, behind) {
+                continue;
+            }
+            let medium = |of: Option<Filling>| of.map_or(crossing.from, |of| of.volume.medium);
+            let media = [medium(before), medium(behind)];
+            if stops(&hit) {
+                let other = if crossing.leaves { behind } else { before };
+                let around = other.map_or(1.0, |other| other.volume.index);
+                return Some(Interface { hit, media, around });
+            }
+            crossings.push(Crossing {
+                from: media[0],
+                into: media[1],
+                ..crossing
+            });
+        }
+        None
+    }
+
+    /// These boundaries, and all surfaces of volumes from the start of a ray to infinity, in order.
+    fn events(&self, ray: &Ray, stop: Stop<'_>, boundaries: Crossings) -> Vec<Event> {
+        let boundary = |crossing| Event { crossing, of: None };
+        let mut events: Vec<_> = boundaries.into_iter().map(boundary).collect();
+        let line = Ray {
+            t_max: f32::INFINITY,
+            ..*ray
+        };
+        let _ = self.bvh.until(stop).each_hit(&line, |hit| {
+            events.extend(self.event(ray, hit));
+            if stop.is_asked() {
+                ControlFlow::Break(())
+            } else {
+                ControlFlow::Continue(())
+            }
+        });
+        // Where two volumes touch, the one is entered before the other is left, so that no gap is between them.
+        let leaves_late = |event: &Event| event.of.is_some() == event.crossing.leaves;
+        let order = |a: &Event, b: &Event| {
+            let by_place = a.crossing.t.total_cmp(&b.crossing.t);
+            let by_kind = a.of.is_some().cmp(&b.of.is_some());
+            let by_side = leaves_late(a).cmp(&leaves_late(b));
+            let by_surface = a.crossing.surface.cmp(&b.crossing.surface);
+            by_place.then(by_kind).then(by_side).then(by_surface)
+        };
+        events.sort_unstable_by(order);
+        close_gaps(ray, &mut events);
+        events
+    }
+
+    /// The crossing of a volume's surface. Its media are those around the volume where nothing else is.
+    fn event(&self, ray: &Ray, hit: &Hit) -> Option<Event> {
+        let filling = self.filling(hit)?;
+        let (placed, primitive) = self.resolve(hit);
+        let surface = &self.surfaces[primitive.shape as usize];
+        let outside = surface
+            .sides
+            .map_or(MediumId::VACUUM, |sides| sides.outside);
+        let crossing = Crossing {
+            t: hit.t,
+            leaves: self.front(ray, hit, placed, primitive).dot(ray.direction) > 0.0,
+            surface: (hit.instance, hit.primitive),
+            from: outside,
+            into: outside,
+        };
+        Some(Event {
+            crossing,
+            of: Some((*hit, filling)),
+        })
+    }
+
+    /// The normal of the side of a closed surface that is not within. Shading normals have no say.
+    fn front(
+        &self,
+        ray: &Ray,
+        hit: &Hit,
+        placed: Option<&Placed>,
+        primitive: PrimitiveRef,
+    ) -> Vec3 {
+        match &self.shapes[primitive.shape as usize] {
+            Shape::Mesh(mesh) => {
+                let place = placed.map(|placed| &placed.place);
+                mesh.front(place, primitive.index as usize)
+            }
+            Shape::Sphere(_) | Shape::Disk(_) | Shape::Cylinder(_) => self.surface_at(ray, hit).n_g,
+        }
+    }
+
+    /// The volume whose surface is hit. None: it is of none, or of one that touches no other.
+    #[inline]
+    fn filling(&self, hit: &Hit) -> Option<Filling> {
+        let (placed, primitive) = self.resolve(hit);
+        let surface = &self.surfaces[primitive.shape as usize];
+        let number = surface.volume?;
+        let Enclosed { volume, size } = self.volumes[number as usize];
+        let scale = placed.map_or(1.0, |placed| placed.place.volume_scale());
+        Some(Filling {
+            volume,
+            size: size * scale,
+            number: (number, hit.instance),
+            material: surface.material,
+        })
+    }
+
+    /// True where the surface of such a volume is hit.
+    #[inline]
+    pub(super) fn is_of_nested(&self, hit: &Hit) -> bool {
+        self.nests() && self.filling(hit).is_some()
+    }
+
+    /// True where volumes lie within each other, or may.
+    #[inline]
+    pub(super) fn nests(&self) -> bool {
+        !self.volumes.is_empty()
+    }
+
+    /// The boundaries that a ray crosses, with all surfaces of volumes.
+    pub(super) fn boundaries(&self, ray: &Ray) -> Crossings {
+        let mut crossings = Crossings::new();
+        let _ = self.bvh.each_hit(ray, |hit| {
+            if self.filling(hit).is_none() {
+                crossings.extend(self.crossing(ray, hit));
+            }
+            ControlFlow::Continue(())
+        });
+        if self.nests() {
+            self.settle((ray, Stop::NEVER), f32::INFINITY, &mut crossings, |_| false);
+        }
+        crossings
+    }
+
+    /// The media on the sides of a volume's surface at a point of it. None: it is not among others.
+    pub(super) fn sides_of_nested(&self, volume: Option<u32>, point: Vec3) -> Option<MediumSides> {
+        let inside = self.volumes.get(volume? as usize)?.volume.medium;
+        let outside = self.medium_at(point);
+        Some(MediumSides { outside, inside })
+    }
+
+    /// The passage from `start` to the end of the world.
+    pub(super) fn passage_from(&self, ray: &Ray, start: MediumId) -> Passage {
+        Passage::new(start, self.boundaries(ray), f32::INFINITY)
+    }
+}
+
+/// Swaps crossings so that a volume is entered before another is left wherever they touch but for rounding.
+fn close_gaps(ray: &Ray, events: &mut [Event]) {
+    let unit = ray.direction.length();
+    for i in 1..events.len() {
+        let [left, entered] = [events[i - 1], events[i]];
+        let both = left.of.is_some() && entered.of.is_some();
+        if !both || !left.crossing.leaves || entered.crossing.leaves {
+            continue;
+        }
+        let gap = (entered.crossing.t - left.crossing.t) * unit;
+        let reach = (ray.origin + ray.direction * left.crossing.t)
+            .abs()
+            .max_element();
+        if gap <= position_error(reach) {
+            events.swap(i - 1, i);
+        }
+    }
+}
+
+/// The boxes of volumes' shapes in the world, those of objects at each place.
+pub(super) fn boxes(shapes: &[Shape], surfaces: &[Surface], objects: &Objects) -> Vec<(u32, Aabb)> {
+    let bounds_of = |shape: usize| {
+        let volume = surfaces[shape].volume?;
+        let [min, max] = shapes[shape].corners();
+        Some((volume, Aabb { min, max }))
+    };
+    let mut is_in_world = vec![true; shapes.len()];
+    for &shape in objects.shapes.iter().flatten() {
+        is_in_world[shape] = false;
+    }
+    let in_world = (0..shapes.len()).filter(|&shape| is_in_world[shape]);
+    let mut boxes: Vec<_> = in_world.filter_map(bounds_of).collect();
+    let of_object =
+        |shapes: &Vec<usize>| -> Vec<_> { shapes.iter().copied().filter_map(bounds_of).collect() };
+    let own: Vec<_> = objects.shapes.iter().map(of_object).collect();
+    for (object, place) in &objects.instances {
+        let own = own[object.index()].iter();
+        boxes.extend(own.map(|&(volume, bounds)| (volume, place.bounds(bounds))));
+    }
+    boxes
+}
+
+/// Forgets the volumes of shapes that touch no other of a volume. `boxes` are those of such shapes in their places.
+///
+/// Returns whether any is left.
+pub(super) fn keep_touching(surfaces: &mut [Surface], mut boxes: Vec<(u32, Aabb)>) -> bool {
+    boxes.sort_by(|(_, a), (_, b)| a.min.x.total_cmp(&b.min.x));
+    let touching = touching(&boxes);
+    for surface in surfaces {
+        surface.volume = surface.volume.filter(|volume| touching.contains(volume));
+    }
+    !touching.is_empty()
+}
+
+/// The volumes of boxes that touch another, of boxes by their smallest x.
+fn touching(boxes: &[(u32, Aabb)]) -> BTreeSet<u32> {
+    /// The most boxes that each is compared with; where there are more, all count as touching.
+    const MOST: usize = 256;
+    let mut touching = BTreeSet::new();
+    for (i, (a, of_a)) in boxes.iter().enumerate() {
+        let others = boxes[i + 1..].iter();
+        let near = others.take_while(|(_, of_b)| of_b.min.x <= of_a.max.x);
+        for (n, (b, of_b)) in near.enumerate() {
+            if n == MOST {
+                return boxes.iter().map(|(volume, _)| *volume).collect();
+            }
+            let apart = of_a.min.cmpgt(of_b.max) | of_b.min.cmpgt(of_a.max);
+            if !apart.any() {
+                touching.extend([*a, *b]);
+            }
+        }
+    }
+    touching
+}

@@ -1,0 +1,350 @@
+//! Which meshes enclose something, and which way round their faces look.
+//!
+//! Corners at one place are one corner. Faces that share an edge belong to one part, and are turned to run along it in
+//! opposite directions; most of a part decides for all of it. Edges without a partner form the rims of openings, whose
+//! area ½ Σ a × b is known without filling them. A part whose rims have no area encloses the signed volume
+//! ⅙ Σ a · (b × c): it is positive where fronts look outwards.
+
+use bidir::math::Vec3;
+use bidir::shape::{Mesh, Orientation};
+use glam::DVec3;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// The least area of an opening, as a part of that of the whole; rounding at seams leaves less.
+const OPEN: f64 = 1e-3;
+/// The least volume, as a part of area^1.5; a sheet with two sides has none.
+const FLAT: f64 = 1e-7;
+/// The most triangles that are looked at to find which parts lie within others.
+const MOST_TESTS: usize = 1 << 26;
+
+/// The findings about meshes that bound one volume together.
+#[derive(Debug, Default)]
+pub(super) struct Findings {
+    /// The meshes of which some part encloses nothing.
+    pub(super) open: Vec<bool>,
+    /// The faces of each mesh that look the other way than the rest.
+    pub(super) turned: Vec<Vec<u32>>,
+    /// True where all parts have their fronts within.
+    pub(super) is_inside_out: bool,
+}
+
+/// A triangle of a mesh: its corners, numbered by place.
+#[derive(Clone, Copy)]
+struct Face {
+    mesh: u32,
+    triangle: u32,
+    corners: [u32; 3],
+}
+
+/// An edge of a face, from its lower corner to its higher.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+struct Edge {
+    ends: [u32; 2],
+    /// True where the face runs along it from the higher corner to the lower.
+    is_reversed: bool,
+    face: u32,
+}
+
+/// Sets of faces or corners. Each has a parity in its set: odd where it is turned against its root.
+struct Sets {
+    parents: Vec<(u32, bool)>,
+}
+
+/// A connected set of faces.
+#[derive(Clone, Copy, Default)]
+struct Part {
+    area: f64,
+    /// The area of faces of odd parity.
+    odd_area: f64,
+    volume: f64,
+    is_open: bool,
+}
+
+/// The faces of all meshes, and the places of their corners.
+struct Hull {
+    places: Vec<DVec3>,
+    faces: Vec<Face>,
+}
+
+impl Sets {
+    fn new(count: usize) -> Self {
+        let parents = (0..count as u32).map(|i| (i, false));
+        Self {
+            parents: parents.collect(),
+        }
+    }
+
+    /// The root of `i`, and the parity of `i`. Halves the way there.
+    fn find(&mut self, mut i: u32) -> (u32, bool) {
+        let mut parity = false;
+        loop {
+            let (parent, step) = self.parents[i as usize];
+            let (above, further) = self.parents[parent as usize];
+            if parent == above {
+                return (parent, parity ^ step);
+            }
+            self.parents[i as usize] = (above, step ^ further);
+            parity ^= step ^ further;
+            i = above;
+        }
+    }
+
+    /// Joins the sets of `a` and `b`; `differ` says whether their parities differ, unless they are in one already.
+    fn join(&mut self, a: u32, b: u32, differ: bool) {
+        let ((root_a, parity_a), (root_b, parity_b)) = (self.find(a), self.find(b));
+        let (low, high) = (root_a.min(root_b), root_a.max(root_b));
+        if low != high {
+            self.parents[high as usize] = (low, parity_a ^ parity_b ^ differ);
+        }
+    }
+}
+
+impl Hull {
+    fn of(meshes: &[&Mesh]) -> Self {
+        let (places, numbers) = weld(meshes);
+        let mut faces = Vec::new();
+        let mut first = 0;
+        for (mesh, number) in meshes.iter().zip(0..) {
+            for (triangle, i) in mesh.triangles.iter().zip(0..) {
+                let [a, b, c] = triangle.map(|vertex| numbers[first + vertex as usize]);
+                let corners = match mesh.orientation {
+                    Orientation::Natural => [a, b, c],
+                    Orientation::Reversed => [a, c, b],
+                };
+                // Others have no area.
+                if a != b && b != c && c != a {
+                    faces.push(Face {
+                        mesh: number,
+                        triangle: i,
+                        corners,
+                    });
+                }
+            }
+            first += mesh.positions.len();
+        }
+        Self { places, faces }
+    }
+
+    fn corners(&self, face: &Face) -> [DVec3; 3] {
+        face.corners.map(|corner| self.places[corner as usize])
+    }
+
+    /// The edges of all faces, those in one place side by side.
+    fn edges(&self) -> Vec<Edge> {
+        let of_face = |(face, number): (&Face, u32)| {
+            let [a, b, c] = face.corners;
+            [[a, b], [b, c], [c, a]].map(|[from, to]| Edge {
+                ends: [from.min(to), from.max(to)],
+                is_reversed: from > to,
+                face: number,
+            })
+        };
+        let mut edges: Vec<_> = self.faces.iter().zip(0..).flat_map(of_face).collect();
+        edges.sort_unstable();
+        edges
+    }
+
+    /// The parts, as sets of faces.
+    fn sets(&self, edges: &[Edge]) -> Sets {
+        let mut sets = Sets::new(self.faces.len());
+        for along in edges.chunk_by(|a, b| a.ends == b.ends) {
+            if let [a, b] = along {
+                sets.join(a.face, b.face, a.is_reversed == b.is_reversed);
+                continue;
+            }
+            // Where more faces meet, each is joined to one that runs the other way.
+            let turn = along.partition_point(|edge| !edge.is_reversed);
+            let (ahead, back) = along.split_at(turn);
+            for (a, b) in ahead.iter().zip(back) {
+                sets.join(a.face, b.face, false);
+            }
+        }
+        sets
+    }
+
+    /// The parts by number of their root.
+    fn parts(&self, edges: &[Edge]) -> (Vec<Part>, Vec<(u32, bool)>) {
+        let mut sets = self.sets(edges);
+        let mut roots: Vec<_> = (0..self.faces.len() as u32).map(|i| sets.find(i)).collect();
+        let mut parts = vec![Part::default(); self.faces.len()];
+        for (face, &(root, is_odd)) in self.faces.iter().zip(&roots) {
+            let [a, b, c] = self.corners(face);
+            let area = 0.5 * (b - a).cross(c - a).length();
+            let part = &mut parts[root as usize];
+            part.area += area;
+            part.odd_area += if is_odd { area } else { 0.0 };
+        }
+        // From here on, an odd face is one that is turned.
+        for (root, is_odd) in &mut roots {
+            let part = &parts[*root as usize];
+            *is_odd ^= 2.0 * part.odd_area > part.area;
+        }
+        for (face, &(root, is_turned)) in self.faces.iter().zip(&roots) {
+            let origin = self.places[self.faces[root as usize].corners[0] as usize];
+            let [a, b, c] = self.corners(face).map(|corner| corner - origin);
+            let sign = if is_turned { -1.0 } else { 1.0 };
+            parts[root as usize].volume += sign * a.dot(b.cross(c)) / 6.0;
+        }
+        self.find_openings(edges, &roots, &mut parts);
+        (parts, roots)
+    }
+
+    /// Notes the parts with openings, and those that are flat.
+    fn find_openings(&self, edges: &[Edge], roots: &[(u32, bool)], parts: &mut [Part]) {
+        let mut rims = Sets::new(self.places.len());
+        let mut open = Vec::new();
+        for along in edges.chunk_by(|a, b| a.ends == b.ends) {
+            let runs = along.iter().map(|edge| {
+                let is_back = edge.is_reversed ^ roots[edge.face as usize].1;
+                if is_back { -1.0 } else { 1.0 }
+            });
+            let net: f64 = runs.sum();
+            if net != 0.0 {
+                let [a, b] = along[0].ends;
+                rims.join(a, b, false);
+                open.push((along[0], net));
+            }
+        }
+        let mut areas = BTreeMap::<(u32, u32), DVec3>::new();
+        for (edge, net) in open {
+            let (rim, _) = rims.find(edge.ends[0]);
+            let origin = self.places[rim as usize];
+            let [a, b] = edge.ends.map(|end| self.places[end as usize] - origin);
+            let part = roots[edge.face as usize].0;
+            *areas.entry((part, rim)).or_default() += 0.5 * net * a.cross(b);
+        }
+        for ((part, _), area) in areas {
+            let part = &mut parts[part as usize];
+            part.is_open |= area.length() > OPEN * part.area;
+        }
+        for part in parts {
+            part.is_open |= part.volume.abs() <= FLAT * part.area * part.area.sqrt();
+        }
+    }
+
+    /// How often the other parts wind around a corner of part number `own`.
+    fn winding(&self, own: u32, roots: &[(u32, bool)]) -> i32 {
+        let from = self.places[self.faces[own as usize].corners[0] as usize];
+        let others = self.faces.iter().zip(roots);
+        let others = others.filter(|(_, (root, _))| *root != own);
+        others
+            .map(|(face, (_, is_turned))| {
+                let crossing = crossing(from, self.corners(face));
+                if *is_turned { -crossing } else { crossing }
+            })
+            .sum()
+    }
+}
+
+/// The places of all vertices, each once, and the number of each vertex's place.
+fn weld(meshes: &[&Mesh]) -> (Vec<DVec3>, Vec<u32>) {
+    let all = meshes.iter().flat_map(|mesh| mesh.positions.iter());
+    // Adding zero makes both zeros one.
+    let key = |p: &Vec3| (*p + Vec3::ZERO).to_array().map(f32::to_bits);
+    let mut order: Vec<_> = all.map(key).zip(0u32..).collect();
+    order.sort_unstable();
+    let mut numbers = vec![0; order.len()];
+    let mut places: Vec<DVec3> = Vec::new();
+    let mut last = None;
+    for (bits, vertex) in order {
+        if last != Some(bits) {
+            places.push(Vec3::from_array(bits.map(f32::from_bits)).as_dvec3());
+            last = Some(bits);
+        }
+        numbers[vertex as usize] = places.len() as u32 - 1;
+    }
+    (places, numbers)
+}
+
+/// 1 where a ray from a point leaves through a triangle, -1 where it enters, 0 where it misses.
+fn crossing(from: DVec3, corners: [DVec3; 3]) -> i32 {
+    /// Far from axes and diagonals, along which people build.
+    const ALONG: DVec3 = DVec3::new(0.3601, 0.4793, 0.8004);
+    let [a, b, c] = corners.map(|corner| corner - from);
+    let sides = [a.cross(b), b.cross(c), c.cross(a)].map(|normal| normal.dot(ALONG));
+    let height = a.dot((b - a).cross(c - a));
+    let is_beyond = |facing: f64| height * facing > 0.0;
+    if sides.iter().all(|&side| side > 0.0) && is_beyond(1.0) {
+        1
+    } else if sides.iter().all(|&side| side < 0.0) && is_beyond(-1.0) {
+        -1
+    } else {
+        0
+    }
+}
+
+impl Findings {
+    /// Looks at the meshes that bound one volume.
+    pub(super) fn of(meshes: &[&Mesh]) -> Self {
+        let hull = Hull::of(meshes);
+        let edges = hull.edges();
+        let (parts, mut roots) = hull.parts(&edges);
+        let is_positive = |part: &Part| !part.is_open && part.volume > 0.0;
+        let negative = (0..).zip(&parts);
+        let negative = negative.filter(|(_, part)| !part.is_open && part.volume < 0.0);
+        let negative: Vec<u32> = negative.map(|(i, _)| i).collect();
+        let is_inside_out = !negative.is_empty() && !parts.iter().any(is_positive);
+        if !is_inside_out && negative.len() * hull.faces.len() <= MOST_TESTS {
+            let wrong = negative.into_iter();
+            let wrong: BTreeSet<_> = wrong.filter(|&i| hull.winding(i, &roots) <= 0).collect();
+            for (root, is_turned) in &mut roots {
+                *is_turned ^= wrong.contains(root);
+            }
+        }
+        let mut findings = Self {
+            // A mesh without faces encloses nothing.
+            open: meshes
+                .iter()
+                .map(|mesh| mesh.triangles.is_empty())
+                .collect(),
+            turned: vec![Vec::new(); meshes.len()],
+            is_inside_out,
+        };
+        for (face, (root, is_turned)) in hull.faces.iter().zip(roots) {
+            let mesh = face.mesh as usize;
+            findings.open[mesh] |= parts[root as usize].is_open;
+            if is_turned {
+                findings.turned[mesh].push(face.triangle);
+            }
+        }
+        findings
+    }
+
+    /// True where all meshes enclose something.
+    pub(super) fn is_closed(&self) -> bool {
+        !self.open.contains(&true)
+    }
+}
+
+/// Turns faces of a mesh that look the wrong way.
+pub(super) fn turn(mesh: &mut Mesh, faces: &[u32]) {
+    for &face in faces {
+        mesh.triangles[face as usize].swap(1, 2);
+    }
+}
+
+/// Turns the normals of a mesh that point behind the faces around them. Returns how many there are.
+pub(super) fn turn_normals(mesh: &mut Mesh) -> usize {
+    if mesh.normals.is_empty() {
+        return 0;
+    }
+    let mut fronts = vec![DVec3::ZERO; mesh.positions.len()];
+    for i in 0..mesh.triangle_count() {
+        let [a, b, c] = mesh.triangle(i).map(Vec3::as_dvec3);
+        let front = (b - a).cross(c - a) * f64::from(mesh.orientation.sign());
+        for vertex in mesh.triangles[i] {
+            fronts[vertex as usize] += front;
+        }
+    }
+    let mut turned = 0;
+    for (normal, front) in mesh.normals.iter_mut().zip(fronts) {
+        if normal.as_dvec3().dot(front) < 0.0 {
+            *normal = -*normal;
+            turned += 1;
+        }
+    }
+    turned
+}
+
+#[cfg(test)]
+mod tests;
