@@ -101,4 +101,18 @@ LABORATORY = [
         "if self.scene_digest.len() != digest.len() {",
         lab("reference::tests"),
     ),
+    (
+        "blocks compared whatever makes their means",
+        "crates/lab/src/reference/agreement.rs",
+        "while block < longest && effective(block) < ENOUGH {",
+        "while block < longest && effective(block) < 0.0 * ENOUGH {",
+        lab("agreement::tests::blocks_grow"),
+    ),
+    (
+        "a verdict on too few samples",
+        "crates/lab/src/reference/agreement.rs",
+        "let decided = effective >= ENOUGH;",
+        "let decided = effective >= 0.0 * ENOUGH;",
+        lab("agreement::tests::rare_bright_samples"),
+    ),
 ]

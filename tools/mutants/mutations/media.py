@@ -288,13 +288,13 @@ MEDIA = [
         ENCLOSURE,
         "part.is_open |= part.volume.abs() <= FLAT",
         "part.is_open |= part.volume.abs() < 0.0 * FLAT",
-        formats("enclosure::a_sheet"),
+        formats("enclosure::tests::a_sheet"),
     ),
     (
         "cavities turned",
         ENCLOSURE,
         "wrong.filter(|&i| hull.winding(i, &roots) <= 0)",
         "wrong.filter(|&i| hull.winding(i, &roots) <= i32::MAX)",
-        formats("enclosure::parts_within"),
+        formats("enclosure::tests::parts_within"),
     ),
 ]

@@ -86,7 +86,7 @@ impl Renders<'_> {
 }
 
 /// Compares the renders of two estimators. None: there are too few, or no pixels.
-pub(super) fn agreement(renders: [Renders<'_>; 2]) -> Option<Agreement> {
+pub(super) fn agreement(renders: &[Renders<'_>; 2]) -> Option<Agreement> {
     let [a, b] = renders.each_ref().map(|renders| renders.replicates);
     let size = a.first()?.size;
     let longest = size[0].max(size[1]);

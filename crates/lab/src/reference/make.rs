@@ -190,7 +190,7 @@ fn finish(
         whole: &wholes[i],
         passes: made[i].header.passes.len(),
     });
-    let agreement = agreement(renders)
+    let agreement = agreement(&renders)
         .ok_or_else(|| Error::damaged(folder, "the films have no pixels, or not one size"))?;
     let mut files = BTreeMap::new();
     for (name, replicates) in [PICTURE, AGAINST].into_iter().zip(made) {

@@ -76,7 +76,7 @@ impl Made {
 /// The verdict on an even estimator, and one of rare samples.
 fn verdict(seed: u64, passes: u64, rare: [f64; 3]) -> Agreement {
     let [even, rare] = [[0.0, 0.0, 1.0], rare].map(|of| Made::new(seed, passes, of));
-    agreement([even.renders(), rare.renders()]).expect("films of one size")
+    agreement(&[even.renders(), rare.renders()]).expect("films of one size")
 }
 
 /// Half of the light comes by two samples in a block, so that some blocks lack it, and their variance with it.
@@ -107,8 +107,8 @@ fn blocks_grow_until_their_means_have_enough_samples() {
 
 #[test]
 fn a_bias_of_two_percent_is_noticed() {
-    let right = verdict(0, 64, [0.1, 5.0, 1.0]);
+    let right = verdict(0, 400, [0.1, 5.0, 1.0]);
     assert!(right.agree && right.decided);
-    let wrong = verdict(0, 64, [0.1, 5.0, 1.02]);
+    let wrong = verdict(0, 400, [0.1, 5.0, 1.02]);
     assert!(!wrong.agree && wrong.decided, "{wrong:?}");
 }
