@@ -582,8 +582,8 @@ PATHS = [
     (
         "splats not weakened by what they pass",
         "crates/bidir/src/integrator/stages/light_image.rs",
-        "    trace(job.scene, splats, shadow_rays, stats);\n",
-        "    trace(job.scene, splats, shadow_rays, stats);\n"
+        "    trace(job, splats, shadow_rays, stats);\n",
+        "    trace(job, splats, shadow_rays, stats);\n"
         "    let splats = splats.iter_mut().map(|splat| &mut splat.contribution.transmittance);\n"
         "    splats.for_each(|transmittance| *transmittance = transmittance.ceil());\n",
         coverage("a_half_transparent_plane"),

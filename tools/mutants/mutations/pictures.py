@@ -1,6 +1,6 @@
 """Faults in films and cameras."""
 
-from .tests import PATH, layers, unit
+from .tests import PATH, SUITE, layers, unit
 
 PICTURES = [
     (
@@ -93,5 +93,54 @@ PICTURES = [
         "self.raster_density / (cos * cos * cos)",
         "self.raster_density / (cos * cos)",
         unit("camera::"),
+    ),
+    (
+        "instances looked at after somebody asked to stop",
+        "crates/accel/src/traverse.rs",
+        "if self.stop.is_asked() {",
+        "if false && self.stop.is_asked() {",
+        ("bidir-accel", SUITE, "stopped_rays_look"),
+    ),
+    (
+        "rays in step that begin after somebody asked to stop",
+        "crates/accel/src/lockstep.rs",
+        "if self.stop.is_asked() {",
+        "if false && self.stop.is_asked() {",
+        ("bidir-accel", SUITE, "stopped_rays_look"),
+    ),
+    (
+        "veils that walks look at after somebody asked to stop",
+        "crates/bidir/src/scene/coverage.rs",
+        "if stop.is_asked() {",
+        "if false && stop.is_asked() {",
+        unit("stopped_rays_look"),
+    ),
+    (
+        "veils that shadow rays look at after somebody asked to stop",
+        "crates/bidir/src/scene/coverage.rs",
+        "_ if stop.is_asked() => ControlFlow::Break(()),",
+        "_ if false && stop.is_asked() => ControlFlow::Break(()),",
+        unit("stopped_rays_look"),
+    ),
+    (
+        "a pass that somebody asked to leave, added",
+        "crates/bidir/src/driver/session.rs",
+        "if job.stop.is_asked() {",
+        "if false && job.stop.is_asked() {",
+        layers("a_pass_that_is_given_up"),
+    ),
+    (
+        "what a pass left that was given up, kept for the next",
+        "crates/bidir/src/driver/session.rs",
+        "self.workers.install(|| buffer.clear());",
+        "self.workers.install(|| drop(&mut *buffer));",
+        layers("a_pass_that_is_given_up"),
+    ),
+    (
+        "training that nobody can stop",
+        "crates/bidir/src/driver/training/survey.rs",
+        "if self.stop.is_asked() {",
+        "if false && self.stop.is_asked() {",
+        unit("training_that_is_stopped"),
     ),
 ]
