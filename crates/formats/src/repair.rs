@@ -7,7 +7,7 @@ use glam::DVec3;
 /// What was wrong with a mesh, by number.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Repairs {
-    /// Faces without area, or with fewer than three corners: left out.
+    /// Faces without area, or with fewer than three corners: nothing meets them.
     pub faces: usize,
     /// Polygons whose sides cross: filled by a fan.
     pub crossing: usize,
@@ -27,7 +27,7 @@ impl Repairs {
     /// Returns a warning for everything that was repaired.
     pub(crate) fn warnings(&self) -> impl Iterator<Item = String> {
         let all = [
-            (self.faces, "faces have no area and are left out"),
+            (self.faces, "faces have no area and are not seen"),
             (
                 self.crossing,
                 "polygons cross themselves: each is filled as a fan",
@@ -69,11 +69,10 @@ pub(crate) fn area(positions: &[[f32; 3]], triangle: [u32; 3]) -> DVec3 {
     (b - a).cross(c - a)
 }
 
-/// Takes out the triangles without area. Returns their number.
-pub(crate) fn drop_flat(positions: &[[f32; 3]], triangles: &mut Vec<[u32; 3]>) -> usize {
-    let before = triangles.len();
-    triangles.retain(|&triangle| area(positions, triangle) != DVec3::ZERO);
-    before - triangles.len()
+/// Returns the number of triangles without area.
+pub(crate) fn count_flat(positions: &[[f32; 3]], triangles: &[[u32; 3]]) -> usize {
+    let areas = triangles.iter().map(|&triangle| area(positions, triangle));
+    areas.filter(|area| *area == DVec3::ZERO).count()
 }
 
 /// Replaces each normal without a direction by the mean of the faces around it, weighted by area, on the side
@@ -153,11 +152,10 @@ mod tests {
     }
 
     #[test]
-    fn triangles_without_area_go_and_thin_ones_stay() {
+    fn triangles_without_area_are_counted_and_thin_ones_are_not() {
         let positions = [[0., 0., 0.], [1., 0., 0.], [2., 0., 0.], [1., 1e-30, 0.]];
-        let mut triangles = vec![[0, 1, 2], [0, 2, 3], [1, 1, 3]];
-        assert_eq!(drop_flat(&positions, &mut triangles), 2);
-        assert_eq!(triangles, [[0, 2, 3]]);
+        let triangles = [[0, 1, 2], [0, 2, 3], [1, 1, 3]];
+        assert_eq!(count_flat(&positions, &triangles), 2);
     }
 
     #[test]

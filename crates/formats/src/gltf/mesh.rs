@@ -93,11 +93,11 @@ impl Surface {
         Ok(Some(surface).filter(|surface| !surface.triangles.is_empty()))
     }
 
-    /// Repairs attributes that cannot be used, and takes out triangles without area.
+    /// Repairs attributes that cannot be used, and counts triangles without area.
     fn repair(&mut self) -> Repairs {
         let positions = &self.positions;
         let mut repairs = Repairs {
-            faces: repair::drop_flat(positions, &mut self.triangles),
+            faces: repair::count_flat(positions, &self.triangles),
             normals: repair::repair_normals(positions, &self.triangles, &mut self.normals),
             ..Repairs::default()
         };

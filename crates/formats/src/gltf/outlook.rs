@@ -57,7 +57,7 @@ pub(super) struct Needs {
 }
 
 /// A pixel that is darker looks black on a screen.
-const DARK: f32 = 0.005;
+const DARK: f32 = 0.001;
 
 /// Returns the defaults that fit a scene better than those that it was read with. None: these will do.
 pub(super) fn better(loaded: &Loaded, needs: Needs) -> Option<Outlook> {

@@ -38,10 +38,10 @@ pub struct PlyMesh {
 }
 
 impl PlyMesh {
-    /// Repairs attributes that cannot be used, and takes out faces without area.
+    /// Repairs attributes that cannot be used, and counts faces without area.
     pub(crate) fn repair(&mut self) {
         let (positions, repairs) = (&self.positions, &mut self.repairs);
-        repairs.faces += repair::drop_flat(positions, &mut self.triangles);
+        repairs.faces += repair::count_flat(positions, &self.triangles);
         repairs.uvs += repair::replace_infinite(&mut self.uvs, 0.0);
         repairs.normals += repair::repair_normals(positions, &self.triangles, &mut self.normals);
     }

@@ -193,7 +193,7 @@ fn attributes_that_cannot_be_used_are_repaired_and_counted() {
     assert_eq!(mesh.normals[1], [0., 0., 1.]);
     assert_eq!(mesh.normals[3], [0., 0., -2.]);
     assert_eq!(mesh.uvs, [[0., 0.], [0., 0.], [1., 1.], [0., 0.]]);
-    assert_eq!(mesh.triangles, [[0, 1, 2], [0, 2, 3]]);
+    assert_eq!(mesh.triangles, [[0, 1, 2], [0, 2, 3], [1, 1, 2]]);
     let expected = Repairs {
         faces: 3,
         normals: 3,

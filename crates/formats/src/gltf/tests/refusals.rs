@@ -266,7 +266,7 @@ fn broken_images_and_numbers_are_refused() {
     draft.json["images"] = json!([{ "bufferView": view }]);
     check(&draft, ErrorKind::Data, &["images[0]", "broken image"]);
     for (bytes, words) in [
-        (&b"BM1234"[..], "neither png, jpg nor webp"),
+        (&b"WM1234"[..], "neither png, jpg nor webp"),
         (b"\xabKTX 20\xbb\r\n\x1a\n", "it is a KTX2 file"),
         (b"\0\0\0\x20ftypavif", "it is an AVIF file"),
         (b"DDS |\0\0\0", "it is a DDS file"),

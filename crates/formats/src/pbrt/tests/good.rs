@@ -322,7 +322,7 @@ fn packed_and_wrongly_encoded_files() {
         "s.pbrt: the text is UTF-16; save it as UTF-8"
     );
     assert_eq!(
-        message(b"# a\n# \xb5"),
+        message(b"# \xb5\nA \xb5"),
         "s.pbrt:2:3: the text is not UTF-8; save it as UTF-8"
     );
 }
