@@ -359,3 +359,62 @@ fn a_scene_may_come_from_standard_input() {
     Ran::of(&mut command).expect(0);
     assert!(place.path("stdin.exr").exists());
 }
+
+/// An image without content is never silent.
+#[test]
+fn black_and_uniform_images_say_why() {
+    let place = Workplace::new();
+    let check = |flags: &str, camera: &str, world: &str, expected: &str| {
+        let film = "Film \"rgb\" \"integer xresolution\" 8 \"integer yresolution\" 8";
+        let text = format!("{camera}\nCamera \"perspective\"\n{film}\nWorldBegin\n{world}\n");
+        place.write("blank.pbrt", &text);
+        let ran = place.run(&format!(
+            "render blank.pbrt --spp 2 -q -o blank.exr {flags}"
+        ));
+        ran.expect(0).says(&format!("warning: {expected}"));
+    };
+    let black = |reason: &str| format!("the image is black: {reason}");
+    let point = "LightSource \"point\" \"point3 from\" [3 3 -3]";
+    let ball = "Shape \"sphere\"";
+    let (outside, inside) = ("LookAt 0 0 -5 0 0 0 0 1 0", "LookAt 0 0 0 0 0 1 0 1 0");
+    let nothing = black("the camera sees no surface, and no light comes from infinity");
+    check("", outside, point, &nothing);
+    let dark = "LightSource \"point\" \"rgb I\" [0 0 0]";
+    check(
+        "",
+        outside,
+        &format!("{dark} {ball}"),
+        &black("the lights of the scene have no power"),
+    );
+    check(
+        "",
+        inside,
+        &format!("{point} {ball}"),
+        &black("the camera sees surfaces from behind only"),
+    );
+    let cropped = black("no surface is in the part of the film that is rendered");
+    check(
+        "--crop 0,0,1,1",
+        outside,
+        &format!("{point} {ball}"),
+        &cropped,
+    );
+    let lit = format!("{point} {ball}");
+    check(
+        "--max-depth 0",
+        outside,
+        &lit,
+        &black("with at most 0 scattering events"),
+    );
+    check("--strategies s0", outside, &lit, &black("the strategies"));
+    let coal = format!("{point} Material \"diffuse\" \"rgb reflectance\" [0 0 0] {ball}");
+    check(
+        "",
+        outside,
+        &coal,
+        &black("no light reaches what the camera sees"),
+    );
+    let sky = "LightSource \"infinite\"";
+    let same = "every pixel has the same value: the camera sees no surface";
+    check("", outside, sky, same);
+}
