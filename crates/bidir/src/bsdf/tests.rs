@@ -6,6 +6,7 @@ mod energy;
 mod identities;
 mod layers;
 mod simulation;
+mod stochastic;
 
 use super::{Bsdf, TransportMode};
 use crate::math::{Vec2, Vec3, sin_cos};

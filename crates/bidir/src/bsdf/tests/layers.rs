@@ -26,7 +26,7 @@ const WALKS_SHOWN: [u64; 2] = [64, 1 << 10];
 const COSINES: [f32; 3] = [0.2, 0.6, 1.0];
 
 /// A clear layer of the default thickness.
-const VARNISH: Stack = Stack {
+pub(super) const VARNISH: Stack = Stack {
     eta: 1.5,
     alpha: 0.0,
     thickness: 0.01,
@@ -45,7 +45,7 @@ impl Stack {
     }
 
     /// The closed form of it.
-    fn bsdf(&self) -> Bsdf {
+    pub(super) fn bsdf(&self) -> Bsdf {
         let filling = self.filling();
         match self.base {
             Base::Diffuse(rho) => varnish(
@@ -61,7 +61,7 @@ impl Stack {
     }
 
     /// A name, and the first columns of the table.
-    fn name(&self) -> String {
+    pub(super) fn name(&self) -> String {
         let Self {
             eta,
             alpha,
@@ -106,6 +106,14 @@ fn albedo_of_draws(bsdf: &Bsdf, wo: Vec3) -> f32 {
         .filter_map(draw)
         .map(|drawn| f64::from(drawn.weight[0]));
     (weights.sum::<f64>() / n as f64) as f32
+}
+
+/// The part of even light that draws of `bsdf` scatter: ∫ 2μ albedo dμ.
+pub(super) fn average(bsdf: &Bsdf) -> f64 {
+    let n = 64;
+    let at = |i: u8| ((f32::from(i) + 0.5) / f32::from(n)).sqrt();
+    let albedos = (0..n).map(|i| f64::from(albedo_of_draws(bsdf, direction(at(i), 0.3))));
+    albedos.sum::<f64>() / f64::from(n)
 }
 
 fn filling(thickness: f32, albedo: f32, g: f32) -> Filling {

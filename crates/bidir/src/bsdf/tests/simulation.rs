@@ -46,7 +46,7 @@ pub(super) struct Leaving {
 }
 
 /// A direction that light leaves an interface along, and the part that does.
-type Ray = (DVec3, f64);
+pub(super) type Ray = (DVec3, f64);
 
 impl Stack {
     /// One walk of light from `wo`.
@@ -127,7 +127,7 @@ impl Stack {
 
     /// The rays that a facet sends light from `v` to, which is above it, with `eta` the index below
     /// relative to that above. None: the wrong side of the surface.
-    fn interface(&self, v: DVec3, eta: f64, u: [f64; 2]) -> (Option<Ray>, Option<Ray>) {
+    pub(super) fn interface(&self, v: DVec3, eta: f64, u: [f64; 2]) -> (Option<Ray>, Option<Ray>) {
         let m = visible_facet(self.alpha, v, u);
         let cos = v.dot(m);
         let (reflectance, cos_t) = fresnel(cos, eta);
@@ -143,7 +143,7 @@ impl Stack {
 
 impl Base {
     /// The direction of light from `v`, and the part that goes there. None: it is lost.
-    fn reflect(self, v: DVec3, u: [f64; 2]) -> Option<Ray> {
+    pub(super) fn reflect(self, v: DVec3, u: [f64; 2]) -> Option<Ray> {
         match self {
             Self::Diffuse(reflectance) => {
                 let sin = u[0].sqrt();
@@ -166,15 +166,15 @@ impl Base {
 
 /// Light within the layer, on its way along `w`.
 #[derive(Clone, Copy)]
-struct Light {
-    w: DVec3,
-    part: f64,
-    height: f64,
+pub(super) struct Light {
+    pub(super) w: DVec3,
+    pub(super) part: f64,
+    pub(super) height: f64,
 }
 
 impl Light {
     /// Goes on with half of the chance where little is left. None: it does not.
-    fn roulette(self, u: f32) -> Option<Self> {
+    pub(super) fn roulette(self, u: f32) -> Option<Self> {
         if self.part > 0.02 {
             return Some(self);
         }
@@ -185,14 +185,14 @@ impl Light {
     }
 }
 
-fn pair(stream: &SampleStream, event: usize, purpose: Purpose) -> [f64; 2] {
+pub(super) fn pair(stream: &SampleStream, event: usize, purpose: Purpose) -> [f64; 2] {
     let u = stream.get_2d(Dimension::at(event, purpose));
     [f64::from(u.x), f64::from(u.y)]
 }
 
 /// The reflectance of a dielectric facet of relative index `eta`, and the cosine of the refracted
 /// direction.
-fn fresnel(cos: f64, eta: f64) -> (f64, f64) {
+pub(super) fn fresnel(cos: f64, eta: f64) -> (f64, f64) {
     let sin2_t = (1.0 - cos * cos) / (eta * eta);
     if sin2_t >= 1.0 {
         return (1.0, 0.0);
@@ -237,7 +237,7 @@ fn visible_facet(alpha: f64, v: DVec3, u: [f64; 2]) -> DVec3 {
 }
 
 /// G₂(v, out) / G₁(v).
-fn unshadowed(alpha: f64, v: DVec3, out: DVec3) -> f64 {
+pub(super) fn unshadowed(alpha: f64, v: DVec3, out: DVec3) -> f64 {
     let lambda = |w: DVec3| {
         let tan2 = (w.x * w.x + w.y * w.y) / (w.z * w.z);
         ((1.0 + alpha * alpha * tan2).sqrt() - 1.0) / 2.0
@@ -245,8 +245,14 @@ fn unshadowed(alpha: f64, v: DVec3, out: DVec3) -> f64 {
     (1.0 + lambda(v)) / (1.0 + lambda(v) + lambda(out))
 }
 
+/// The density of scattering by an angle of this cosine. Unit: 1/sr.
+pub(super) fn henyey_greenstein_value(cos: f64, g: f64) -> f64 {
+    let base = 1.0 + g * g - 2.0 * g * cos;
+    (1.0 - g * g) / (2.0 * TAU * base * base.sqrt())
+}
+
 /// The direction after scattering of light along `w`.
-fn henyey_greenstein(w: DVec3, g: f64, u: [f64; 2]) -> DVec3 {
+pub(super) fn henyey_greenstein(w: DVec3, g: f64, u: [f64; 2]) -> DVec3 {
     let cos = if g.abs() < 1e-3 {
         1.0 - 2.0 * u[0]
     } else {
