@@ -50,6 +50,49 @@ PRINCIPLED = [
         "let of_coat = 0.8 * probs.coat * coat.densities[from];",
         unit("samples_follow_the_density"),
     ),
+    (
+        "layers that take light on both its ways",
+        VALUE,
+        "base *= Spectrum::splat(o.below().min(i.below()));",
+        "base *= Spectrum::splat(o.below() * i.below());",
+        unit("white_surfaces_gain_nothing_in_a_furnace"),
+    ),
+    # --- light between facets -----------------------------------------------------------------
+    (
+        "light between facets divided by the mean of the wrong side",
+        "crates/bidir/src/bsdf/dielectric.rs",
+        "probs[0] * probs[1] * parts[0] * INV_PI / self.lost.of(wi)",
+        "probs[0] * probs[1] * parts[0] * INV_PI / self.lost.of(wo)",
+        unit("light_flows_both_ways"),
+    ),
+    (
+        "light between facets by the fit of the other slope",
+        "crates/bidir/src/bsdf/multiple/loss.rs",
+        "[along.sqrt(), across.sqrt()]",
+        "[across.sqrt(), along.sqrt()]",
+        unit("white_metal_whose_facets_scatter_often"),
+    ),
+    (
+        "coloured metal that keeps its colour between facets",
+        "crates/bidir/src/bsdf/multiple/mod.rs",
+        "sqr(f) * (1.0 - lost)",
+        "f * (1.0 - lost)",
+        unit("coloured_metal_takes_its_colour_at_each_facet"),
+    ),
+    (
+        "light between facets drawn more often than its density says",
+        "crates/bidir/src/bsdf/multiple/mod.rs",
+        "let squared = self.c2 * (libm::expf(u * self.range) - 1.0);",
+        "let squared = self.c2 * (libm::expf(sqr(u) * self.range) - 1.0);",
+        unit("samples_follow_the_density"),
+    ),
+    (
+        "glTF's metal that loses light between facets",
+        "crates/bidir/src/bsdf/principled/parameters.rs",
+        "p.metallic > 0.0 || f0.max_lane()",
+        "f0.max_lane()",
+        unit("white_facets_vanish_in_a_furnace"),
+    ),
     # --- glTF ---------------------------------------------------------------------------------
     (
         "textures of glTF upside down",

@@ -1,6 +1,7 @@
 //! Blind spots against what the estimators make of small scenes.
 
 use super::*;
+use crate::bsdf::FacetScattering;
 use crate::film::{FilmSettings, Filter};
 use crate::light::{InfiniteLight, PointLight};
 use crate::material::{ConductorIndex, Mixture, PrincipledMaterial, Roughness, ScaledFloat};
@@ -40,6 +41,7 @@ pub(super) fn diffuse() -> Material {
 pub(super) fn metal(roughness: f32) -> Material {
     Material::Conductor {
         index: ConductorIndex::Reflectance(ColorTexture::Constant([0.9; 3])),
+        scattering: FacetScattering::Single,
         roughness: Roughness {
             u: FloatTexture::Constant(roughness),
             v: FloatTexture::Constant(roughness),

@@ -1,12 +1,13 @@
 //! f = F(wo·m) D(m) G₂(wo, wi) / (4 |cosθ_o cosθ_i|) [Walter07, eq. 20]: metal, 1/sr.
 //!
 //! Facets are drawn as `wo` sees them, and the density of `wi` is that of the facet over 4 |wo·m|
-//! (solid angle, 1/sr). Light that a facet sends below the surface is lost: there is no multiple
-//! scattering.
+//! (solid angle, 1/sr). Light that a facet sends to others is lost, or leaves by a lobe of its own
+//! ([`multiple`]).
 
 use super::microfacet::Ggx;
+use super::multiple::{self, FacetScattering, Spread};
 use super::{BsdfSample, BsdfValue, fresnel, same_hemisphere};
-use crate::math::{Vec2, Vec3};
+use crate::math::{INV_PI, Vec2, Vec3};
 use crate::spectrum::Spectrum;
 
 /// A metal: Fresnel reflection from GGX facets, or from a mirror where the surface is smooth.
@@ -20,9 +21,40 @@ pub struct Conductor {
     pub k: Spectrum,
     /// The distribution of facets.
     pub ggx: Ggx,
+    /// What leaves after more than one facet, of the light that one loses; black: it is lost.
+    multiple: Spectrum,
+    /// k̄.
+    lost: f32,
 }
 
 impl Conductor {
+    /// A metal of index η + ik.
+    pub fn new(eta: Spectrum, k: Spectrum, ggx: Ggx, scattering: FacetScattering) -> Self {
+        let single = Self {
+            eta,
+            k,
+            ggx,
+            multiple: Spectrum::ZERO,
+            lost: 0.0,
+        };
+        if scattering == FacetScattering::Single || ggx.is_smooth() {
+            return single;
+        }
+        let lost = multiple::mean_of_mirrors(ggx);
+        let mean = multiple::mean_fresnel(|cos| single.fresnel(cos));
+        Self {
+            multiple: multiple::remaining(mean, lost),
+            lost,
+            ..single
+        }
+    }
+
+    /// False where light that facets send to others is lost.
+    #[inline]
+    fn is_multiple(&self) -> bool {
+        self.lost > 0.0
+    }
+
     #[inline]
     pub(super) fn is_smooth(&self) -> bool {
         self.ggx.is_smooth()
@@ -35,7 +67,19 @@ impl Conductor {
 
     #[inline]
     pub(super) fn albedo(&self, wo: Vec3) -> Spectrum {
-        self.fresnel(wo.z)
+        if !self.is_multiple() {
+            return self.fresnel(wo.z);
+        }
+        let lost = multiple::of_mirrors(self.ggx, wo);
+        self.fresnel(wo.z) * (1.0 - lost) + self.multiple * lost
+    }
+
+    /// The probability of drawing from the lobe of light that one facet loses, k being `lost`.
+    #[inline]
+    fn multiple_prob(&self, w: Vec3, lost: f32) -> f32 {
+        let [once, often] = [self.fresnel(w.z), self.multiple].map(Spectrum::max_lane);
+        let share = lost * often;
+        share / (share + (1.0 - lost) * once).max(f32::MIN_POSITIVE)
     }
 
     #[inline]
@@ -45,16 +89,41 @@ impl Conductor {
         }
         let mirror = self.ggx.mirror(wo, wi);
         let [pdf, pdf_reverse] = mirror.densities;
-        BsdfValue {
+        let once = BsdfValue {
             f: self.fresnel(mirror.cos) * mirror.facets,
             pdf,
             pdf_reverse,
             albedo_reverse: self.albedo(wi).max_lane(),
+        };
+        if self.is_multiple() {
+            self.with_multiple(once, [wo, wi])
+        } else {
+            once
+        }
+    }
+
+    /// Adds the lobe of light that one facet loses.
+    #[inline]
+    fn with_multiple(&self, once: BsdfValue, [wo, wi]: [Vec3; 2]) -> BsdfValue {
+        let lost = [wo, wi].map(|w| multiple::of_mirrors(self.ggx, w));
+        let prob = [0, 1].map(|i| self.multiple_prob([wo, wi][i], lost[i]));
+        let spread = Spread::new(self.ggx);
+        let mixed = |prob: f32, pdf: f32, to: Vec3| (1.0 - prob) * pdf + prob * spread.pdf(to.z);
+        BsdfValue {
+            f: once.f + self.multiple * (lost[0] * lost[1] * INV_PI / self.lost),
+            pdf: mixed(prob[0], once.pdf, wi),
+            pdf_reverse: mixed(prob[1], once.pdf_reverse, wo),
+            ..once
         }
     }
 
     #[inline]
-    pub(super) fn sample(&self, wo: Vec3, u: Vec2) -> Option<BsdfSample> {
+    pub(super) fn sample(
+        &self,
+        wo: Vec3,
+        u_lobe: impl FnOnce() -> f32,
+        u: Vec2,
+    ) -> Option<BsdfSample> {
         if wo.z == 0.0 {
             return None;
         }
@@ -62,21 +131,36 @@ impl Conductor {
             let reflectance = self.fresnel(wo.z);
             return Some(BsdfSample::mirror(wo, reflectance, 1.0, reflectance));
         }
-        let wi = self.ggx.sample_mirror(wo, u)?;
+        let is_lost = self.is_multiple() && {
+            let lost = multiple::of_mirrors(self.ggx, wo);
+            u_lobe() < self.multiple_prob(wo, lost)
+        };
+        let wi = if is_lost {
+            Spread::new(self.ggx).sample(wo, u)
+        } else {
+            self.ggx.sample_mirror(wo, u)?
+        };
         BsdfSample::of_value(wi, &self.eval(wo, wi))
     }
 
     pub(super) fn examples() -> impl Iterator<Item = (&'static str, Self)> {
-        let gold = |alpha_x, alpha_y| Self {
-            eta: Spectrum([0.168, 0.350, 1.508, 1.508]),
-            k: Spectrum([3.138, 2.714, 1.879, 1.879]),
-            ggx: Ggx::new(alpha_x, alpha_y),
+        let gold = |alpha_x, alpha_y, scattering| {
+            Self::new(
+                Spectrum([0.168, 0.350, 1.508, 1.508]),
+                Spectrum([3.138, 2.714, 1.879, 1.879]),
+                Ggx::new(alpha_x, alpha_y),
+                scattering,
+            )
         };
+        let (single, multiple) = (FacetScattering::Single, FacetScattering::Multiple);
         [
-            ("conductor smooth", gold(0.0, 0.0)),
-            ("conductor sharp", gold(0.05, 0.05)),
-            ("conductor rough", gold(0.3, 0.3)),
-            ("conductor anisotropic", gold(0.5, 0.1)),
+            ("conductor smooth", gold(0.0, 0.0, multiple)),
+            ("conductor sharp", gold(0.05, 0.05, single)),
+            ("conductor rough", gold(0.3, 0.3, single)),
+            ("conductor anisotropic", gold(0.5, 0.1, single)),
+            ("conductor sharp, multiple", gold(0.1, 0.1, multiple)),
+            ("conductor roughest, multiple", gold(1.0, 1.0, multiple)),
+            ("conductor anisotropic, multiple", gold(0.7, 0.2, multiple)),
         ]
         .into_iter()
     }

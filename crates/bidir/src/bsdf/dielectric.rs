@@ -3,11 +3,13 @@
 //! [Walter07, eq. 20 and 21]. Unit: 1/sr.
 //!
 //! Radiance is divided by η² where it crosses; importance is not [Veach97, §5.2]. There is no
-//! absorption within, no dispersion, and no multiple scattering between facets.
+//! absorption within, and no dispersion. Light that a facet sends to others is lost, or leaves by a lobe of its own
+//! on either side ([`multiple`]).
 
 use super::microfacet::Ggx;
+use super::multiple::{self, FacetScattering, Sides, Spread};
 use super::{BsdfSample, BsdfValue, TransportMode, fresnel, same_hemisphere};
-use crate::math::{Vec2, Vec3, safe_sqrt, sqr};
+use crate::math::{INV_PI, ONE_MINUS_EPSILON, Vec2, Vec3, safe_sqrt, sqr};
 use crate::spectrum::Spectrum;
 
 /// An interface between two transparent media; the normal points to the outside.
@@ -20,6 +22,8 @@ pub struct Dielectric {
     pub eta: f32,
     /// The distribution of facets.
     pub ggx: Ggx,
+    /// What facets lose.
+    pub(super) lost: Sides,
 }
 
 /// The two things a facet does.
@@ -38,11 +42,41 @@ pub(super) struct Crossing {
     pub(super) densities: [f32; 2],
 }
 
+/// The lobe of light that one facet loses.
+pub(super) struct Multiple {
+    /// k(o) k(i) x / (π k̄), without the factor 1/η² of radiance; 1 - x where light stays on its side. Unit: 1/sr.
+    pub(super) f: f32,
+    /// The probabilities k of drawing this lobe, seen from each of both directions.
+    pub(super) probs: [f32; 2],
+    /// The densities of drawing wi for wo, and wo for wi, by this lobe. Measure: solid angle, 1/sr.
+    pub(super) densities: [f32; 2],
+}
+
 impl Dielectric {
+    /// An interface of index `eta`, inside over outside.
+    pub fn new(eta: f32, ggx: Ggx, scattering: FacetScattering) -> Self {
+        let single = Self {
+            eta,
+            ggx,
+            lost: Sides::NONE,
+        };
+        if scattering == FacetScattering::Single || single.is_smooth() {
+            return single;
+        }
+        Self {
+            lost: Sides::new(ggx, eta),
+            ..single
+        }
+    }
+
     /// The interface with `index` outside in place of 1.
     pub(super) fn within(self, index: f32) -> Self {
-        let eta = self.eta / index;
-        Self { eta, ..self }
+        let scattering = if self.lost == Sides::NONE {
+            FacetScattering::Single
+        } else {
+            FacetScattering::Multiple
+        };
+        Self::new(self.eta / index, self.ggx, scattering)
     }
 
     /// An index-matched interface bends nothing, so roughness has no meaning there.
@@ -99,6 +133,65 @@ impl Dielectric {
         if self.is_smooth() {
             return BsdfValue::NONE;
         }
+        let once = self.eval_once(wo, wi, mode);
+        if self.lost.is_none() || wo.z == 0.0 || wi.z == 0.0 {
+            return once;
+        }
+        let often = self.multiple([wo, wi]);
+        let scale = if same_hemisphere(wo, wi) {
+            1.0
+        } else {
+            self.crossing_scale(wo, mode)
+        };
+        let mixed = |i: usize, pdf: f32| {
+            let prob = often.probs[i];
+            (1.0 - prob) * pdf + prob * often.densities[i]
+        };
+        BsdfValue {
+            f: once.f + Spectrum::splat(often.f * scale),
+            pdf: mixed(0, once.pdf),
+            pdf_reverse: mixed(1, once.pdf_reverse),
+            albedo_reverse: 1.0,
+        }
+    }
+
+    /// k of the direction `w`.
+    #[inline]
+    pub(super) fn lost_of(&self, w: Vec3) -> f32 {
+        multiple::of_interface(self.ggx, self.eta_across(w), w)
+    }
+
+    /// Scattering by more than one facet, none of them at the rim.
+    #[inline]
+    pub(super) fn multiple(&self, [wo, wi]: [Vec3; 2]) -> Multiple {
+        let probs = [wo, wi].map(|w| self.lost_of(w));
+        let parts = [wo, wi].map(|w| {
+            let crossing = self.lost.crossing(w, self.eta_across(w));
+            if same_hemisphere(wo, wi) {
+                1.0 - crossing
+            } else {
+                crossing
+            }
+        });
+        let spread = Spread::new(self.ggx);
+        Multiple {
+            f: probs[0] * probs[1] * parts[0] * INV_PI / self.lost.of(wi),
+            probs,
+            densities: [parts[0] * spread.pdf(wi.z), parts[1] * spread.pdf(wo.z)],
+        }
+    }
+
+    /// Draws a direction of light that one facet loses, by `u_side` on either side.
+    #[inline]
+    pub(super) fn sample_multiple(&self, wo: Vec3, u_side: f32, u: Vec2) -> Vec3 {
+        let crossing = self.lost.crossing(wo, self.eta_across(wo));
+        let side = if u_side < crossing { -wo } else { wo };
+        Spread::new(self.ggx).sample(side, u)
+    }
+
+    /// Scattering by one facet.
+    #[inline]
+    fn eval_once(&self, wo: Vec3, wi: Vec3, mode: TransportMode) -> BsdfValue {
         let Some((m, lobe)) = self.facet(wo, wi) else {
             return BsdfValue::NONE;
         };
@@ -150,6 +243,16 @@ impl Dielectric {
         if wo.z == 0.0 {
             return None;
         }
+        let u_lobe = if self.lost.is_none() {
+            u_lobe
+        } else {
+            let lost = self.lost_of(wo);
+            if u_lobe < lost {
+                let wi = self.sample_multiple(wo, u_lobe / lost, u);
+                return BsdfSample::of_value(wi, &self.eval(wo, wi, mode));
+            }
+            ((u_lobe - lost) / (1.0 - lost)).min(ONE_MINUS_EPSILON)
+        };
         let m = if self.is_smooth() {
             Vec3::Z
         } else {
@@ -192,23 +295,40 @@ impl Dielectric {
     }
 
     pub(super) fn examples() -> impl Iterator<Item = (&'static str, Self)> {
+        let (single, multiple) = (FacetScattering::Single, FacetScattering::Multiple);
         [
-            ("dielectric smooth", 1.5, 0.0, 0.0),
-            ("dielectric smooth, from within", 1.0 / 1.33, 0.0, 0.0),
-            ("dielectric rough", 1.5, 0.3, 0.3),
-            ("dielectric rough, less dense inside", 0.75, 0.4, 0.4),
-            ("dielectric anisotropic", 1.8, 0.5, 0.15),
+            ("dielectric smooth", 1.5, [0.0; 2], multiple),
+            (
+                "dielectric smooth, from within",
+                1.0 / 1.33,
+                [0.0; 2],
+                single,
+            ),
+            ("dielectric rough", 1.5, [0.3; 2], single),
+            (
+                "dielectric rough, less dense inside",
+                0.75,
+                [0.4; 2],
+                single,
+            ),
+            ("dielectric anisotropic", 1.8, [0.5, 0.15], single),
+            ("dielectric sharp, multiple", 1.5, [0.1; 2], multiple),
+            ("dielectric roughest, multiple", 1.5, [1.0; 2], multiple),
+            (
+                "dielectric less dense inside, multiple",
+                0.6,
+                [0.5; 2],
+                multiple,
+            ),
+            (
+                "dielectric anisotropic, multiple",
+                1.8,
+                [0.5, 0.15],
+                multiple,
+            ),
         ]
         .into_iter()
-        .map(|(name, eta, x, y)| {
-            (
-                name,
-                Self {
-                    eta,
-                    ggx: Ggx::new(x, y),
-                },
-            )
-        })
+        .map(|(name, eta, [x, y], scattering)| (name, Self::new(eta, Ggx::new(x, y), scattering)))
     }
 }
 

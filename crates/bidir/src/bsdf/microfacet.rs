@@ -68,6 +68,24 @@ impl Ggx {
         ((1.0 + tan2.min(f32::MAX)).sqrt() - 1.0) / 2.0
     }
 
+    /// The slopes along x and y.
+    #[inline]
+    pub(super) fn alphas(self) -> [f32; 2] {
+        [self.alpha_x, self.alpha_y]
+    }
+
+    /// True where all azimuths are alike.
+    #[inline]
+    pub(super) fn is_isotropic(self) -> bool {
+        self.alpha_x.to_bits() == self.alpha_y.to_bits()
+    }
+
+    /// 1 / (1 + 2Λ(v)): G₂ of a direction with itself. Range: `[0, 1]`.
+    #[inline]
+    pub(super) fn unshadowed(self, v: Vec3) -> f32 {
+        1.0 / (1.0 + 2.0 * self.lambda(v))
+    }
+
     /// The part of facets seen from `v` that nothing shadows.
     #[inline]
     pub fn g1(self, v: Vec3) -> f32 {

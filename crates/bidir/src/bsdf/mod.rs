@@ -36,6 +36,7 @@ mod diffuse;
 mod diffuse_transmission;
 pub mod fresnel;
 pub mod microfacet;
+mod multiple;
 mod principled;
 #[cfg(test)]
 mod tests;
@@ -47,6 +48,7 @@ pub use conductor::Conductor;
 pub use dielectric::Dielectric;
 pub use diffuse::Diffuse;
 pub use diffuse_transmission::DiffuseTransmission;
+pub use multiple::FacetScattering;
 pub use principled::{Principled, PrincipledCoat, PrincipledParameters, Wall};
 pub use thin_dielectric::ThinDielectric;
 
@@ -199,7 +201,7 @@ impl Bsdf {
     ) -> Option<BsdfSample> {
         let sample = match self {
             Self::Diffuse(bsdf) => bsdf.sample(wo, u),
-            Self::Conductor(bsdf) => bsdf.sample(wo, u),
+            Self::Conductor(bsdf) => bsdf.sample(wo, u_lobe, u),
             Self::Dielectric(bsdf) => bsdf.sample(wo, mode, u_lobe(), u),
             Self::ThinDielectric(bsdf) => bsdf.sample(wo, u_lobe()),
             Self::DiffuseTransmission(bsdf) => bsdf.sample(wo, u_lobe(), u),

@@ -15,7 +15,9 @@ pub use principled::{Anisotropy, PrincipledMaterial, ScaledColor, ScaledFloat};
 pub use relief::{Bitangent, Embossed, NormalMap, Relief};
 
 use crate::bsdf::microfacet::Ggx;
-use crate::bsdf::{Bsdf, Conductor, Dielectric, Diffuse, DiffuseTransmission, ThinDielectric};
+use crate::bsdf::{
+    Bsdf, Conductor, Dielectric, Diffuse, DiffuseTransmission, FacetScattering, ThinDielectric,
+};
 use crate::math::ONE_MINUS_EPSILON;
 use crate::spectrum::{ColorModel, Rgb, Spectrum, Wavelengths};
 use crate::texture::{ColorTexture, FloatTexture, Needs, TexturePoint};
@@ -130,6 +132,8 @@ pub enum Material {
         index: ConductorIndex,
         /// Its roughness.
         roughness: Roughness,
+        /// How many facets scatter light.
+        scattering: FacetScattering,
     },
     /// A transparent medium's surface.
     Dielectric {
@@ -137,6 +141,8 @@ pub enum Material {
         eta: f32,
         /// Its roughness.
         roughness: Roughness,
+        /// How many facets scatter light.
+        scattering: FacetScattering,
     },
     /// A pane.
     ThinDielectric {
@@ -203,7 +209,9 @@ impl Material {
     pub fn needs(&self) -> Needs {
         match self {
             Self::Diffuse { reflectance } => reflectance.needs(),
-            Self::Conductor { index, roughness } => index.needs().and(roughness.needs()),
+            Self::Conductor {
+                index, roughness, ..
+            } => index.needs().and(roughness.needs()),
             Self::Dielectric { roughness, .. } => roughness.needs(),
             Self::ThinDielectric { .. } => Needs::NOTHING,
             Self::DiffuseTransmission {
@@ -232,18 +240,19 @@ impl Material {
             Self::Diffuse { reflectance } => Bsdf::Diffuse(Diffuse {
                 reflectance: albedo(reflectance),
             }),
-            Self::Conductor { index, roughness } => {
+            Self::Conductor {
+                index,
+                roughness,
+                scattering,
+            } => {
                 let (eta, k) = index.eval(at, color, wavelengths);
-                Bsdf::Conductor(Conductor {
-                    eta,
-                    k,
-                    ggx: roughness.ggx(at),
-                })
+                Bsdf::Conductor(Conductor::new(eta, k, roughness.ggx(at), *scattering))
             }
-            Self::Dielectric { eta, roughness } => Bsdf::Dielectric(Dielectric {
-                eta: *eta,
-                ggx: roughness.ggx(at),
-            }),
+            Self::Dielectric {
+                eta,
+                roughness,
+                scattering,
+            } => Bsdf::Dielectric(Dielectric::new(*eta, roughness.ggx(at), *scattering)),
             Self::ThinDielectric { eta } => Bsdf::ThinDielectric(ThinDielectric { eta: *eta }),
             Self::DiffuseTransmission {
                 reflectance,

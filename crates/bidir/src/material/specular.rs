@@ -5,8 +5,8 @@ use super::{
     CoatSettings, CoatedConductorMaterial, CoatedDiffuseMaterial, Material, Mixture,
     PrincipledMaterial, Roughness, RoughnessMapping, ScaledFloat,
 };
-use crate::bsdf::Dielectric;
 use crate::bsdf::microfacet::{Ggx, SMOOTH_ALPHA};
+use crate::bsdf::{Dielectric, FacetScattering};
 use crate::math::sqr;
 use crate::texture::{FloatTexture, Range};
 
@@ -16,9 +16,9 @@ impl Material {
         match self {
             Self::Diffuse { .. } | Self::DiffuseTransmission { .. } => false,
             Self::Conductor { roughness, .. } => roughness.may_be_smooth(),
-            Self::Dielectric { eta, roughness } => {
+            Self::Dielectric { eta, roughness, .. } => {
                 let ggx = Ggx::new(1.0, 1.0);
-                let is_matched = Dielectric { eta: *eta, ggx }.is_smooth();
+                let is_matched = Dielectric::new(*eta, ggx, FacetScattering::Single).is_smooth();
                 is_matched || roughness.may_be_smooth()
             }
             Self::ThinDielectric { .. } => true,

@@ -4,7 +4,7 @@
 pub(crate) mod statistics;
 pub(crate) mod walks;
 
-use bidir::bsdf::Wall;
+use bidir::bsdf::{FacetScattering, Wall};
 use bidir::camera::{Camera, Perspective, PerspectiveSettings};
 use bidir::driver::Settings;
 use bidir::film::{FilmSettings, Filter};
@@ -164,6 +164,7 @@ pub(crate) fn metal(alpha: f32) -> Material {
     Material::Conductor {
         index: ConductorIndex::Reflectance(reflectance),
         roughness: roughness(alpha),
+        scattering: FacetScattering::Multiple,
     }
 }
 
@@ -171,6 +172,7 @@ pub(crate) fn glass(alpha: f32) -> Material {
     Material::Dielectric {
         eta: 1.5,
         roughness: roughness(alpha),
+        scattering: FacetScattering::Multiple,
     }
 }
 

@@ -3,6 +3,7 @@
 
 use super::{Lobe, Principled, Probs, Wall, coat_fresnel, mirrored_below};
 use crate::bsdf::dielectric::refract;
+use crate::bsdf::multiple::Spread;
 use crate::bsdf::{BsdfSample, TransportMode, same_hemisphere};
 use crate::math::{ONE_MINUS_EPSILON, Vec2, Vec3, sqr, warp};
 use crate::spectrum::Spectrum;
@@ -73,7 +74,17 @@ impl Principled {
     }
 
     #[inline]
-    fn sample_facet(&self, wo: Vec3, rest: f32, u: Vec2) -> Option<Vec3> {
+    fn sample_facet(&self, wo: Vec3, u_lobe: f32, u: Vec2) -> Option<Vec3> {
+        let mut rest = u_lobe;
+        if self.is_multiple() {
+            let [stays, crosses] = self.multiple_probs(wo);
+            let often = stays + crosses;
+            if rest < often {
+                let side = if rest < stays { wo } else { -wo };
+                return Some(Spread::new(self.ggx).sample(side, u));
+            }
+            rest = ((rest - often) / (1.0 - often)).min(ONE_MINUS_EPSILON);
+        }
         let m = self.ggx.sample_visible(wo, u);
         let cos = wo.dot(m);
         let reflected = m * (2.0 * cos) - wo;
@@ -101,7 +112,7 @@ impl Principled {
             prob += probs.map_or(0.0, |probs| probs.coat);
         }
         if self.ggx.is_smooth() {
-            reflectance += self.facet(wo.z).0 * sqr(self.layers(wo).below());
+            reflectance += self.facet(wo.z).0 * self.layers(wo).below();
             prob += self.smooth_probs(wo)[0];
         }
         let drawn = BsdfSample::mirror(wo, reflectance, prob, self.albedo(wo));
@@ -137,8 +148,8 @@ impl Principled {
             }
         };
         let [prob, reverse] = [wo, wi].map(|w| self.smooth_probs(w)[1]);
-        let value =
-            self.facet(wo.z).1 * (scale * self.layers(wo).below() * self.layers(wi).below());
+        let below = self.layers(wo).below().min(self.layers(wi).below());
+        let value = self.facet(wo.z).1 * (scale * below);
         (wi.z != 0.0 && prob > 0.0).then(|| BsdfSample {
             wi,
             weight: value / prob,

@@ -1,20 +1,21 @@
 //! The material of glTF 2.0: metal, or a dielectric layer over a diffuse or transparent base, under
 //! sheen and a clear coat.
 //!
-//! f = C(o) C(i) { S(o) S(i) [ F(m) D G₂ / (4 |cosθ_o cosθ_i|) + k(o) k(i) ρ / (π k̄) + T(m) … ] + sheen }
-//! + coat, 1/sr, where
+//! f = C { S [ F(m) D G₂ / (4 |cosθ_o cosθ_i|) + k(o) k(i) ρ / (π k̄) + T(m) … + turns ] + sheen } + coat, 1/sr, where
 //!
 //! - F = f₀ + (f₉₀ - f₀) (1 - o·m)⁵ \[Schlick94\] of metal and opaque dielectric, plus Fresnel's own
 //!   reflectance for the transparent part, which T takes its rest of: refraction [Walter07, eq. 21],
 //!   or for a thin wall the lobe of F mirrored to the other side;
+//! - turns is the light that facets scatter more than once (`multiple`);
 //! - k = 1 - Ẽ is what the dielectric's reflection leaves of each direction and k̄ its mean, so that a
 //!   white base under it is white \[Kelemen01\];
-//! - S and C are what sheen and coat leave, 1 - Ẽ likewise (`under`).
+//! - S and C are what sheen and coat leave, the smaller 1 - Ẽ of both directions (`under`).
 //!
 //! Each factor belongs to one direction, or is symmetric in both, so f is; and no layer hands on more
 //! than its own lobe leaves, so nothing gains (docs/derivations/principled.md).
 
 mod draw;
+mod multiple;
 mod parameters;
 mod sheen;
 #[cfg(test)]
@@ -27,6 +28,7 @@ pub use parameters::{Coat as PrincipledCoat, PrincipledParameters, Wall};
 use super::dielectric::{Dielectric, Lobe as Side};
 use super::fresnel;
 use super::microfacet::Ggx;
+use super::multiple::Sides;
 use crate::math::{INV_PI, PI, Vec2, Vec3};
 use crate::spectrum::Spectrum;
 
@@ -40,9 +42,11 @@ const EVEN: f32 = 0.5 * INV_PI;
 pub struct Principled {
     /// The base colour: of the diffuse part, and what crossing the surface tints.
     tint: Spectrum,
-    /// f₀ of metal and opaque dielectric, with their shares.
+    /// The share of metal, whose f₀ is the base colour.
+    metal: f32,
+    /// f₀ of opaque dielectric, with its share.
     f0: Spectrum,
-    /// f₉₀ of both, likewise.
+    /// f₉₀ of metal and opaque dielectric, with their shares.
     f90: f32,
     /// The share of the transparent part.
     glass: f32,
@@ -65,6 +69,10 @@ pub struct Principled {
     coat_alpha: f32,
     sheen: Spectrum,
     sheen_alpha: f32,
+    /// k̄ of facets that mirror. Zero: what they send to others is lost.
+    lost: f32,
+    /// k̄ of a transparent solid's facets, likewise.
+    lost_through: Sides,
     wall: Wall,
 }
 
@@ -172,10 +180,18 @@ impl Principled {
         }
     }
 
+    /// f₀ of metal and opaque dielectric.
+    #[inline]
+    fn normal_reflectance(&self) -> Spectrum {
+        self.tint * self.metal + self.f0
+    }
+
     /// F, where light meets facets at the cosine `cos` and Schlick's weight is `weight`.
     #[inline]
     fn reflectance(&self, cos: f32, weight: f32) -> Spectrum {
-        let opaque = self.f0.map(|f0| f0 + (self.f90 - f0) * weight);
+        let opaque = self
+            .normal_reflectance()
+            .map(|f0| f0 + (self.f90 - f0) * weight);
         if self.glass <= 0.0 {
             return opaque;
         }
@@ -228,7 +244,7 @@ impl Principled {
     #[inline]
     fn probs_of(&self, shares: &[Spectrum; 4]) -> Option<Probs> {
         let mut shares = shares.map(Spectrum::max_lane);
-        if self.f0.is_black() && self.f90 <= 0.0 && self.glass <= 0.0 {
+        if self.normal_reflectance().is_black() && self.f90 <= 0.0 && self.glass <= 0.0 {
             shares[1] = 0.0;
         }
         let sum: f32 = shares.iter().sum();
@@ -287,6 +303,7 @@ impl Principled {
         Dielectric {
             eta: self.eta,
             ggx: self.ggx,
+            lost: self.lost_through,
         }
     }
 }

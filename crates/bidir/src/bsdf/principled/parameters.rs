@@ -1,8 +1,10 @@
 //! The parameters of a principled surface, and the BSDF that they give.
 
+use super::multiple::LEAST_REFLECTANCE;
 use super::sheen::SHEEN_ALPHA;
 use super::{Principled, under};
 use crate::bsdf::microfacet::Ggx;
+use crate::bsdf::multiple::{self, Sides};
 use crate::math::{INV_PI, Vec2, sqr};
 use crate::spectrum::Spectrum;
 
@@ -85,7 +87,7 @@ impl PrincipledParameters {
 /// The wall that a surface of this relative index is. Indices closer to 1 bend nothing that could be seen.
 fn wall(described: Wall, eta: f32) -> Wall {
     const LEAST_BEND: f32 = 1e-3;
-    if (eta - 1.0).abs() > LEAST_BEND {
+    if (eta - 1.0).abs() > LEAST_BEND && eta > 0.0 {
         described
     } else {
         Wall::Thin
@@ -115,15 +117,22 @@ impl Principled {
         } else {
             0.0
         };
+        let glass = if p.ior > 0.0 {
+            dielectric * p.transmission
+        } else {
+            0.0
+        };
+        let wall = wall(p.wall, p.ior);
+        let is_pane = glass > 0.0 && wall == Wall::Thin;
+        let f0 = f0 * opaque;
+        let mirrors = p.metallic > 0.0 || f0.max_lane() > LEAST_REFLECTANCE || is_pane;
+        let lost = (mirrors && !p.ggx.is_smooth()).then(|| multiple::mean_of_mirrors(p.ggx));
         Self {
             tint: p.color,
-            f0: p.color * p.metallic + f0 * opaque,
+            metal: p.metallic,
+            f0,
             f90: p.metallic + p.specular * opaque,
-            glass: if p.ior > 0.0 {
-                dielectric * p.transmission
-            } else {
-                0.0
-            },
+            glass,
             specular: (p.specular * p.specular_color.max_lane()).min(1.0),
             eta: p.ior.max(0.01),
             ggx: p.ggx,
@@ -135,12 +144,11 @@ impl Principled {
             coat_alpha: p.coat.alpha,
             sheen: p.sheen,
             sheen_alpha: p.sheen_alpha.clamp(SHEEN_ALPHA, 1.0),
-            wall: if p.ior > 0.0 {
-                wall(p.wall, p.ior)
-            } else {
-                Wall::Thin
-            },
+            lost: lost.unwrap_or(0.0),
+            lost_through: Sides::NONE,
+            wall,
         }
+        .with_lost_through()
     }
 
     /// The surface of a solid with `index` around it in place of air.
@@ -149,6 +157,20 @@ impl Principled {
         Self {
             eta,
             wall: wall(Wall::Solid, eta),
+            ..self
+        }
+        .with_lost_through()
+    }
+
+    /// The same with what the facets of its transparent part lose by its index.
+    fn with_lost_through(self) -> Self {
+        let is_solid = self.glass > 0.0 && self.wall == Wall::Solid && !self.ggx.is_smooth();
+        Self {
+            lost_through: if is_solid {
+                Sides::new(self.ggx, self.eta)
+            } else {
+                Sides::NONE
+            },
             ..self
         }
     }

@@ -6,9 +6,9 @@ use crate::math::{Vec3, warp};
 use crate::spectrum::Spectrum;
 
 /// f of one lobe between two directions, and the densities of drawing each direction for the other.
-struct LobeValue {
-    f: Spectrum,
-    densities: [f32; 2],
+pub(super) struct LobeValue {
+    pub(super) f: Spectrum,
+    pub(super) densities: [f32; 2],
 }
 
 impl LobeValue {
@@ -32,6 +32,11 @@ impl Principled {
             [self.reflecting_facets(pair), self.coat_lobe(pair)]
         } else {
             [self.crossing_facets(pair, mode), LobeValue::NONE]
+        };
+        let facets = if self.is_multiple() {
+            self.with_multiple(facets, pair, mode)
+        } else {
+            facets
         };
         let f = if is_reflected {
             self.reflected(pair, &seen, facets.f) + coat.f
@@ -63,11 +68,11 @@ impl Principled {
         if self.diffuse > 0.0 {
             base += self.tint * (self.diffuse * self.uncovered(o) * self.uncovered(i));
         }
-        base *= Spectrum::splat(o.below() * i.below());
+        base *= Spectrum::splat(o.below().min(i.below()));
         if self.sheen.is_black() || self.is_bare(wo) {
             return base;
         }
-        let under_coat = (1.0 - o.coat) * (1.0 - i.coat);
+        let under_coat = 1.0 - o.coat.max(i.coat);
         base + self.sheen * (sheen::eval(wo, wi, self.sheen_alpha) * under_coat)
     }
 
@@ -75,7 +80,7 @@ impl Principled {
     #[inline]
     fn crossed(&self, [o, i]: &[Layers; 2], facets: Spectrum) -> Spectrum {
         let diffuse = self.through * (self.uncovered(o) * self.uncovered(i));
-        (facets + diffuse) * (o.below() * i.below())
+        (facets + diffuse) * o.below().min(i.below())
     }
 
     #[inline]

@@ -3,7 +3,7 @@ use crate::bsdf::coat::{Layer, Reflections, Slab};
 use crate::bsdf::microfacet::Ggx;
 use crate::bsdf::{
     Bsdf, BsdfValue, CoatedConductor, CoatedDiffuse, CoatedMetal, Conductor, Dielectric, Diffuse,
-    DiffuseTransmission, Filling, ThinDielectric,
+    DiffuseTransmission, FacetScattering, Filling, ThinDielectric,
 };
 use crate::math::{ONE_MINUS_EPSILON, Vec2, Vec3};
 use crate::spectrum::Spectrum;
@@ -33,16 +33,19 @@ fn a_bsdf() -> impl Strategy<Value = Bsdf> {
     let eta = prop::sample::select(vec![1.0, 1.0 + 1e-5, 0.99, 1.5, 1e-3, 1e3, 1e6]);
     (alpha(), alpha(), eta, 0.0f32..5.0).prop_flat_map(|(x, y, eta, k)| {
         let ggx = Ggx::new(x, y);
-        let metal = Conductor {
-            eta: Spectrum::splat(eta),
-            k: Spectrum::splat(k),
-            ggx,
+        let metal = |scattering| {
+            let [eta, k] = [eta, k].map(Spectrum::splat);
+            Bsdf::Conductor(Conductor::new(eta, k, ggx, scattering))
         };
+        let glass = |scattering| Bsdf::Dielectric(Dielectric::new(eta, ggx, scattering));
+        let (single, multiple) = (FacetScattering::Single, FacetScattering::Multiple);
         let reflectance = Spectrum::splat(k / 5.0);
         prop::sample::select(vec![
             Bsdf::Diffuse(Diffuse { reflectance }),
-            Bsdf::Conductor(metal),
-            Bsdf::Dielectric(Dielectric { eta, ggx }),
+            metal(single),
+            metal(multiple),
+            glass(single),
+            glass(multiple),
             Bsdf::ThinDielectric(ThinDielectric { eta }),
             Bsdf::DiffuseTransmission(DiffuseTransmission {
                 reflectance,

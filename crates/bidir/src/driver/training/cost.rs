@@ -110,6 +110,7 @@ impl Survey {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::bsdf::FacetScattering;
     use crate::driver::training::{
         Effort, Task,
         tests::{WHOLE, grey, room_with, survey_of, view},
@@ -147,6 +148,7 @@ mod tests {
     fn candidates_cost_least_between_diffuse_vertices() {
         let metal = || Material::Conductor {
             index: ConductorIndex::Reflectance(ColorTexture::Constant([0.9; 3])),
+            scattering: FacetScattering::Single,
             roughness: Roughness {
                 u: FloatTexture::Constant(0.5),
                 v: FloatTexture::Constant(0.5),

@@ -1,7 +1,7 @@
 //! The test of materials for Dirac distributions, against known answers and against draws.
 
 use super::*;
-use crate::bsdf::{TransportMode, Wall};
+use crate::bsdf::{FacetScattering, TransportMode, Wall};
 use crate::material::{Anisotropy, ConductorIndex};
 use crate::math::{ONE_MINUS_EPSILON, Vec2, Vec3};
 use crate::spectrum::{ColorModel, Wavelengths};
@@ -46,11 +46,19 @@ fn diffuse() -> Material {
 
 fn metal(roughness: Roughness) -> Material {
     let index = ConductorIndex::Reflectance(grey());
-    Material::Conductor { index, roughness }
+    Material::Conductor {
+        index,
+        roughness,
+        scattering: FacetScattering::Single,
+    }
 }
 
 fn glass(eta: f32, roughness: Roughness) -> Material {
-    Material::Dielectric { eta, roughness }
+    Material::Dielectric {
+        eta,
+        roughness,
+        scattering: FacetScattering::Single,
+    }
 }
 
 fn coat(eta: f32, roughness: Roughness) -> CoatSettings {

@@ -13,6 +13,7 @@ use crate::pbrt::lexer::shorten;
 use crate::pbrt::parameters::{ParameterType, Values};
 use crate::pbrt::scene::MaterialDescription;
 use crate::source::{Fault, Span};
+use bidir::bsdf::FacetScattering;
 use bidir::material::{
     Bitangent, CLEAR, CoatSettings, CoatedConductorMaterial, CoatedDiffuseMaterial, ConductorIndex,
     Material, Mixture, NormalMap, Relief, Roughness, RoughnessMapping,
@@ -369,6 +370,16 @@ impl Parameters<'_, '_, '_> {
         Ok(Material::Conductor {
             index: self.conductor_index("eta", "k")?,
             roughness: self.roughness(&SURFACE)?,
+            scattering: self.facet_scattering()?,
+        })
+    }
+
+    /// Reads how many facets scatter light, which pbrt-v4 does not ask.
+    fn facet_scattering(&mut self) -> Result<FacetScattering, Fault> {
+        Ok(if self.reader.bool("multiscatter", false)? {
+            FacetScattering::Multiple
+        } else {
+            FacetScattering::Single
         })
     }
 
@@ -415,6 +426,7 @@ impl Parameters<'_, '_, '_> {
         Ok(Material::Dielectric {
             eta: spectral::read_eta(&mut self.reader, "eta", GLASS)?,
             roughness: self.roughness(&SURFACE)?,
+            scattering: self.facet_scattering()?,
         })
     }
 
@@ -422,8 +434,14 @@ impl Parameters<'_, '_, '_> {
     fn subsurface(&mut self) -> Result<(Material, Recipe), Fault> {
         let eta = spectral::read_eta(&mut self.reader, "eta", WATER)?;
         let roughness = self.roughness(&SURFACE)?;
+        let scattering = self.facet_scattering()?;
         let content = media::subsurface::read(&mut self.reader, eta)?;
-        Ok((Material::Dielectric { eta, roughness }, content))
+        let surface = Material::Dielectric {
+            eta,
+            roughness,
+            scattering,
+        };
+        Ok((surface, content))
     }
 
     fn coated_diffuse(&mut self) -> Result<Material, Fault> {

@@ -85,6 +85,28 @@ fn every_parameter_of_a_layer_changes_something() {
     }
 }
 
+/// The part of light along the normal that white surfaces scatter is 1 if facets scatter often, and less by pbrt-v4's model.
+#[test]
+fn facets_scatter_often_where_the_file_says_so() {
+    for kind in ["conductor", "dielectric", "subsurface"] {
+        let plain = format!("Material \"{kind}\" \"float roughness\" .5");
+        check_same(&plain, &format!("{plain} \"bool multiscatter\" false"));
+        check_different(&plain, &format!("{plain} \"bool multiscatter\" true"));
+    }
+    let metal = "Material \"conductor\" \"rgb reflectance\" [1 1 1] \"float roughness\" 1";
+    for (asked, expected) in [("false", 0.307), ("true", 1.0)] {
+        let metal = bsdf(&format!("{metal} \"bool multiscatter\" {asked}"), 0.0);
+        let n = 1000u16;
+        let at = |i: u16| {
+            let cos = (f32::from(i) + 0.5) / f32::from(n);
+            let wi = Vec3::new((1.0 - cos * cos).sqrt(), 0.0, cos);
+            metal.eval(Vec3::Z, wi, TransportMode::Radiance).f[0] * cos
+        };
+        let part = std::f32::consts::TAU * (0..n).map(at).sum::<f32>() / f32::from(n);
+        assert!((part - expected).abs() < 0.02, "{asked}: {part}");
+    }
+}
+
 #[test]
 fn unequal_slopes_of_a_coat_turn_with_the_surface() {
     let text = "Material \"coateddiffuse\" \"float uroughness\" .5 \"float vroughness\" .05";
