@@ -9,11 +9,12 @@ use super::{Draft, F32, floats, load_bytes, mesh};
 use crate::error::ErrorKind;
 use crate::image::encode_png;
 use crate::pbrt::{Crop, LoadOptions, Loaded};
-use bidir::bsdf::Wall;
+use bidir::bsdf::{TransportMode, Wall};
 use bidir::light::{Light, LightPoint};
 use bidir::locus::Locus;
 use bidir::material::{Bitangent, Material, PrincipledMaterial, Relief};
 use bidir::math::{Vec2, Vec3};
+use bidir::spectrum::{ColorModel, Wavelengths};
 use bidir::texture::TexturePoint;
 use serde_json::{Value, json};
 
@@ -42,6 +43,34 @@ fn principled(loaded: &Loaded) -> &PrincipledMaterial {
     match &loaded.scene.materials()[0] {
         Material::Principled(material) => material,
         other => panic!("{other:?}"),
+    }
+}
+
+/// The part of white light along the normal that white metal of this roughness scatters: ∫ f cosθ dω.
+fn white_metal(roughness: f32) -> f32 {
+    let mut draft = Draft::triangle();
+    draft.primitive()["material"] = json!(0);
+    let metal = json!({ "metallicFactor": 1.0, "roughnessFactor": roughness });
+    draft.json["materials"] = json!([{ "pbrMetallicRoughness": metal }]);
+    let loaded = draft.load().unwrap();
+    let at = TexturePoint::of_parameters(Vec2::ZERO);
+    let material = &loaded.scene.materials()[0];
+    let bsdf = material.bsdf(&at, ColorModel::Rgb, &Wavelengths::default());
+    let n = 40_000u16;
+    let value = |i: u16| {
+        let cos = (f32::from(i) + 0.5) / f32::from(n);
+        let wi = Vec3::new((1.0 - cos * cos).sqrt(), 0.0, cos);
+        let f = bsdf.eval(Vec3::Z, wi, TransportMode::Radiance).f[0];
+        f64::from(f * cos)
+    };
+    (std::f64::consts::TAU * (0..n).map(value).sum::<f64>() / f64::from(n)) as f32
+}
+
+#[test]
+fn rough_metal_keeps_the_light_between_its_facets() {
+    for roughness in [0.2, 0.4, 0.6, 0.8, 1.0] {
+        let part = white_metal(roughness);
+        assert!((part - 1.0).abs() < 0.012, "{roughness}: {part}");
     }
 }
 
