@@ -39,8 +39,8 @@ pub(in crate::bsdf) fn of_interface(ggx: Ggx, across: f32, w: Vec3) -> f32 {
     }
     let bend = (INDICES[0] / eta.clamp(INDICES[0], INDICES[1]) - 0.4) / 0.6;
     // The fit is for equal slopes, and grows with them.
-    let [along, across] = slopes(ggx, w);
-    let (alpha, t) = (along.min(across), ggx.unshadowed(w));
+    let alpha = slopes(ggx, w).into_iter().fold(1.0, f32::min);
+    let t = ggx.unshadowed(w);
     let lost = if across > 1.0 {
         value(&OUTSIDE, [t.sqrt(), alpha, bend]) - SLACK_OUTSIDE
     } else {
