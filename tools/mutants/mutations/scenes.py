@@ -211,6 +211,13 @@ SCENES = [
         "Child::triangles(&leaf)",
         ("bidir-accel", SUITE, "bits::threads_do_not_matter"),
     ),
+    (
+        "patches that have their power in each triangle",
+        "crates/formats/src/ply/mod.rs",
+        "if end == first + 1 {",
+        "if end > first {",
+        ("bidir-formats", "--lib", "power_goes_to_every_face"),
+    ),
     # --- instances ---------------------------------------------------------------------------
     (
         "mirrored instances inside out",

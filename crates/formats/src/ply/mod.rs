@@ -33,6 +33,8 @@ pub struct PlyMesh {
     pub uvs: Vec<[f32; 2]>,
     /// Valid indices of vertices.
     pub triangles: Vec<[u32; 3]>,
+    /// The end of each face among the triangles. Shape: empty if every triangle is a face.
+    pub faces: Vec<u32>,
     /// What was wrong, and is repaired.
     pub repairs: Repairs,
 }
@@ -44,6 +46,47 @@ impl PlyMesh {
         repairs.faces += repair::count_flat(positions, &self.triangles);
         repairs.uvs += repair::replace_infinite(&mut self.uvs, 0.0);
         repairs.normals += repair::repair_normals(positions, &self.triangles, &mut self.normals);
+    }
+
+    /// Adds a face that was divided into triangles.
+    pub(crate) fn add_face(&mut self, triangles: impl IntoIterator<Item = [u32; 3]>) {
+        let first = self.triangles.len();
+        self.triangles.extend(triangles);
+        self.end_face(first);
+    }
+
+    /// Makes a face of the triangles from `first` on, if there are any.
+    fn end_face(&mut self, first: usize) {
+        let (first, end) = (first as u32, self.triangles.len() as u32);
+        if end == first {
+            return;
+        }
+        if self.faces.is_empty() {
+            if end == first + 1 {
+                return;
+            }
+            self.faces.extend(1..=first);
+        }
+        self.faces.push(end);
+    }
+
+    /// Returns the number of faces.
+    pub(crate) fn face_count(&self) -> usize {
+        if self.faces.is_empty() {
+            self.triangles.len()
+        } else {
+            self.faces.len()
+        }
+    }
+
+    /// Returns the triangles of each face.
+    pub(crate) fn faces(&self) -> Vec<Range<usize>> {
+        if self.faces.is_empty() {
+            return (0..self.triangles.len()).map(|i| i..i + 1).collect();
+        }
+        let ends = self.faces.iter().map(|&end| end as usize);
+        let starts = std::iter::once(0).chain(ends.clone());
+        starts.zip(ends).map(|(start, end)| start..end).collect()
     }
 }
 
@@ -247,6 +290,7 @@ fn read_faces(
                 body.skip(property.kind).map(|()| 0..0)
             };
             let fan = read.map_err(|broken| broken.of("face", index))?;
+            mesh.end_face(fan.start);
             if fan.len() > 1 {
                 polygons.push(fan);
             }

@@ -6,6 +6,7 @@ use super::group;
 use super::light;
 use super::reader::Reader;
 use super::shape::Geometry;
+use crate::pbrt::parameters::ParameterType;
 use crate::pbrt::scene::Entity;
 use crate::source::{Fault, Span};
 use bidir::light::EmissionSides;
@@ -14,7 +15,12 @@ use bidir::scene::Emission;
 use bidir::shape::{Mesh, Shape};
 use bidir::spectrum::luminance;
 use bidir::texture::{Beyond, Change, ColorTexture, ImageFilter, ImageMap, Mapping, Wrap};
+use std::ops::Range;
 use std::sync::Arc;
+
+/// The warning for a power that a shape has several times.
+const POWER_OF_EACH: &str = "`power` is that of each face of a mesh, as in pbrt-v4: the mesh has as many times the power as it has \
+     faces; divide `power` by their number, or give `L`";
 
 /// The emission of an area light.
 #[derive(Clone)]
@@ -23,8 +29,8 @@ pub(super) struct AreaEmission {
     /// A texture over the surface's parameters that scales the radiance, and its mean luminance.
     pattern: Option<(ColorTexture, f32)>,
     sides: EmissionSides,
-    /// The power of each primitive in the render space. None: the file gives the radiance.
-    power: Option<f32>,
+    /// The power of each face in the render space, and its place. None: the file gives the radiance.
+    power: Option<(f32, Span)>,
     /// The name of its light group.
     pub(super) group: Option<String>,
     span: Span,
@@ -36,6 +42,8 @@ impl AreaEmission {
         let radiance = color::read(&mut reader, "L", Purpose::Illuminant)?;
         let scale = reader.float_within("scale", 1.0, [0.0, f32::MAX])?;
         let power = reader.optional_float("power")?.filter(|&power| power > 0.0);
+        let place = reader.find(ParameterType::Float, "power");
+        let place = place.map_or(entity.span, |parameter| parameter.value_span);
         let sides = if reader.bool("twosided", false)? {
             EmissionSides::Both
         } else {
@@ -50,7 +58,7 @@ impl AreaEmission {
         reader.finish()?;
         let radiance = radiance.unwrap_or([1.0; 3]).map(|channel| channel * scale);
         // Power per area does not depend on the unit, nor does power per squared distance.
-        let power = power.map(|power| context.layout.space.intensity(power));
+        let power = power.map(|power| (context.layout.space.intensity(power), place));
         Ok(Self {
             radiance,
             pattern,
@@ -61,11 +69,11 @@ impl AreaEmission {
         })
     }
 
-    /// Returns the emission of a shape. If the file gives power, every primitive has to be a shape of its
-    /// own: see [`parts`](Self::parts).
+    /// Returns the emission of a shape. If the file gives power, every face has to be a shape of its own: see
+    /// [`parts`](Self::parts).
     pub(super) fn of(&self, shape: &Shape) -> Result<Emission, Fault> {
         let factor = match self.power {
-            Some(power) => {
+            Some((power, _)) => {
                 let sides = if self.sides == EmissionSides::Both {
                     2.0
                 } else {
@@ -93,16 +101,28 @@ impl AreaEmission {
     /// Returns the number of [`parts`](Self::parts) of a shape.
     pub(super) fn part_count(&self, geometry: &Geometry) -> u64 {
         match (self.power, geometry) {
-            (Some(_), Geometry::Mesh(_)) => geometry.primitives(),
+            (Some(_), Geometry::Mesh(mesh)) => mesh.face_count() as u64,
             _ => 1,
         }
     }
 
-    /// Returns the parts of a shape that are lights of their own.
-    pub(super) fn parts(&self, shape: Shape) -> Vec<Shape> {
-        match (self.power, shape) {
-            (Some(_), Shape::Mesh(mesh)) => split(&mesh),
-            (_, shape) => vec![shape],
+    /// Warns that a shape of several faces has several times the power.
+    pub(super) fn warn_of_parts(&self, context: &mut Context<'_>, geometry: &Geometry) {
+        if let Some((_, place)) = self.power
+            && self.part_count(geometry) > 1
+        {
+            context.warn(place, POWER_OF_EACH);
+        }
+    }
+
+    /// Returns the parts of a placed shape that are lights of their own.
+    pub(super) fn parts(&self, geometry: &Geometry, shape: Shape) -> Vec<Shape> {
+        match (self.power, geometry, shape) {
+            (Some(_), Geometry::Mesh(faces), Shape::Mesh(mesh)) => {
+                let faces = faces.faces().into_iter();
+                faces.map(|face| Shape::Mesh(part(&mesh, face))).collect()
+            }
+            (_, _, shape) => vec![shape],
         }
     }
 }
@@ -128,22 +148,20 @@ fn pattern(reader: &mut Reader<'_, '_>) -> Result<Option<(ColorTexture, f32)>, F
     Ok(Some((pattern, mean as f32)))
 }
 
-/// Returns a mesh for every triangle.
-fn split(mesh: &Mesh) -> Vec<Shape> {
-    let corners = |triangle: &[u32; 3]| triangle.map(|corner| corner as usize);
-    let triangles = mesh.triangles.iter().map(corners).map(|corners| Mesh {
-        positions: corners.map(|corner| mesh.positions[corner]).into(),
+/// Returns the mesh of some of the triangles, with three vertices for each.
+fn part(mesh: &Mesh, triangles: Range<usize>) -> Mesh {
+    let corners = mesh.triangles[triangles.clone()].as_flattened();
+    let corners = corners.iter().map(|&corner| corner as usize);
+    let first = |i: u32| [3 * i, 3 * i + 1, 3 * i + 2];
+    Mesh {
+        positions: corners.clone().map(|i| mesh.positions[i]).collect(),
         normals: corners
-            .iter()
-            .filter_map(|&corner| mesh.normals.get(corner).copied())
+            .clone()
+            .filter_map(|i| mesh.normals.get(i).copied())
             .collect(),
-        uvs: corners
-            .iter()
-            .filter_map(|&corner| mesh.uvs.get(corner).copied())
-            .collect(),
-        triangles: vec![[0, 1, 2]],
+        uvs: corners.filter_map(|i| mesh.uvs.get(i).copied()).collect(),
+        triangles: (0..triangles.len() as u32).map(first).collect(),
         orientation: mesh.orientation,
         ..Mesh::default()
-    });
-    triangles.map(Shape::Mesh).collect()
+    }
 }

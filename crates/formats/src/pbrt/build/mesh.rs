@@ -94,7 +94,7 @@ pub(super) fn triangle_mesh(reader: &mut Reader<'_, '_>) -> Result<PlyMesh, Faul
         normals: vertices.normals,
         uvs: vertices.uvs,
         triangles,
-        repairs: Repairs::default(),
+        ..PlyMesh::default()
     };
     mesh.repair();
     warn_of_repairs(reader, reader.span(), &mesh);
@@ -140,9 +140,8 @@ pub(super) fn subdivided_mesh(reader: &mut Reader<'_, '_>) -> Result<PlyMesh, Fa
     Ok(PlyMesh {
         positions: mesh.points.iter().map(single).collect(),
         normals: normals.iter().map(single).collect(),
-        uvs: Vec::new(),
         triangles: mesh.triangles,
-        repairs: Repairs::default(),
+        ..PlyMesh::default()
     })
 }
 

@@ -210,6 +210,9 @@ impl<'a> Builder<'a> {
             None => None,
         };
         let emission = emission.as_deref();
+        if let Some(emission) = emission {
+            emission.warn_of_parts(context, &geometry);
+        }
         let size = size(&geometry, emission, destination);
         self.assembly.count(context, size, &span)?;
         let error = geometry.vertex_error(&shape.transforms.start.matrix3);
@@ -219,7 +222,7 @@ impl<'a> Builder<'a> {
                 for place in places {
                     let survey = &mut self.assembly.survey;
                     let placed = place_shape(&geometry, shape, place, survey)?;
-                    let parts = self.emitting_parts(placed, emission)?;
+                    let parts = self.emitting_parts(&geometry, placed, emission)?;
                     self.assembly.add_shape(parts, &skin, &span);
                 }
             }
@@ -252,6 +255,7 @@ impl<'a> Builder<'a> {
     /// The parts of a shape that emit each for itself, in the group of their light.
     fn emitting_parts(
         &mut self,
+        geometry: &Geometry,
         shape: Shape,
         emission: Option<&AreaEmission>,
     ) -> Result<Vec<(Shape, Option<Emission>)>, Fault> {
@@ -264,7 +268,7 @@ impl<'a> Builder<'a> {
             Ok((part, Some(emission)))
         };
         emission
-            .parts(shape)
+            .parts(geometry, shape)
             .into_iter()
             .map(with_emission)
             .collect()

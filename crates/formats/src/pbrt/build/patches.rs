@@ -68,14 +68,11 @@ impl PatchMesh {
                 mesh.uvs.push(self.uv(patch, [u, v]));
             }
         }
-        let row = cells as u32 + 1;
-        for j in 0..cells as u32 {
-            for i in 0..cells as u32 {
-                let a = first + j * row + i;
-                mesh.triangles
-                    .extend([[a, a + 1, a + row + 1], [a, a + row + 1, a + row]]);
-            }
-        }
+        let (cells, row) = (cells as u32, cells as u32 + 1);
+        mesh.add_face((0..cells * cells).flat_map(|cell| {
+            let a = first + cell / cells * row + cell % cells;
+            [[a, a + 1, a + row + 1], [a, a + row + 1, a + row]]
+        }));
     }
 
     fn uv(&self, patch: &[u32; 4], [u, v]: [f64; 2]) -> [f32; 2] {
