@@ -22,7 +22,7 @@ const SHORTEST_GAP: Duration = Duration::from_secs(1);
 const LONGEST_GAP: Duration = Duration::from_secs(10);
 /// or this much progress. Unit: percent.
 const STEP: u32 = 10;
-/// The time left where it is unknown.
+/// The time left in JSON where it is unknown.
 const LONGEST_LEFT: Duration = Duration::from_secs(1 << 30);
 /// The time between two drawings of a bar.
 const TICK: Duration = Duration::from_millis(200);
@@ -51,6 +51,8 @@ pub(crate) struct Reporter<'a> {
     /// Samples of earlier runs.
     before: AtomicU64,
     samples: AtomicU64,
+    /// The time of the last text of the bar, since the start. Unit: milliseconds.
+    drawn: AtomicU64,
     channel: Channel,
 }
 
@@ -80,13 +82,18 @@ impl<'a> Reporter<'a> {
                 Channel::Lines(format, Mutex::new(last))
             }
         };
-        Self {
+        let reporter = Self {
             signals,
             clock,
             before: AtomicU64::new(0),
             samples: AtomicU64::new(0),
+            drawn: AtomicU64::new(0),
             channel,
+        };
+        if let Channel::Bar(bar) = &reporter.channel {
+            reporter.state().draw(bar);
         }
+        reporter
     }
 
     /// Reports on a render that goes on after so many samples.
@@ -111,7 +118,7 @@ impl<'a> Reporter<'a> {
             format.write(&State {
                 progress: 1.0,
                 pass,
-                left: Duration::ZERO,
+                left: Some(Duration::ZERO),
                 ..self.state()
             });
         }
@@ -133,6 +140,7 @@ impl<'a> Reporter<'a> {
         let now = self.passes(self.samples.load(Ordering::Relaxed));
         let before = self.passes(self.before.load(Ordering::Relaxed));
         let (elapsed, rendering) = (start.elapsed(), self.clock.first_pass.elapsed());
+        let is_known = budget.time.is_some() || now - before >= 1.0;
         let left = budget.left([before, now], elapsed, rendering);
         let running = now as u64 + 1;
         State {
@@ -140,7 +148,7 @@ impl<'a> Reporter<'a> {
             pass: budget.passes.map_or(running, |most| running.min(most)),
             passes: budget.passes,
             elapsed,
-            left: left.map_or(LONGEST_LEFT, |left| left.min(LONGEST_LEFT)),
+            left: left.filter(|_| is_known),
         }
     }
 
@@ -161,6 +169,17 @@ impl<'a> Reporter<'a> {
             Channel::Lines(LineFormat::OpenJd, _) => write_openjd("status", text),
             Channel::Lines(..) => say(text),
         }
+    }
+
+    /// Returns true if the text of the bar is old; then another thread leaves it alone.
+    fn is_due(&self) -> bool {
+        let now = self.clock.start.elapsed().as_millis() as u64;
+        let last = self.drawn.load(Ordering::Relaxed);
+        let swap = |last| {
+            self.drawn
+                .compare_exchange(last, now, Ordering::Relaxed, Ordering::Relaxed)
+        };
+        now - last.min(now) >= TICK.as_millis() as u64 && swap(last).is_ok()
     }
 
     /// Writes a line where one is due.
@@ -184,12 +203,8 @@ impl Progress for Reporter<'_> {
         match &self.channel {
             Channel::Silent => {}
             Channel::Bar(bar) => {
-                let state = self.state();
-                let position = (state.progress * BAR_LENGTH as f64) as u64;
-                if position != bar.position() {
-                    bar.set_message(state.pass());
-                    bar.set_prefix(state.left());
-                    bar.set_position(position);
+                if self.is_due() {
+                    self.state().draw(bar);
                 }
             }
             Channel::Lines(format, last) => {
@@ -245,7 +260,8 @@ struct State {
     /// None: there is no limit.
     passes: Option<u64>,
     elapsed: Duration,
-    left: Duration,
+    /// None: it is unknown, before the first pass ends or without a limit of passes or time.
+    left: Option<Duration>,
 }
 
 /// The same as JSON.
@@ -267,9 +283,19 @@ impl State {
         }
     }
 
-    /// `14.9s left`.
+    /// `14.9s left`; empty if it is unknown.
     fn left(&self) -> String {
-        format!("{} left", args::Duration(self.left))
+        let left = self
+            .left
+            .map(|left| format!("{} left", args::Duration(left)));
+        left.unwrap_or_default()
+    }
+
+    /// Shows the state in a bar.
+    fn draw(&self, bar: &ProgressBar) {
+        bar.set_message(self.pass());
+        bar.set_prefix(self.left());
+        bar.set_position((self.progress * BAR_LENGTH as f64) as u64);
     }
 
     fn percent(&self) -> u32 {
@@ -279,7 +305,8 @@ impl State {
     fn plain(&self) -> String {
         let elapsed = args::Duration(self.elapsed);
         let (percent, pass, left) = (self.percent(), self.pass(), self.left());
-        format!("Progress: {percent}% {pass}, {elapsed}, {left}")
+        let comma = if left.is_empty() { "" } else { ", " };
+        format!("Progress: {percent}% {pass}, {elapsed}{comma}{left}")
     }
 
     fn json(&self) -> serde_json::Result<String> {
@@ -289,7 +316,11 @@ impl State {
             pass: self.pass,
             passes: self.passes,
             seconds: round(self.elapsed.as_secs_f64()),
-            left: round(self.left.as_secs_f64()),
+            left: round(
+                self.left
+                    .map_or(LONGEST_LEFT, |left| left.min(LONGEST_LEFT))
+                    .as_secs_f64(),
+            ),
         })
     }
 }
@@ -321,7 +352,7 @@ pub(crate) fn report_failure(args: TalkArgs, failure: &Failure) {
     write_openjd("fail", &message.unwrap_or_default());
 }
 
-/// Writes a line of Open Job Description. A closed stdout is no error.
+/// Writes a line of Open Job Description. The render goes on if it is lost, and the command fails at its end.
 pub(crate) fn write_openjd(kind: &str, message: &str) {
     let _ = print(&format!("openjd_{kind}: {}\n", printable(message)));
 }
@@ -335,7 +366,7 @@ mod tests {
         pass: 29,
         passes: Some(64),
         elapsed: Duration::from_millis(12_345),
-        left: Duration::from_millis(14_899),
+        left: Some(Duration::from_millis(14_899)),
     };
 
     #[test]
@@ -346,6 +377,12 @@ mod tests {
         );
         let expected = r#"{"progress":0.453,"pass":29,"passes":64,"seconds":12.345,"left":14.899}"#;
         assert_eq!(STATE.json().unwrap(), expected);
+        let first = State {
+            left: None,
+            ..STATE
+        };
+        assert_eq!(first.plain(), "Progress: 45% pass 29 of 64, 12.3s");
+        assert!(first.json().unwrap().contains(r#""left":1073741824.0"#));
         let open = State {
             passes: None,
             ..STATE
@@ -376,6 +413,46 @@ mod tests {
             "{state:?}"
         );
         // A quarter of all took ten seconds, after training.
-        assert!((state.left.as_secs_f64() - 6.0).abs() < 0.5, "{state:?}");
+        let left = state.left.unwrap().as_secs_f64();
+        assert!((left - 6.0).abs() < 0.5, "{state:?}");
+    }
+
+    #[test]
+    fn the_bar_of_a_long_render_shows_the_pass_and_from_the_second_the_time_left() {
+        let signals = Signals::watch().unwrap();
+        let budget = Budget {
+            passes: Some(100_000),
+            ..Budget::default()
+        };
+        let start = Instant::now().checked_sub(Duration::from_secs(2)).unwrap();
+        let clock = Clock {
+            budget,
+            samples_per_pass: 100,
+            start,
+            first_pass: start,
+        };
+        let reporter = Reporter::new(Display::Bar, &signals, clock);
+        let Channel::Bar(bar) = &reporter.channel else {
+            panic!("it has a bar")
+        };
+        assert_eq!(bar.message(), "pass 1 of 100000");
+        for (samples, pass, is_known) in [(50, 1, false), (60, 2, true), (2100, 23, true)] {
+            // As after the time between two drawings.
+            reporter.drawn.store(0, Ordering::Relaxed);
+            reporter.advance(samples);
+            assert_eq!(bar.message(), format!("pass {pass} of 100000"));
+            assert_eq!(
+                bar.prefix().ends_with(" left"),
+                is_known,
+                "{}",
+                bar.prefix()
+            );
+        }
+        reporter.advance(1000);
+        assert_eq!(
+            bar.message(),
+            "pass 23 of 100000",
+            "it was drawn just before"
+        );
     }
 }
