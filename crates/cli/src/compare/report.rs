@@ -198,12 +198,13 @@ impl Comparison {
     }
 }
 
-/// Formats a number: errors in scientific notation, the ratio of means, which is near 1, with fixed digits.
+/// Formats a number with four digits: errors in scientific notation, the ratio of means, which is near 1, with
+/// fixed digits. JSON has all digits.
 fn number_text(name: &str, value: Option<f64>) -> String {
     match value {
         None => "none: the sizes differ".to_owned(),
-        Some(value) if name == MEAN_RATIO => format!("{value:.6}"),
-        Some(value) => format!("{value:.6e}"),
+        Some(value) if name == MEAN_RATIO => format!("{value:.4}"),
+        Some(value) => format!("{value:.3e}"),
     }
 }
 
@@ -276,7 +277,7 @@ mod tests {
             "{text}"
         );
         assert!(
-            text.contains("rmse         3.000000e0  1.036757e0 to 4.963243e0"),
+            text.contains("rmse         3.000e0  1.037e0 to 4.963e0"),
             "{text}"
         );
     }
