@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a helper of a test fails the test")]
 
 mod beyond;
+mod choices;
 mod common;
 mod compare;
 mod denoise;
