@@ -7,6 +7,7 @@ __all__ = [
     "ESTIMATOR_VERSION",
     "ISA",
     "LAYERS",
+    "LAYER_NAMES",
     "METRICS",
     "MOST_STRATEGY_VERTICES",
     "VERSION",
@@ -33,6 +34,7 @@ ESTIMATOR_VERSION: int
 ISA: str
 METRICS: list[str]
 LAYERS: list[str]
+LAYER_NAMES: dict[str, str]
 MOST_STRATEGY_VERTICES: int
 
 @final

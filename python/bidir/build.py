@@ -12,6 +12,7 @@ from typing import TypeAlias
 import numpy as np
 import numpy.typing as npt
 
+from bidir import check
 from bidir.errors import SettingsError
 from bidir.scene import Scene, StrPath, from_text
 
@@ -58,16 +59,17 @@ class SceneBuilder:
     materials, media and lights, and the names of their parameters, are those of pbrt-v4.
     """
 
-    def __init__(self, size: tuple[int, int] = (640, 480), *, spp: int = 16) -> None:
+    def __init__(self, size: tuple[int, int] | str = (640, 480), *, spp: int = 16) -> None:
         """Begin an empty scene.
 
         Args:
             size: Width and height of the film. Unit: pixels.
             spp: Samples per pixel, unless a render sets them.
         """
+        width, height = check.size("size", size)
         self._film = (
-            f'Film "rgb" "integer xresolution" {int(size[0])} "integer yresolution" {int(size[1])}\n'
-            f'Sampler "sobol" "integer pixelsamples" {int(spp)}\n'
+            f'Film "rgb" "integer xresolution" {width} "integer yresolution" {height}\n'
+            f'Sampler "sobol" "integer pixelsamples" {check.count("spp", spp, 1, 2**31 - 1)}\n'
             'Integrator "bdpt" "integer maxdepth" 16\n'
         )
         self._camera = ""

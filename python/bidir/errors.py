@@ -18,6 +18,7 @@ __all__ = [
     "ExperimentError",
     "FileError",
     "FilmError",
+    "LayerError",
     "MissingFileError",
     "RenderError",
     "RenderInterruptedError",
@@ -37,6 +38,14 @@ class SettingsError(BidirError, ValueError):
 
     def __init__(self, message: str, **_place: object) -> None:
         super().__init__(message)
+
+
+class LayerError(BidirError, KeyError):
+    """An image lacks a layer."""
+
+    def __str__(self) -> str:
+        """Return the message without quotes, as other errors do."""
+        return str(self.args[0]) if self.args else ""
 
 
 class RenderError(BidirError, RuntimeError):

@@ -10,10 +10,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from bidir import _bidir
+from bidir import _bidir, check
 from bidir.errors import SettingsError
 from bidir.scene import StrPath
-from bidir.settings import Integrator
+from bidir.settings import Integrator, integrator_of
 
 __all__ = ["Experiment", "Results"]
 
@@ -85,11 +85,11 @@ class Experiment:
         cls,
         *,
         scenes: Mapping[str, StrPath],
-        methods: Mapping[str, Integrator],
+        methods: Mapping[str, Integrator | type[Integrator] | str],
         budgets: Sequence[Mapping[str, float]],
         title: str = "An experiment",
         seeds: int = 3,
-        size: tuple[int, int] | None = None,
+        size: tuple[int, int] | str | None = None,
         reference_spp: int | None = None,
         references: Mapping[str, StrPath] | None = None,
         metrics: Sequence[str] = ("relmse",),
@@ -112,9 +112,11 @@ class Experiment:
         Errors: :class:`bidir.SettingsError` if a scene has no reference,
         :class:`bidir.ExperimentError`.
         """
+        seeds = check.count("seeds", seeds, 1)
         lines = [f"title = {_toml(title)}", f"seeds = {seeds}", f"metrics = {_toml(list(metrics))}"]
         if size is not None:
-            lines.append(f'size = "{size[0]}x{size[1]}"')
+            width, height = check.size("size", size)
+            lines.append(f'size = "{width}x{height}"')
         for name, file in scenes.items():
             path = os.fspath(Path(file).absolute())
             lines += ["[[scene]]", f"name = {_toml(name)}", f"file = {_toml(path)}"]
@@ -122,10 +124,13 @@ class Experiment:
             if given is not None:
                 lines.append(f"reference = {_toml(os.fspath(Path(given).absolute()))}")
             elif reference_spp is not None:
-                lines.append(f"reference-spp = {reference_spp}")
+                lines.append(f"reference-spp = {check.count('reference_spp', reference_spp, 1)}")
             else:
                 raise SettingsError(f"the scene {name} has no reference: give reference_spp")
-        for name, integrator in methods.items():
+        for name, given_integrator in methods.items():
+            integrator = integrator_of(given_integrator)
+            if integrator is None:
+                check.refuse(f"methods[{name!r}]", "an integrator", None)
             flags = integrator.flags()
             lines += ["[[method]]", f"name = {_toml(name)}"]
             lines += [f"{flag} = {_setting(flag, value)}" for flag, value in flags.items()]

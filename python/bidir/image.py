@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
-from types import MappingProxyType
 from typing import Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
 from bidir import _bidir
-from bidir.errors import SettingsError
+from bidir.errors import LayerError, SettingsError
 from bidir.film import Film
 from bidir.scene import StrPath
 
@@ -41,6 +40,39 @@ def _pixels(image: npt.ArrayLike | Image) -> Array:
     return np.ascontiguousarray(array)
 
 
+class Layers(Mapping[str, Array]):
+    """The layers of an image, by their names in files, such as ``Z``, or in calls, such as ``depth``."""
+
+    def __init__(self, layers: dict[str, Array]) -> None:
+        """Take the layers by their names in files."""
+        self._layers = layers
+
+    def __getitem__(self, name: str) -> Array:
+        """Return a layer.
+
+        Errors: :class:`bidir.LayerError` with the names of all layers.
+        """
+        layer = self._layers.get(_bidir.LAYER_NAMES.get(name, name))
+        if layer is not None:
+            return layer
+        called = {file: call for call, file in _bidir.LAYER_NAMES.items()}
+        names = [f"{file} ({called[file]})" if file in called else file for file in self._layers]
+        has = f"it has {', '.join(names)}" if names else "it has none"
+        raise LayerError(f"the image has no layer {name!r}: {has}; `layers` of bidir.render adds others")
+
+    def __iter__(self) -> Iterator[str]:
+        """Return the names in files."""
+        return iter(self._layers)
+
+    def __len__(self) -> int:
+        """Return the number of layers."""
+        return len(self._layers)
+
+    def __repr__(self) -> str:
+        """Return the names in files."""
+        return f"<bidir layers {', '.join(self._layers) or 'none'}>"
+
+
 class Image:
     """An image with the variance of its pixels, its layers and its statistics.
 
@@ -56,7 +88,7 @@ class Image:
         named: dict[str, Array] = {}
         for name, channels, data in layers:
             named[name or channels[0]] = _array(data, height, width, len(channels))
-        self._layers = MappingProxyType(named)
+        self._layers = Layers(named)
 
     @property
     def pixels(self) -> Array:
@@ -70,7 +102,7 @@ class Image:
 
     @property
     def layers(self) -> Mapping[str, Array]:
-        """The extra layers by name, such as ``Albedo`` or ``Z``; docs/reference/images.md has their units.
+        """The extra layers by name, such as ``Z`` or ``depth``; docs/reference/images.md has their units.
 
         Shape: (rows, columns, 3) for colours, points and normals, (rows, columns) for numbers.
         ``layers``, ``light_groups`` and ``strategy_layers`` of :func:`bidir.render` select them.

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, TypeAlias
 
-from bidir import _bidir
+from bidir import _bidir, check
 from bidir.errors import SceneError, SceneWarning
 
 __all__ = ["Scene", "StrPath", "from_text", "load"]
@@ -132,18 +132,25 @@ def _told(scene: Scene) -> Scene:
 
 
 def _source(
-    size: tuple[int, int] | None,
+    size: tuple[int, int] | str | None,
     crop: tuple[int, int, int, int] | None,
     lenient: bool,
     memory: list[MemoryFile],
 ) -> dict[str, Any]:
-    return {"size": size, "crop": crop, "lenient": lenient, "memory": memory, "sealed": False}
+    if size is not None:
+        size = check.size("size", size)
+    if crop is not None:
+        left, top, right, bottom = check.whole_numbers("crop", crop, 4, "(0, 0, 320, 240)")
+        crop = (left, top, right, bottom)
+        if left >= right or top >= bottom:
+            check.refuse("crop", "left, top, right and bottom of a rectangle with pixels", crop)
+    return {"size": size, "crop": crop, "lenient": bool(lenient), "memory": memory, "sealed": False}
 
 
 def load(
     path: StrPath,
     *,
-    size: tuple[int, int] | None = None,
+    size: tuple[int, int] | str | None = None,
     crop: tuple[int, int, int, int] | None = None,
     lenient: bool = False,
 ) -> Scene:
@@ -151,7 +158,8 @@ def load(
 
     Args:
         path: The file.
-        size: Width and height of the whole film instead of the file's; the view stays. Unit: pixels.
+        size: Width and height of the whole film instead of the file's, such as ``(640, 480)`` or
+            ``"640x480"``; the view stays. Unit: pixels.
         crop: Left, top, right, bottom of the rendered rectangle, the last two exclusive. Unit: pixels.
         lenient: Replace unsupported features by simpler ones, with a warning.
 
@@ -160,7 +168,7 @@ def load(
     Errors: :class:`bidir.SceneError` with file, line and column if the scene is invalid,
     :class:`bidir.UnsupportedError` for unsupported features, :class:`bidir.MissingFileError`.
     """
-    return _told(Scene(path, _source(size, crop, lenient, [])))
+    return _told(Scene(check.name("path", path), _source(size, crop, lenient, [])))
 
 
 def from_text(
@@ -168,7 +176,7 @@ def from_text(
     *,
     files: Mapping[str, bytes] | None = None,
     name: StrPath = "scene.pbrt",
-    size: tuple[int, int] | None = None,
+    size: tuple[int, int] | str | None = None,
     crop: tuple[int, int, int, int] | None = None,
     lenient: bool = False,
 ) -> Scene:

@@ -11,15 +11,17 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any, Protocol, TypeAlias
 
-from bidir import _bidir
-from bidir.errors import FilmError, RenderError, RenderInterruptedError, SettingsError
+from bidir import _bidir, check
+from bidir.errors import FilmError, RenderError, RenderInterruptedError
 from bidir.film import Film
 from bidir.image import Image
 from bidir.scene import Scene, StrPath, load
-from bidir.settings import Integrator
+from bidir.settings import Integrator, integrator_of
 
 __all__ = ["LAYERS", "Progress", "ProgressBar", "RenderRequest", "Session", "render"]
 
+#: An integrator: its value, its class, or its name on the command line. None: the scene's.
+AnyIntegrator: TypeAlias = Integrator | type[Integrator] | str | None
 #: The names of all layers.
 LAYERS: tuple[str, ...] = tuple(_bidir.LAYERS)
 
@@ -98,16 +100,7 @@ class RenderRequest:
     strategy_layers: int = 0
 
     def native(self, scene: Scene) -> dict[str, Any]:
-        """Return the settings for the native module.
-
-        Errors: :class:`bidir.SettingsError` if a number is out of range.
-        """
-        if self.seed is not None and not 0 <= self.seed < 1 << 64:
-            raise SettingsError(f"seed: {self.seed} is not from 0 to 2**64 - 1")
-        most = _bidir.MOST_STRATEGY_VERTICES
-        if self.strategy_layers != 0 and not 2 <= self.strategy_layers <= most:
-            message = f"{self.strategy_layers} is neither 0 nor from 2 to {most}"
-            raise SettingsError(f"strategy_layers: {message}")
+        """Return the settings for the native module."""
         layers = LAYERS if "all" in self.layers else self.layers
         return {
             "settings": self.integrator.flags() if self.integrator else {},
@@ -119,16 +112,41 @@ class RenderRequest:
 
 
 def render_request(
-    integrator: Integrator | None,
+    integrator: AnyIntegrator,
     seed: int | None,
     layers: Iterable[str],
     light_groups: bool,
     strategy_layers: int,
 ) -> RenderRequest:
-    """Return the arguments of a render as a value."""
-    if isinstance(layers, str):
-        layers = layers.split(",")
-    return RenderRequest(integrator, seed, tuple(layers), light_groups, strategy_layers)
+    """Return the arguments of a render as a value.
+
+    Errors: :class:`bidir.SettingsError` for one of another kind.
+    """
+    named = layers.split(",") if isinstance(layers, str) else layers
+    names = tuple(named) if isinstance(named, Iterable) else (named,)
+    if not all(isinstance(each, str) for each in names):
+        check.refuse("layers", f"names among {', '.join(LAYERS)}", layers)
+    most = _bidir.MOST_STRATEGY_VERTICES
+    vertices = check.count("strategy_layers", strategy_layers, 0, most)
+    if vertices == 1:
+        check.refuse("strategy_layers", f"0, or a whole number from 2 to {most}", vertices)
+    return RenderRequest(
+        integrator_of(integrator),
+        None if seed is None else check.count("seed", seed),
+        names,
+        bool(light_groups),
+        vertices,
+    )
+
+
+def scene_of(scene: Scene | StrPath) -> Scene:
+    """Return a scene, or that of a file.
+
+    Errors: those of :func:`bidir.load`; :class:`bidir.SettingsError` for anything else.
+    """
+    if isinstance(scene, Scene):
+        return scene
+    return load(check.name("scene", scene, "a bidir.Scene or the name of its file"))
 
 
 class Session:
@@ -141,7 +159,7 @@ class Session:
     def __init__(
         self,
         scene: Scene | StrPath,
-        integrator: Integrator | None = None,
+        integrator: AnyIntegrator = None,
         *,
         seed: int | None = None,
         layers: Iterable[str] = (),
@@ -155,7 +173,7 @@ class Session:
 
         Args:
             scene: The scene, or its file.
-            integrator: The integrator; None is the scene's.
+            integrator: The integrator, or its class or name; None is the scene's.
             seed: Random seed; None is the scene's, or 0.
             layers: Extra layers: names of :data:`bidir.LAYERS`, or ``all``.
             light_groups: Keep one layer per light group.
@@ -168,13 +186,11 @@ class Session:
 
         Errors: :class:`bidir.SettingsError`, :class:`bidir.RenderError`, and those of :func:`bidir.load`.
         """
-        self.scene = scene if isinstance(scene, Scene) else load(scene)
+        self.scene = scene_of(scene)
         self.request = render_request(integrator, seed, layers, light_groups, strategy_layers)
         native = self.request.native(self.scene)
-        if threads < 0:
-            raise SettingsError(f"threads: {threads} is below 0")
-        if training is not None and training < 0:
-            raise SettingsError(f"training: {training} is below 0")
+        threads = check.count("threads", threads)
+        training = None if training is None else check.count("training", training)
         # The time of a render, of which training takes at most a tenth, and the time until its end.
         self._native = _bidir.Session(self.scene._native, native, threads, training, _limits)
         self._stopping = "fixed"
@@ -256,7 +272,7 @@ class Session:
 
 def render(
     scene: Scene | StrPath,
-    integrator: Integrator | None = None,
+    integrator: AnyIntegrator = None,
     *,
     spp: int | None = None,
     time: float | None = None,
@@ -274,8 +290,8 @@ def render(
 
     Args:
         scene: The scene, or its file.
-        integrator: The integrator, such as ``bidir.Bdpt(shadow_rays="per-pair")``; None is the
-            scene's, or ``auto`` for glTF.
+        integrator: The integrator, such as ``bidir.Bdpt(shadow_rays="per-pair")``, or a name such as
+            ``"bdpt"``; None is the scene's, or ``auto`` for glTF.
         spp: Samples per pixel; None is the scene's, or unlimited with ``time`` or ``noise``.
         time: Stop within this time; a pass that would be late is left. Unit: seconds.
         noise: Stop at this error relative to the mean; checked from 16 passes on.
@@ -289,11 +305,14 @@ def render(
     complete passes, which ``checkpoint`` contains too; :class:`bidir.FilmError` if ``checkpoint`` belongs to
     another render.
     """
-    scene = scene if isinstance(scene, Scene) else load(scene)
+    spp = None if spp is None else check.count("spp", spp, 1)
+    time = None if time is None else check.number("time", time)
+    noise = None if noise is None else check.number("noise", noise)
+    checkpoint = None if checkpoint is None else check.name("checkpoint", checkpoint)
+    checkpoint_every = check.number("checkpoint_every", checkpoint_every)
+    scene = scene_of(scene)
     open_end = time is not None or noise is not None
     limit = spp if spp is not None else None if open_end else scene.spp
-    if limit is not None and limit < 1:
-        raise SettingsError(f"spp: {limit} is below 1")
     begin = clock.monotonic()
     earlier = _earlier(checkpoint)
 

@@ -11,7 +11,7 @@ import warnings
 from dataclasses import InitVar, dataclass, fields
 from typing import Literal, TypeAlias
 
-from bidir import _bidir
+from bidir import _bidir, check
 
 __all__ = [
     "All",
@@ -123,6 +123,9 @@ class Integrator:
 
         Errors: :class:`bidir.SettingsError` where one has a value that is not known.
         """
+        for field in fields(self):
+            # A rule may be given without parentheses.
+            object.__setattr__(self, field.name, check.value(getattr(self, field.name), Selector))
         _bidir.check_settings(self.flags())
         if "suited" in self.flags().values():
             _warn("suited", "auto")
@@ -224,3 +227,25 @@ class Auto(Lvc):
     It decides ``samples_per_subpath`` and ignores the setting.
     ``film.settings["plan"]`` has the choice.
     """
+
+
+#: The integrators by the names that ``--integrator`` takes.
+INTEGRATORS: dict[str, type[Integrator]] = {
+    kind.__name__.lower(): kind for kind in (Path, Light, Bdpt, Lvc, Auto)
+}
+
+
+def integrator_of(given: Integrator | type[Integrator] | str | None) -> Integrator | None:
+    """Return an integrator by its value, its class or its name.
+
+    Errors: :class:`bidir.SettingsError` for anything else.
+    """
+    if isinstance(given, str):
+        _bidir.check_settings({"integrator": given})
+        return INTEGRATORS[given]()
+    if isinstance(given, type) and given in INTEGRATORS.values():
+        return given()
+    if given is None or isinstance(given, Integrator):
+        return given
+    names = ", ".join(INTEGRATORS)
+    check.refuse("integrator", f"an integrator such as bidir.Bdpt(), or one of {names}", given)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -54,3 +55,30 @@ def test_errors_of_descriptions_have_their_place(tmp_path: Path) -> None:
     assert (raised.value.file, raised.value.line, raised.value.column) == (str(path), 7, 7)
     with pytest.raises(bidir.SettingsError, match="no reference"):
         bidir.Experiment.of(scenes={"a": "a.pbrt"}, methods={"a": bidir.Path()}, budgets=[{"samples": 1}])
+
+
+def test_methods_and_sizes_are_given_by_name(scenes: Path) -> None:
+    def described(**given: object) -> bidir.Experiment:
+        settings: dict[str, Any] = {
+            "methods": {"a": "path", "b": bidir.Bdpt},
+            "seeds": 1,
+            "reference_spp": 16,
+            **given,
+        }
+        return bidir.Experiment.of(
+            scenes={"box": scenes / "cornell.pbrt"},
+            budgets=[{"samples": 1}],
+            **settings,
+        )
+
+    assert described(size="8x6").cells == 2
+    wrong: list[tuple[dict[str, object], str]] = [
+        ({"size": 8}, "size: expected width and height"),
+        ({"seeds": 1.5}, "seeds: expected a whole number from 1"),
+        ({"reference_spp": "16"}, "reference_spp: expected a whole number from 1"),
+        ({"methods": {"a": "pth"}}, "integrator: unknown name `pth`: did you mean `path`"),
+        ({"methods": {"a": None}}, r"methods\['a'\]: expected an integrator, not None"),
+    ]
+    for given, words in wrong:
+        with pytest.raises(bidir.SettingsError, match=words):
+            described(**given)

@@ -51,11 +51,22 @@ def test_layers_have_names_and_shapes(cornell: bidir.Scene) -> None:
     assert layers["Albedo"].shape == cornell.shape
     assert layers["Z"].shape == cornell.shape[:2]
     assert layers["Z"].max() > 0
+    assert layers["depth"] is layers["Z"]
+    assert "depth" in layers
+    assert "normal" not in layers
+    assert set(layers) >= {"Albedo", "Z", "Coverage"}
+    names = r"no layer 'normal': it has Albedo \(albedo\), .*Z \(depth\).*; `layers` of bidir.render"
+    with pytest.raises(KeyError, match=names) as raised:
+        layers["normal"]
+    assert isinstance(raised.value, bidir.LayerError)
+    with pytest.raises(bidir.LayerError, match="no layer 'Z': it has none"):
+        bidir.render(cornell, spp=1).layers["Z"]
     strategies = [name for name in layers if name.startswith("s")]
     assert "s0t2" in "".join(strategies) or strategies
     with pytest.raises(TypeError):
         layers["Z"] = layers["Albedo"]  # type: ignore[index]
     everything = bidir.render(cornell, spp=1, layers="all", light_groups=True).layers
+    assert all(name in everything for name in bidir.LAYERS)
     assert {"Albedo", "P", "N", "Ns", "Z", "Samples", "Variance", "Rays"} <= everything.keys()
 
 
@@ -67,7 +78,7 @@ def test_strategies_add_up_to_the_image(cornell: bidir.Scene) -> None:
 
 @pytest.mark.parametrize("vertices", [-1, 1, 17, 32])
 def test_strategy_layers_have_a_range(cornell: bidir.Scene, vertices: int) -> None:
-    expected = f"strategy_layers: {vertices} is neither 0 nor from 2 to 16"
+    expected = f"strategy_layers: expected .* to 16, not {vertices}"
     with pytest.raises(bidir.SettingsError, match=expected):
         bidir.render(cornell, bidir.Bdpt(), spp=1, strategy_layers=vertices)
 

@@ -191,3 +191,75 @@ def test_a_builder_reports_errors() -> None:
     builder.camera((0, 0, 1), (0, 0, 0)).material("diffuse", reflectanc=(1, 1, 1))
     with pytest.raises(bidir.SceneError, match="did you mean `reflectance`"):
         builder.build()
+
+
+@pytest.mark.parametrize("size", [(32, 24), [32, 24], "32x24", "32X24", np.array([32, 24])])
+def test_sizes_are_numbers_or_texts(scenes: Path, size: tuple[int, int]) -> None:
+    with pytest.warns(bidir.SceneWarning, match="stretched"):
+        assert bidir.load(scenes / "cornell.pbrt", size=size).size == (32, 24)
+
+
+@pytest.mark.parametrize(
+    "size",
+    [
+        256,
+        "256",
+        "256x",
+        "x",
+        "256x256x3",
+        (256,),
+        (1, 2, 3),
+        (0, 4),
+        (4, 70000),
+        (4.5, 4),
+        "4.5x4",
+        {"a": 1},
+    ],
+)
+def test_other_sizes_are_refused(scenes: Path, size: object) -> None:
+    words = r"size: expected width and height, such as \(640, 480\) or \"640x480\", up to 65536 each, not "
+    with pytest.raises(bidir.SettingsError, match=words):
+        bidir.load(scenes / "cornell.pbrt", size=size)  # type: ignore[arg-type]
+    with pytest.raises(bidir.SettingsError, match=words):
+        bidir.from_text(SKY, size=size)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("crop", [3, (1, 2, 3), (0, 0, -1, 4), "0,0,4,4", (4, 0, 4, 4), (0, 0, 1.5, 4)])
+def test_crops_of_another_kind_are_refused(scenes: Path, crop: object) -> None:
+    with pytest.raises(bidir.SettingsError, match="crop: expected "):
+        bidir.load(scenes / "cornell.pbrt", crop=crop)  # type: ignore[arg-type]
+
+
+def test_names_of_another_kind_are_refused() -> None:
+    with pytest.raises(bidir.SettingsError, match="path: expected the name of a file, not 3"):
+        bidir.load(3)  # type: ignore[arg-type]
+
+
+def test_a_missing_scene_has_the_nearest_name_as_its_hint(tmp_path: Path) -> None:
+    folder = tmp_path / "scenes"
+    folder.mkdir()
+    right = folder / "cornell.pbrt"
+    right.write_text(SKY)
+    for missing in (folder / "cornel.pbrt", tmp_path / "scene" / "cornell.pbrt"):
+        with pytest.raises(bidir.MissingFileError, match="no such file; did you mean `") as raised:
+            bidir.load(missing)
+        assert raised.value.hint == f"did you mean `{right}`?"
+
+
+def test_a_film_beyond_memory_has_the_place_of_its_size() -> None:
+    film = 'Film "rgb" "integer xresolution" 65536 "integer yresolution" 65536\n'
+    large = bidir.from_text(film + SKY)
+    with pytest.raises(
+        bidir.RenderError, match=r"scene.pbrt:1:\d+: a film of 65536 x 65536 pixels is too large"
+    ):
+        bidir.render(large, spp=1)
+    with pytest.raises(bidir.RenderError, match="size: a film of 65536 x 65536 pixels is too large"):
+        bidir.render(bidir.from_text(SKY, size=(65536, 65536)), spp=1)
+
+
+def test_builders_check_size_and_samples() -> None:
+    assert bidir.SceneBuilder("8x6").light("infinite").camera((0, 0, 5), (0, 0, 0)).build().size == (8, 6)
+    with pytest.raises(bidir.SettingsError, match="size: expected width and height"):
+        bidir.SceneBuilder(8)  # type: ignore[arg-type]
+    with pytest.raises(bidir.SettingsError, match=r"spp: expected a whole number .*, not 4\.0"):
+        bidir.SceneBuilder((8, 6), spp=4.0)  # type: ignore[arg-type]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import typing
 
+import numpy as np
 import pytest
 
 import bidir
@@ -124,3 +125,90 @@ def test_estimators_are_values() -> None:
 def test_unknown_layers_are_refused(cornell: bidir.Scene) -> None:
     with pytest.raises(bidir.SettingsError, match="layers: unknown name `albeda`: did you mean `albedo`"):
         bidir.render(cornell, spp=1, layers=["albeda"])
+
+
+@pytest.mark.parametrize(
+    ("given", "name"),
+    [
+        ("bdpt", "bdpt"),
+        ("path", "path"),
+        (bidir.Bdpt, "bdpt"),
+        (bidir.Lvc, "lvc"),
+        (bidir.Light(), "light"),
+        (bidir.Auto, "auto"),
+    ],
+)
+def test_integrators_are_given_as_values_classes_or_names(
+    cornell: bidir.Scene, given: str | type[bidir.Integrator] | bidir.Integrator, name: str
+) -> None:
+    image = bidir.render(cornell, given, spp=1)
+    assert image.film.settings["integrator"] == name
+    expected = bidir.render(cornell, bidir.settings.INTEGRATORS[name](), spp=1)
+    assert (image.pixels == expected.pixels).all()
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        ("bpdt", "integrator: unknown name `bpdt`: did you mean `bdpt`?"),
+        ("photons", "integrator: unknown name `photons`: expected path, light"),
+        (3, "integrator: expected an integrator such as .*, or one of path, light, bdpt, lvc, auto, not 3"),
+        (bidir.Integrator, "integrator: expected an integrator"),
+        (bidir.PerPair, "integrator: expected an integrator"),
+        (["bdpt"], r"integrator: expected .*, not \['bdpt'\]"),
+        (np.zeros(3), "integrator: expected an integrator"),
+        (int, "integrator: expected .*, not <class 'int'>"),
+    ],
+)
+def test_other_integrators_are_refused(cornell: bidir.Scene, given: object, words: str) -> None:
+    for use in (bidir.render, bidir.Session):
+        with pytest.raises(bidir.SettingsError, match=words):
+            use(cornell, given)  # type: ignore[arg-type]
+
+
+def test_rules_are_given_as_values_classes_or_texts() -> None:
+    for rule in (bidir.PerPair(), bidir.PerPair, "per-pair"):
+        assert bidir.Bdpt(shadow_rays=rule).flags()["shadow-rays"] == "per-pair"  # type: ignore[arg-type]
+    with pytest.raises(bidir.SettingsError, match=r"Budget needs arguments, such as bidir.Budget\(…\)"):
+        bidir.Bdpt(shadow_rays=bidir.Budget)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("argument", "given", "words"),
+    [
+        ("spp", 4.0, "spp: expected a whole number from 1 to .*, not 4.0"),
+        ("spp", "4", "spp: expected a whole number from 1 to .*, not '4'"),
+        ("spp", 0, "spp: expected .*, not 0"),
+        ("spp", True, "spp: expected .*, not True"),
+        ("spp", 2**64, "spp: expected .*, not 18446744073709551616"),
+        ("time", "10s", "time: expected a number, 0 or more, not '10s'"),
+        ("time", -1, "time: expected .*, not -1"),
+        ("noise", float("nan"), "noise: expected .*, not nan"),
+        ("noise", None.__class__, "noise: expected a number"),
+        ("seed", 1.5, "seed: expected a whole number from 0 to .*, not 1.5"),
+        ("seed", -1, "seed: expected .*, not -1"),
+        ("threads", "two", "threads: expected .*, not 'two'"),
+        ("threads", -1, "threads: expected .*, not -1"),
+        ("strategy_layers", 3.5, "strategy_layers: expected .*, not 3.5"),
+        ("layers", 3, "layers: expected names among albedo, .*, not 3"),
+        ("layers", [3], r"layers: expected names among albedo, .*, not \[3\]"),
+        ("checkpoint", 3, "checkpoint: expected the name of a file, not 3"),
+        ("checkpoint_every", "1m", "checkpoint_every: expected a number, 0 or more, not '1m'"),
+    ],
+)
+def test_arguments_of_another_kind_are_named(
+    cornell: bidir.Scene, argument: str, given: object, words: str
+) -> None:
+    with pytest.raises(bidir.SettingsError, match=words):
+        bidir.render(cornell, bidir.Path(max_depth=1), **{"spp": 1, argument: given})  # type: ignore[arg-type]
+
+
+def test_whole_numbers_of_numpy_are_whole_numbers(cornell: bidir.Scene) -> None:
+    image = bidir.render(cornell, "path", spp=np.int32(2), seed=np.uint64(3))  # type: ignore[arg-type]
+    assert image.film.spp == 2
+    assert image.film.settings["seed"] == "3"
+
+
+def test_a_scene_of_another_kind_is_refused() -> None:
+    with pytest.raises(bidir.SettingsError, match=r"scene: expected a bidir\.Scene or .*, not 3"):
+        bidir.render(3)  # type: ignore[arg-type]

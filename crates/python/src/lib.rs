@@ -53,6 +53,7 @@ mod _bidir {
         module.add("METRICS", metrics.to_vec())?;
         let layers = bidir::film::Aov::NAMES.map(|(name, _)| name);
         module.add("LAYERS", layers.to_vec())?;
+        module.add("LAYER_NAMES", super::settings::layer_names())?;
         let most = bidir::film::Layers::MOST_STRATEGY_VERTICES;
         module.add("MOST_STRATEGY_VERTICES", most)
     }

@@ -11,6 +11,23 @@ use pyo3::prelude::*;
 use std::collections::BTreeMap;
 use std::ffi::CString;
 
+/// Returns the names that layers have in files, by their names in calls.
+pub(crate) fn layer_names() -> BTreeMap<&'static str, &'static str> {
+    let named = Aov::NAMES.into_iter().filter_map(|(name, aov)| {
+        let first = aov.channels().first()?;
+        let alone = first.names.first().copied()?;
+        Some((
+            name,
+            if first.layer.is_empty() {
+                alone
+            } else {
+                first.layer
+            },
+        ))
+    });
+    named.collect()
+}
+
 /// Settings as texts by name.
 pub(crate) type Texts = BTreeMap<String, String>;
 

@@ -14,15 +14,22 @@ from typing import Any, Literal
 import ray
 from ray.exceptions import RayError
 
-from bidir import _bidir
+from bidir import _bidir, check
 from bidir.errors import FilmError, RenderInterruptedError, SettingsError
 from bidir.film import Film
 from bidir.image import Image
 from bidir.ray._crew import ClusterError, Crew, Limits, Worker, connected, first_line, logger
 from bidir.ray._tree import Part, Tree
-from bidir.scene import Scene, StrPath, load
-from bidir.session import Progress, RenderRequest, Reporter, Session, render_request
-from bidir.settings import Integrator
+from bidir.scene import Scene, StrPath
+from bidir.session import (
+    AnyIntegrator,
+    Progress,
+    RenderRequest,
+    Reporter,
+    Session,
+    render_request,
+    scene_of,
+)
 
 __all__ = ["Renderer", "render"]
 
@@ -259,7 +266,7 @@ class Keeper:
 
 def render(
     scene: Scene | StrPath,
-    integrator: Integrator | None = None,
+    integrator: AnyIntegrator = None,
     *,
     spp: int | None = None,
     seed: int | None = None,
@@ -283,7 +290,7 @@ def render(
 
     Args:
         scene: The scene, or its file.
-        integrator: The integrator; None is the scene's.
+        integrator: The integrator, or its class or name; None is the scene's.
         spp: Samples per pixel; None is the scene's.
         seed, layers, light_groups, strategy_layers: As for :class:`bidir.Session`.
         address: Address of the cluster, as for ``ray.init``: ``local`` starts one on this machine, None
@@ -302,12 +309,12 @@ def render(
     :class:`ClusterError`; :class:`bidir.FilmError` if ``checkpoint`` belongs to another render;
     :class:`bidir.RenderInterruptedError` on Ctrl-C.
     """
-    scene = scene if isinstance(scene, Scene) else load(scene)
+    scene = scene_of(scene)
     request = render_request(integrator, seed, layers, light_groups, strategy_layers)
     request.native(scene)
-    passes = scene.spp if spp is None else spp
-    if passes < 1 or task_seconds <= 0 or fan_in < 2:
-        raise SettingsError("spp must be at least 1, task_seconds above 0, and fan_in at least 2")
+    passes = scene.spp if spp is None else check.count("spp", spp, 1)
+    task_seconds = check.number("task_seconds", task_seconds, above=True)
+    fan_in = check.count("fan_in", fan_in, 2)
     path = None if checkpoint is None else Path(checkpoint)
     keeper = Keeper(path, checkpoint_every, passes, scene.digest)
     done = keeper.film.spp if keeper.film else 0
