@@ -68,7 +68,7 @@ pub(crate) fn session(
         Some(Err(SessionError::Stopped)) | None => return Ok(None),
         Some(session) => session,
     };
-    let session = session.map_err(|error| failure(args, loaded, &error))?;
+    let session = session.map_err(|error| failure(loaded, &error))?;
     if let Some(shortage) = session.shortage() {
         console.warning(shortage);
     }
@@ -103,16 +103,11 @@ fn resources(args: &RenderArgs) -> Resources {
 }
 
 /// Returns the failure of the command for an error of the session.
-fn failure(args: &RenderArgs, loaded: &LoadedScene, error: &SessionError) -> Failure {
-    if matches!(error, SessionError::NoPath { .. }) {
-        return Failure::usage(error.to_string());
+fn failure(loaded: &LoadedScene, error: &SessionError) -> Failure {
+    match error {
+        SessionError::NoPath { .. } => Failure::usage(error.to_string()),
+        SessionError::Film(error) => loaded.too_large(error),
     }
-    let [width, height] = loaded.view.film().resolution;
-    let scene = args.scene.scene.display();
-    let message = format!("{scene}: a film of {width} x {height} pixels is too large: {error}");
-    let hint =
-        "make it smaller with --size, render a part of it with --crop, or ask for fewer layers";
-    Failure::new(Exit::Scene, message).with_hint(hint)
 }
 
 #[cfg(test)]

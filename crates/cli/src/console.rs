@@ -1,5 +1,7 @@
 //! Messages on stderr and data on stdout: the only place that writes to either.
 //!
+//! The first write that fails is remembered, and makes a command that otherwise succeeds fail ([`lost`]).
+//!
 //! Names and texts may come from untrusted files. The functions here write no control characters, except
 //! line feeds and tabs of data and the colours of this module. Callers make foreign text [`printable`]
 //! before they join it with other lines.
@@ -10,6 +12,10 @@ use formats::{is_obeyed, printable, printable_lines};
 use miette::{GraphicalReportHandler, GraphicalTheme};
 use std::fmt;
 use std::io::{self, ErrorKind, IsTerminal, Write};
+use std::sync::OnceLock;
+
+/// The message of the first write that failed: the streams belong to the process, and so does their state.
+static LOST: OnceLock<String> = OnceLock::new();
 
 /// The colour of labels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -150,36 +156,44 @@ pub(crate) fn say(line: impl fmt::Display) {
     write_line(&printable(&line.to_string()));
 }
 
-/// Writes a printable line to stderr. Errors are ignored, as they cannot be reported anywhere.
+/// Writes a printable line to stderr. An error is [`lost`] output.
 fn write_line(line: &str) {
-    let _ = writeln!(io::stderr().lock(), "{line}");
+    let _ = noted("stderr", writeln!(io::stderr().lock(), "{line}"));
 }
 
 /// Writes data to stdout. A broken pipe is no error: the reader has read enough.
 pub(crate) fn print(text: &str) -> Result<Exit, Failure> {
     let mut stdout = io::stdout().lock();
-    printed(stdout.write_all(printable_lines(text).as_bytes()))
+    let written = stdout.write_all(printable_lines(text).as_bytes());
+    noted("stdout", written.and_then(|()| stdout.flush()))
 }
 
-/// Writes a help text to stdout, or an error of the command line to stderr.
-pub(crate) fn print_usage(error: &clap::Error) -> Result<Exit, Failure> {
-    let written = error.print();
-    match error.exit_code() {
-        0 => printed(written),
-        // Errors of stderr are ignored, as in `write_line`.
-        _ => Ok(Exit::Usage),
+/// Writes a help text: to stdout if it was asked for, else to stderr.
+pub(crate) fn print_help(text: &clap::Error) -> Result<Exit, Failure> {
+    let written = text.print().and_then(|()| io::stdout().flush());
+    if text.exit_code() == 0 {
+        return noted("stdout", written);
     }
+    let _ = noted("stderr", written);
+    Ok(Exit::Usage)
 }
 
-/// Returns the exit of a command that has `written` to stdout.
-fn printed(written: io::Result<()>) -> Result<Exit, Failure> {
-    match written.and_then(|()| io::stdout().flush()) {
-        Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(Failure::new(
-            Exit::InputOutput,
-            format!("cannot write to stdout: {error}"),
-        )),
+/// Remembers an error of writing to a stream, and returns it as a failure.
+fn noted(stream: &str, written: io::Result<()>) -> Result<Exit, Failure> {
+    match written {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => {
+            let message = format!("cannot write to {stream}: {error}");
+            let _ = LOST.set(message.clone());
+            Err(Failure::new(Exit::InputOutput, message))
+        }
         _ => Ok(Exit::Done),
     }
+}
+
+/// Returns the failure of the first write to stdout or stderr that failed. None: all output arrived.
+pub(crate) fn lost() -> Option<Failure> {
+    let message = LOST.get()?;
+    Some(Failure::new(Exit::InputOutput, message.clone()))
 }
 
 /// Writes a value to stdout as JSON.

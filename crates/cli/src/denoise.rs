@@ -128,9 +128,11 @@ impl Guides {
 
 /// Denoises an image file.
 pub(crate) fn run(args: &DenoiseArgs) -> Result<Exit, Failure> {
-    let format = scene_io::image_format(&args.output, IMAGES)?;
-    scene_io::check_apart([&args.image], &[("--output", &args.output)])?;
-    output::check_file("--output", &args.output)?;
+    let default = || output::named_after(&args.image, "-clean.exr");
+    let written = &args.output.clone().unwrap_or_else(default);
+    let format = scene_io::image_format(written, IMAGES)?;
+    scene_io::check_apart([&args.image], &[("--output", written)])?;
+    output::check_file("--output", written)?;
     let mut layers = formats::image::read_layers(&args.image)?;
     let noisy = noisy(&layers, &args.image)?;
     let guides = Guides::of(&layers);
@@ -146,14 +148,14 @@ pub(crate) fn run(args: &DenoiseArgs) -> Result<Exit, Failure> {
     let clean = filter.apply(layers.size(), &noisy, guides.albedo.as_deref(), normal)?;
     let by = filter.description(&names);
     if format == ImageFormat::Png {
-        formats::image::write_png(&args.output, layers.size(), &clean)?;
+        formats::image::write_png(written, layers.size(), &clean)?;
     } else {
         layers.set_triples(COLOR, &clean)?;
         layers.set_triples(NOISY, &noisy)?;
         layers.set_text("bidir/denoiser", &by);
-        formats::image::write_layers(&args.output, &layers)?;
+        formats::image::write_layers(written, &layers)?;
     }
-    say(format_args!("{by}; wrote {}", args.output.display()));
+    say(format_args!("{by}; wrote {}", written.display()));
     Ok(Exit::Done)
 }
 

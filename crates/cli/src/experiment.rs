@@ -39,7 +39,7 @@ pub(crate) fn run(args: &ExperimentArgs, console: Console) -> Result<Exit, Failu
         return Ok(stopped(args, &signals));
     };
     let sections = experiment.sections(results);
-    write_page(&args.output, results, &sections, &command(args)).map_err(failure)?;
+    write_page(&args.folder(), results, &sections, &command(args)).map_err(failure)?;
     let mut parts: Vec<_> = results.claims.iter().map(claims::text).collect();
     let of_sections = sections.iter().flat_map(|section| &section.tables);
     parts.extend(of_sections.map(table_text));
@@ -50,7 +50,7 @@ pub(crate) fn run(args: &ExperimentArgs, console: Console) -> Result<Exit, Failu
         return Ok(stopped(args, &signals));
     }
     if !args.quiet {
-        say(format_args!("wrote {}", args.output.join(PAGE).display()));
+        say(format_args!("wrote {}", args.folder().join(PAGE).display()));
     }
     Ok(Exit::Done)
 }
@@ -67,7 +67,7 @@ fn command(args: &ExperimentArgs) -> String {
 
 /// Says how to continue if a render finished, and returns the exit.
 fn stopped(args: &ExperimentArgs, signals: &Signals) -> Exit {
-    let (text, exit) = if !has_passes(&args.output) {
+    let (text, exit) = if !has_passes(&args.folder()) {
         let exit = signals.exit().unwrap_or(Exit::Interrupted);
         ("stopped before the first pass", exit)
     } else if args.restart {
@@ -91,7 +91,7 @@ fn read(args: &ExperimentArgs) -> Result<Experiment, Failure> {
     let builtin = Builtin::named(file).map(Builtin::experiment);
     let mut experiment = match builtin {
         Some(experiment) => experiment.map_err(failure)?,
-        None => described(file, &args.output)?,
+        None => described(file, &args.folder())?,
     };
     if args.quick {
         experiment = experiment.quick();
@@ -155,11 +155,11 @@ fn execute(
     signals: &Signals,
     run: impl FnOnce(&Setup, &mut Watch<'_>) -> Result<Outcome, ExperimentError>,
 ) -> Result<Outcome, Failure> {
-    let folder = &args.output;
-    std::fs::create_dir_all(folder).map_err(|error| Failure::io(folder, "make", &error))?;
+    let folder = args.folder();
+    std::fs::create_dir_all(&folder).map_err(|error| Failure::io(&folder, "make", &error))?;
     let _lock = FilmLock::take(&folder.join("records.ndjson"))?;
     let setup = Setup {
-        folder: folder.clone(),
+        folder,
         start: if args.restart {
             Start::Anew
         } else {

@@ -108,6 +108,7 @@ pub(crate) fn not_a_film(path: &Path, flag: &str) -> Failure {
 /// Merges film files of one render with different passes.
 pub(crate) fn merge(args: &MergeArgs) -> Result<Exit, Failure> {
     check_outputs(args)?;
+    output::check_film_name(&args.output)?;
     let _lock = FilmLock::take(&args.output)?;
     let Merged { all, known } = merged(args)?;
     check_kept(&args.output, &all.header)?;

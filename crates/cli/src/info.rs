@@ -58,7 +58,7 @@ struct Info {
 }
 
 /// Light paths that an integrator misses or samples badly.
-#[derive(Debug, Serialize)]
+#[derive(Debug, PartialEq, Serialize)]
 struct BlindSpotInfo {
     /// True if the paths are missing from images; false if they are only noisy.
     missing: bool,
@@ -86,13 +86,18 @@ pub(crate) fn run(args: &InfoArgs, console: Console) -> Result<Exit, Failure> {
         ..args.scene.clone()
     };
     let loaded = scene_io::load(&scene, None)?;
-    loaded.print_warnings(&args.scene, 0, console)?;
     let info = Info::new(args.scene.scene.display().to_string(), &loaded);
     if args.json {
-        print_json(&info)
-    } else {
-        print(&info.text())
+        loaded.check_strict(&args.scene, 0)?;
+        return print_json(&info);
     }
+    // The text has the refused features, and stderr all other warnings.
+    let is_other = |warning: &&String| !info.refused.contains(warning);
+    for warning in info.warnings.iter().filter(is_other) {
+        console.warning(warning);
+    }
+    loaded.check_strict(&args.scene, 0)?;
+    print(&info.text())
 }
 
 impl Info {
@@ -144,10 +149,6 @@ impl Info {
         for refused in &self.refused {
             let _ = writeln!(text, "refused      {}", printable(refused));
         }
-        let is_ignored = |warning: &&String| !self.refused.contains(warning);
-        for ignored in self.warnings.iter().filter(is_ignored) {
-            let _ = writeln!(text, "note         {}", printable(ignored));
-        }
         text
     }
 
@@ -185,7 +186,7 @@ impl Info {
             ("materials", list(&self.materials)),
             ("media", list(&self.media)),
             ("lights", list(&self.lights)),
-            ("light groups", list(&self.light_groups)),
+            ("light groups", self.groups_text()),
             ("textures", self.textures.to_string()),
             ("bounds", self.bounds_text()),
             ("film memory", bytes(film.bytes)),
@@ -196,24 +197,44 @@ impl Info {
         ]
     }
 
-    /// Writes a line for each blind spot, those of the scene's integrator first.
+    /// Writes a line for each blind spot, those of the scene's integrator first. Integrators with the same blind
+    /// spots share their lines.
     fn write_blind_spots(&self, text: &mut String) {
         let integrator = self.settings.request.integrator.map(IntegratorKind::name);
-        let own = |name: &str| Some(name) == integrator;
         let mut integrators: Vec<_> = self.blind_spots.iter().collect();
-        integrators.sort_by_key(|(name, _)| !own(name));
+        integrators.sort_by_key(|(name, _)| Some(**name) != integrator);
+        let mut groups: Vec<(Vec<&str>, &[BlindSpotInfo])> = Vec::new();
         for (name, spots) in integrators {
+            match groups.iter_mut().find(|(_, known)| known == spots) {
+                Some((names, _)) => names.push(*name),
+                None => groups.push((vec![*name], spots.as_slice())),
+            }
+        }
+        for (names, spots) in groups {
+            let name = names.join(", ");
+            let [find, miss, undersample] = match names.len() {
+                1 => ["finds", "misses", "is noisy for"],
+                _ => ["find", "miss", "are noisy for"],
+            };
             if spots.is_empty() {
-                let _ = writeln!(text, "{name:<12} finds all light paths");
+                let _ = writeln!(text, "{name:<12} {find} all light paths");
             }
             for spot in spots {
-                let how = if spot.missing {
-                    "misses"
-                } else {
-                    "is noisy for"
-                };
+                let how = if spot.missing { miss } else { undersample };
                 let _ = writeln!(text, "{name:<12} {how} {}", spot.paths);
             }
+        }
+    }
+
+    /// Returns the light groups with their numbers of lights, such as `2: desk (1 light), default (3 lights)`.
+    fn groups_text(&self) -> String {
+        let lights = |count| if count == 1 { "light" } else { "lights" };
+        let groups = self.light_groups.iter();
+        let groups = groups.map(|(name, &count)| format!("{name} ({count} {})", lights(count)));
+        let groups: Vec<_> = groups.collect();
+        match groups.len() {
+            0 => "none".to_owned(),
+            count => format!("{count}: {}", groups.join(", ")),
         }
     }
 

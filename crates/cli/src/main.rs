@@ -32,8 +32,8 @@ mod threads;
 mod tonemap;
 mod view;
 
-use args::{Cli, ColorArgs, Command};
-use console::{Console, print_usage};
+use args::{Cli, ColorArgs, Command, Unread, version};
+use console::{Console, print, print_help};
 use exit::{Exit, Failure};
 use std::process::ExitCode;
 
@@ -42,8 +42,15 @@ fn main() -> ExitCode {
     signals::survive_size_limits();
     let cli = match Cli::read() {
         Ok(cli) => cli,
-        // Clap returns help and version as errors, too.
-        Err(error) => return ended(print_usage(&error), Console::new(ColorArgs::default())),
+        Err(unread) => {
+            let console = Console::new(ColorArgs::of_words());
+            let printed = match unread {
+                Unread::Help(text) => print_help(&text),
+                Unread::Version => print(&version()),
+                Unread::Wrong(failure) => Err(failure),
+            };
+            return ended(printed, console);
+        }
     };
     let console = Console::new(cli.color);
     for warning in &cli.renamed {
@@ -61,6 +68,11 @@ fn ended(result: Result<Exit, Failure>, console: Console) -> ExitCode {
             failure.exit()
         }
     };
+    let lost = console::lost().filter(|_| exit == Exit::Done);
+    let exit = lost.map_or(exit, |failure| {
+        console.failure(&failure);
+        failure.exit()
+    });
     ExitCode::from(exit.code())
 }
 

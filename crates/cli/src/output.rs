@@ -74,6 +74,7 @@ impl Outputs {
         let films = films.iter().map(|file| ("--checkpoint", file.as_path()));
         let all: Vec<_> = self.files().chain(films).collect();
         scene_io::check_apart(inputs, &all)?;
+        film.map_or(Ok(()), check_film_name)?;
         let film = film.map(|film| ("--checkpoint", film));
         let mut named = self.files().chain(film);
         named.try_for_each(|(flag, file)| check_file(flag, file))
@@ -145,6 +146,25 @@ fn default_image(scene: &Path, film: Option<&Path>) -> PathBuf {
         .filter(|film| film.file_stem().is_some())
         .or_else(|| Some(Path::new(scene.file_stem()?)).filter(|stem| *stem != Path::new("-")));
     name.unwrap_or(Path::new("bidir")).with_extension("exr")
+}
+
+/// Returns the default name of an output, in the current folder: that of the input with another ending.
+pub(crate) fn named_after(input: &Path, ending: &str) -> PathBuf {
+    let stem = input.file_stem().filter(|stem| *stem != "-");
+    let mut name = stem.unwrap_or("bidir".as_ref()).to_owned();
+    name.push(ending);
+    name.into()
+}
+
+/// Refuses a new film file whose name is that of another kind of file.
+pub(crate) fn check_film_name(file: &Path) -> Result<(), Failure> {
+    let ending = file.extension().unwrap_or_default();
+    if ending.eq_ignore_ascii_case("film") || file.exists() {
+        return Ok(());
+    }
+    let message = format!("cannot write `{}`: film files are .film", file.display());
+    let named = file.with_extension("film");
+    Err(Failure::usage(message).with_hint(format!("name it {}", named.display())))
 }
 
 fn hint(flag: &str, folder: &Path) -> String {

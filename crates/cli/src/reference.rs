@@ -5,6 +5,7 @@ use crate::checkpoint::has_passes;
 use crate::console::{Console, say};
 use crate::exit::{Exit, Failure};
 use crate::lock::FilmLock;
+use crate::output;
 use crate::progress::{Clock, Reporter};
 use crate::scene_io::{self, LoadedScene};
 use crate::settings;
@@ -13,7 +14,7 @@ use crate::threads;
 use bidir::driver::{Budget, Resources, SessionError};
 use bidir::film::PixelRect;
 use lab::reference::{self, Error, FILMS, Host, Plan, Provenance, Reference, Subject};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::Instant;
 
 /// Makes a reference, continues one, or adds samples to one.
@@ -21,7 +22,7 @@ pub(crate) fn run(args: &ReferenceArgs, console: Console) -> Result<Exit, Failur
     let signals = Signals::watch()?;
     threads::start(args.threads.count, console);
     let folder = args.output.clone();
-    let folder = folder.unwrap_or_else(|| default_folder(&args.scene.scene));
+    let folder = folder.unwrap_or_else(|| output::named_after(&args.scene.scene, ".reference"));
     let earlier = args.extend.map(|_| Provenance::read(&folder));
     let earlier = earlier.transpose().map_err(failure)?;
     check_folder(&folder)?;
@@ -57,14 +58,6 @@ pub(crate) fn run(args: &ReferenceArgs, console: Console) -> Result<Exit, Failur
         signals: &signals,
     };
     job.run()
-}
-
-/// Returns the default folder, named after the scene.
-fn default_folder(scene: &Path) -> PathBuf {
-    let stem = scene.file_stem().filter(|stem| *stem != "-");
-    let mut name = stem.unwrap_or("bidir".as_ref()).to_owned();
-    name.push(".reference");
-    name.into()
 }
 
 /// Refuses a folder that has other contents than a reference.
@@ -181,7 +174,11 @@ impl Job<'_> {
             reporter.complete();
         }
         reporter.finish();
-        match made.map_err(failure)? {
+        let failed = |error| match error {
+            Error::Session(SessionError::Film(error)) => self.loaded.too_large(&error),
+            error => failure(error),
+        };
+        match made.map_err(failed)? {
             Some(reference) => Ok(self.report(&reference)),
             None => Ok(self.stopped()),
         }

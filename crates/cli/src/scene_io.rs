@@ -5,23 +5,27 @@ use crate::console::Console;
 use crate::exit::{Exit, Failure};
 use crate::signals::Signals;
 use bidir::driver::{Settings, Training};
-use bidir::film::FilmSettings;
+use bidir::film::{FilmError, FilmSettings};
 use bidir::scene::Scene;
 use bidir::view::View;
-use formats::ErrorKind;
 use formats::film::SceneIdentity;
 use formats::image::{ExrImage, ExrLayer, Format};
 use formats::outputs::Output;
 use formats::scene::{Crop, Lamp, LoadOptions, Summary};
+use formats::{ErrorKind, FilePlace};
 use lab::image::Pixels;
 use lab::metric::ErrorMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-pub(crate) use formats::file::{folder_of, remove_leftovers, target_of};
+pub(crate) use formats::file::{folder_of, nearest_file, remove_leftovers, target_of};
 pub(crate) use formats::film::{Developed, FilmFile, FilmHeader, Stopping, is_film};
 pub(crate) use formats::image::{Layers, MetadataValue};
 pub(crate) use formats::outputs::is_same;
+
+/// The hint for a film that is too large.
+const SMALLER: &str =
+    "make it smaller with --size, render a part of it with --crop, or ask for fewer layers";
 
 /// A scene that was read, with the settings of its file.
 pub(crate) struct LoadedScene {
@@ -41,6 +45,8 @@ pub(crate) struct LoadedScene {
     pub(crate) refused: Vec<String>,
     /// The first lamps that no ray can hit.
     pub(crate) lamps: Vec<Lamp>,
+    /// The place of the film's size in the file. None: --size gives it.
+    film_place: Option<FilePlace>,
     /// The parts of the scene.
     pub(crate) summary: Summary,
     /// A hash of all that was read.
@@ -58,8 +64,7 @@ pub(crate) fn load(args: &SceneArgs, film: Option<&FilmArgs>) -> Result<LoadedSc
         isa: args.isa,
         ..LoadOptions::default()
     };
-    let loaded =
-        formats::scene::load(&args.scene, &options).map_err(|error| refused(&args.scene, error))?;
+    let loaded = formats::scene::load(&args.scene, &options).map_err(refused)?;
     let mut warnings = loaded.warnings;
     warnings.extend(film.and_then(|film| crop_warning(film, &loaded.view)));
     warnings.extend(light_warning(&loaded.scene));
@@ -72,6 +77,7 @@ pub(crate) fn load(args: &SceneArgs, film: Option<&FilmArgs>) -> Result<LoadedSc
         warnings,
         refused: loaded.refused,
         lamps: loaded.lamps,
+        film_place: loaded.film_place,
         summary: loaded.summary,
         digest: loaded.digest.to_string(),
         inputs: loaded.inputs,
@@ -105,6 +111,19 @@ impl LoadedScene {
         scene.header(settings, training)
     }
 
+    /// Returns the failure of a film that is too large, at the place that gives its size.
+    pub(crate) fn too_large(&self, error: &FilmError) -> Failure {
+        let [width, height] = self.view.film().resolution;
+        let message = format!("a film of {width} x {height} pixels is too large: {error}");
+        match &self.film_place {
+            Some(place) => {
+                let error = place.error(ErrorKind::Memory, message);
+                Failure::diagnostic(Exit::Scene, error.with_hint(SMALLER))
+            }
+            None => Failure::new(Exit::Scene, format!("--size: {message}")).with_hint(SMALLER),
+        }
+    }
+
     /// Prints the warnings, of which there are `others` more; with `--strict` they are errors.
     pub(crate) fn print_warnings(
         &self,
@@ -115,6 +134,11 @@ impl LoadedScene {
         for warning in &self.warnings {
             console.warning(warning);
         }
+        self.check_strict(args, others)
+    }
+
+    /// Refuses the warnings, of which there are `others` more, under `--strict`.
+    pub(crate) fn check_strict(&self, args: &SceneArgs, others: usize) -> Result<(), Failure> {
         let count = self.warnings.len() + others;
         if args.strict && count > 0 {
             let message = if count == 1 {
@@ -165,28 +189,16 @@ pub(crate) fn exit_of_scene(error: &formats::Error) -> Exit {
     }
 }
 
-/// The failure of a scene that cannot be read; a missing one gets the nearest name as a hint.
-fn refused(scene: &Path, error: formats::Error) -> Failure {
+/// The failure of a scene that cannot be read. That of a missing file has no lines to show, and its hint is one of
+/// its own.
+fn refused(error: formats::Error) -> Failure {
     let exit = exit_of_scene(&error);
-    let is_missing = error.kind() == ErrorKind::MissingFile && !error.has_place();
-    match nearest_file(scene).filter(|_| is_missing) {
-        Some(near) => Failure::new(exit, error.to_string())
-            .with_hint(format!("did you mean `{}`?", near.display())),
-        None => Failure::diagnostic(exit, error),
+    match error.hint() {
+        Some(hint) if error.kind() == ErrorKind::MissingFile && !error.has_place() => {
+            Failure::new(exit, error.message()).with_hint(hint)
+        }
+        _ => Failure::diagnostic(exit, error),
     }
-}
-
-/// The file of the same folder and ending whose name is nearest. None: no name is near.
-pub(crate) fn nearest_file(path: &Path) -> Option<PathBuf> {
-    let name = path.file_name()?.to_str()?;
-    let entries = std::fs::read_dir(folder_of(path)).ok()?;
-    let names = entries.filter_map(|entry| entry.ok()?.file_name().into_string().ok());
-    let mut names: Vec<_> = names
-        .filter(|name| Path::new(name).extension() == path.extension())
-        .collect();
-    names.sort();
-    let near = bidir::names::nearest(name, names.iter().map(String::as_str))?;
-    Some(path.with_file_name(near))
 }
 
 /// Reads an image.

@@ -46,10 +46,12 @@ impl Operator {
 
 /// Tone maps an image file.
 pub(crate) fn run(args: &TonemapArgs) -> Result<Exit, Failure> {
+    let default = || output::named_after(&args.image, ".png");
+    let written = &args.output.clone().unwrap_or_else(default);
     // The output is always a PNG.
-    scene_io::image_format(&args.output, &[ImageFormat::Png])?;
-    scene_io::check_apart([&args.image], &[("--output", &args.output)])?;
-    output::check_file("--output", &args.output)?;
+    scene_io::image_format(written, &[ImageFormat::Png])?;
+    scene_io::check_apart([&args.image], &[("--output", written)])?;
+    output::check_file("--output", written)?;
     let mut image = scene_io::read_image(&args.image)?;
     let scale = libm::exp2f(args.exposure);
     for color in &mut image.data {
@@ -57,8 +59,8 @@ pub(crate) fn run(args: &TonemapArgs) -> Result<Exit, Failure> {
             .operator
             .apply(color.map(|channel| expose(channel, scale)));
     }
-    formats::image::write_png(&args.output, image.size, &image.data)?;
-    say(format_args!("wrote {}", args.output.display()));
+    formats::image::write_png(written, image.size, &image.data)?;
+    say(format_args!("wrote {}", written.display()));
     Ok(Exit::Done)
 }
 

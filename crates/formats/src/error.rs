@@ -1,3 +1,4 @@
+use crate::file::folder_of;
 use crate::source::Excerpt;
 use crate::text::printable;
 use std::fmt;
@@ -27,8 +28,27 @@ struct Details {
     names_file: bool,
 }
 
+/// A place in a file, for errors that are found after it was read.
+#[derive(Clone, Debug)]
+pub struct FilePlace {
+    file: Option<PathBuf>,
+    place: Option<Place>,
+    value: Option<String>,
+}
+
+impl FilePlace {
+    /// Returns an error about this place.
+    pub fn error(&self, kind: ErrorKind, message: impl Into<String>) -> Error {
+        let mut error = Error::new(kind, message);
+        error.0.file.clone_from(&self.file);
+        error.0.place.clone_from(&self.place);
+        error.0.value.clone_from(&self.value);
+        error
+    }
+}
+
 /// The place of an error in a text.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Place {
     /// The line, counted from 1.
     pub(crate) line: usize,
@@ -113,9 +133,19 @@ impl Error {
         self
     }
 
-    pub(crate) fn with_hint(mut self, hint: impl Into<String>) -> Self {
+    /// Adds a hint, which says what to do.
+    #[must_use]
+    pub fn with_hint(mut self, hint: impl Into<String>) -> Self {
         self.0.hint = Some(hint.into());
         self
+    }
+
+    /// Returns the place of the error.
+    pub(crate) fn into_place(self) -> FilePlace {
+        let Details {
+            file, place, value, ..
+        } = *self.0;
+        FilePlace { file, place, value }
     }
 
     /// Returns the kind of the error.
@@ -189,9 +219,9 @@ impl std::error::Error for Error {}
 pub fn cannot(action: &str, file: &Path, error: &std::io::Error) -> String {
     use std::io::ErrorKind::{FileTooLarge, IsADirectory, NotFound, PermissionDenied, StorageFull};
     let reason = match error.kind() {
-        // Writing creates the file, but not its folder.
-        NotFound if action == "write" => "no such folder".to_owned(),
-        NotFound => "no such file".to_owned(),
+        // Writing creates the file, but not its folder; some folders of the system take no files.
+        NotFound if action == "write" && !folder_of(file).is_dir() => "no such folder".to_owned(),
+        NotFound if action != "write" => "no such file".to_owned(),
         IsADirectory => "it is a folder".to_owned(),
         PermissionDenied => "permission denied".to_owned(),
         StorageFull => "the disk is full".to_owned(),

@@ -10,6 +10,7 @@
 //! killed: so the next writer of `NAME` can [`remove_leftovers`] without removing files in use.
 
 use crate::error::{Error, Result};
+use bidir::names::nearest;
 use std::ffi::OsStr;
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{self, Write};
@@ -98,6 +99,49 @@ pub fn folder_of(path: &Path) -> &Path {
         Some(folder) if !folder.as_os_str().is_empty() => folder,
         _ => Path::new("."),
     }
+}
+
+/// Returns the existing file of a similar name and the same ending, in this folder or one of a similar name. None:
+/// no name is near.
+pub fn nearest_file(path: &Path) -> Option<PathBuf> {
+    let folder = match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => Some(nearest_folder(folder)?),
+        _ => None,
+    };
+    let name = path.file_name()?;
+    let in_folder = |name: &OsStr| folder.as_deref().unwrap_or(Path::new("")).join(name);
+    if folder.as_deref() != path.parent() && in_folder(name).is_file() {
+        return Some(in_folder(name));
+    }
+    let has_ending = |near: &Path| near.extension() == path.extension();
+    let near = nearest_entry(folder.as_deref(), name, has_ending)?;
+    Some(in_folder(near.as_ref()))
+}
+
+/// Returns the folder itself if it exists, else one of a similar name. None: no name is near.
+fn nearest_folder(folder: &Path) -> Option<PathBuf> {
+    if folder.as_os_str().is_empty() || folder.is_dir() {
+        return Some(folder.to_owned());
+    }
+    let parent = nearest_folder(folder.parent()?)?;
+    let is_folder = |near: &Path| parent.join(near).is_dir();
+    let near = nearest_entry(Some(&parent), folder.file_name()?, is_folder)?;
+    Some(parent.join(near))
+}
+
+/// Returns the name nearest to `name` among those of a folder's entries that are wanted.
+fn nearest_entry(
+    folder: Option<&Path>,
+    name: &OsStr,
+    is_wanted: impl Fn(&Path) -> bool,
+) -> Option<String> {
+    let folder = folder.filter(|folder| !folder.as_os_str().is_empty());
+    let entries = std::fs::read_dir(folder.unwrap_or(Path::new("."))).ok()?;
+    let names = entries.filter_map(|entry| entry.ok()?.file_name().into_string().ok());
+    let mut names: Vec<_> = names.filter(|name| is_wanted(Path::new(name))).collect();
+    names.sort();
+    let near = nearest(name.to_str()?, names.iter().map(String::as_str))?;
+    Some(near.to_owned())
 }
 
 /// Removes the temporary files of `path` that killed writers left behind: those of this machine that are

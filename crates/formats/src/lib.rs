@@ -24,7 +24,7 @@ pub mod pbrt;
 pub mod ply;
 pub mod scene;
 
-pub use error::{Error, ErrorKind, Result, cannot};
+pub use error::{Error, ErrorKind, FilePlace, Result, cannot};
 pub use repair::Repairs;
 pub use source::{FileId, SourceMap, Span};
 pub use text::{is_obeyed, number, printable, printable_lines};

@@ -3,7 +3,8 @@
 pub use crate::files::{Files, InMemory};
 pub use crate::import::{Crop, Lamp, LoadOptions, Loaded, SceneDigest, SceneSettings, Summary};
 
-use crate::error::Result;
+use crate::error::{Error, ErrorKind, Result};
+use crate::file::nearest_file;
 use crate::{gltf, pbrt};
 use std::path::Path;
 
@@ -15,9 +16,22 @@ pub fn load(path: &Path, options: &LoadOptions) -> Result<Loaded> {
 
 /// Does the same as [`load`] with files from `files`.
 pub fn load_from(path: &Path, options: &LoadOptions, files: &Files) -> Result<Loaded> {
-    if gltf::is_gltf(path) {
+    let loaded = if gltf::is_gltf(path) {
         gltf::load_from(path, options, files)
     } else {
         pbrt::load_from(path, options, files)
+    };
+    loaded.map_err(|error| with_nearest(error, path, files))
+}
+
+/// Adds the nearest existing name to the error of a missing scene file.
+fn with_nearest(error: Error, path: &Path, files: &Files) -> Error {
+    let is_scene = error.kind() == ErrorKind::MissingFile && !error.has_place();
+    if !is_scene || !files.is_from_disk(path) {
+        return error;
+    }
+    match nearest_file(path) {
+        Some(near) => error.with_hint(format!("did you mean `{}`?", near.display())),
+        None => error,
     }
 }

@@ -1,11 +1,13 @@
 //! Scenes.
 
-use crate::error::of_file;
+use crate::error::{of_file, raise};
 use crate::film::{Inputs, absolute};
 use crate::wait::wait_silently;
 use bidir::driver::Settings;
+use bidir::film::FilmError;
 use bidir::view::View;
 use formats::scene::{Crop, Files, InMemory, LoadOptions, Summary, load_from};
+use formats::{ErrorKind, FilePlace};
 use pyo3::prelude::*;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -26,6 +28,8 @@ pub(crate) struct Scene {
     warnings: Vec<String>,
     summary: Summary,
     files: Vec<PathBuf>,
+    /// The place of the film's size in the file. None: the argument `size` gives it.
+    film_place: Option<FilePlace>,
     /// The files on the disk that the scene reads or names.
     pub(crate) inputs: Inputs,
 }
@@ -62,6 +66,19 @@ pub(crate) fn in_memory(files: Vec<MemoryFile>) -> InMemory {
     memory
 }
 
+impl Scene {
+    /// Makes the error of a film that is too large, at the place that gives its size.
+    pub(crate) fn too_large(&self, py: Python<'_>, error: &FilmError) -> PyErr {
+        let [width, height] = self.view.film().resolution;
+        let message = format!("a film of {width} x {height} pixels is too large: {error}");
+        let text = match &self.film_place {
+            Some(place) => place.error(ErrorKind::Memory, message).to_string(),
+            None => format!("size: {message}"),
+        };
+        raise(py, "RenderError", &text)
+    }
+}
+
 #[pymethods]
 impl Scene {
     /// Reads a scene; see `bidir.load`.
@@ -92,6 +109,7 @@ impl Scene {
             warnings: loaded.warnings,
             summary: loaded.summary,
             files: loaded.files,
+            film_place: loaded.film_place,
             inputs: absolute(loaded.inputs),
         })
     }

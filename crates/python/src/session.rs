@@ -144,18 +144,13 @@ impl Session {
             };
             driver::Session::with_effort(shared, view, own, &resources, effort)
         })?;
-        let session = session.map_err(|error| {
-            let class = match error {
-                driver::SessionError::NoPath { .. } => "SettingsError",
-                driver::SessionError::Film(_) | driver::SessionError::Stopped => "RenderError",
-            };
-            let text = match error {
-                driver::SessionError::Stopped => {
-                    "the time ended in training: give it more time, or make the image smaller"
-                }
-                _ => &error.to_string(),
-            };
-            raise(py, class, text)
+        let session = session.map_err(|error| match &error {
+            driver::SessionError::NoPath { .. } => raise(py, "SettingsError", &error.to_string()),
+            driver::SessionError::Film(error) => scene.too_large(py, error),
+            driver::SessionError::Stopped => {
+                let text = "the time ended in training: give it more time, or make the image smaller";
+                raise(py, "RenderError", text)
+            }
         })?;
         if let Some(shortage) = session.shortage() {
             warn(py, &shortage.to_string())?;

@@ -1,7 +1,8 @@
 //! The flags of `bidir experiment`.
 
 use super::ThreadsArgs;
-use super::values::{Size, positive_number};
+use super::values::{Size, count, positive_number};
+use crate::output;
 use clap::error::ErrorKind;
 use clap::parser::ValueSource;
 use clap::{ArgMatches, Args, Command, ValueHint};
@@ -72,9 +73,9 @@ pub(crate) struct ExperimentArgs {
     /// nine scenes. A file with one of these names is ./paper or ./beyond.
     #[arg(value_name = "FILE.toml", value_hint = ValueHint::FilePath)]
     pub(crate) description: PathBuf,
-    /// Folder for the results, created if it does not exist.
+    /// Folder for the results, created if it does not exist [default: NAME.results].
     #[arg(short, long, value_name = "FOLDER", value_hint = ValueHint::DirPath)]
-    pub(crate) output: PathBuf,
+    output: Option<PathBuf>,
     /// Start over.
     ///
     /// Without it, the command continues from records of the same experiment in the folder, and refuses
@@ -108,6 +109,12 @@ pub(crate) struct ExperimentArgs {
 }
 
 impl ExperimentArgs {
+    /// Returns the folder for the results.
+    pub(crate) fn folder(&self) -> PathBuf {
+        let default = || output::named_after(&self.description, ".results");
+        self.output.clone().unwrap_or_else(default)
+    }
+
     /// Refuses --threads and the flags of the extent beside --ray.
     ///
     /// The nodes choose their own number of threads, and the Python package has no flags for the extent. A
@@ -156,7 +163,7 @@ pub(crate) struct ExtentArgs {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=100_000))]
     seeds: Option<u64>,
     /// Samples per pixel of each integrator of a rendered reference.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1 << 32))]
+    #[arg(long, value_name = "N", value_parser = count(1..=1 << 32))]
     reference_spp: Option<u64>,
 }
 

@@ -1,5 +1,6 @@
 //! The flags of `bidir farm`.
 
+use super::values::count;
 use clap::{Args, Subcommand, ValueHint};
 
 /// The scheduler.
@@ -25,7 +26,7 @@ pub(crate) struct FarmArgs {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=100_000))]
     pub(crate) parts: u64,
     /// Samples per pixel of the whole render [default: the scene's].
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
+    #[arg(long, value_name = "N", value_parser = count(1..=u64::MAX))]
     pub(crate) spp: Option<u64>,
     /// Output image; its name without .exr also names the film files [default: the scene's name].
     #[arg(short, long, value_name = "FILE.exr", value_hint = ValueHint::FilePath)]

@@ -1,5 +1,6 @@
 //! The commands for film files.
 
+use super::values::count;
 use clap::{Args, Subcommand, ValueHint};
 use std::path::PathBuf;
 
@@ -58,7 +59,7 @@ pub(crate) struct MissingArgs {
     pub(crate) files: Vec<PathBuf>,
     /// Number of passes of the whole render.
     #[arg(long, value_name = "N")]
-    #[arg(value_parser = clap::value_parser!(u64).range(1..))]
+    #[arg(value_parser = count(1..=u64::MAX))]
     pub(crate) spp: u64,
     /// Number of parts that the passes are rendered in.
     #[arg(long, value_name = "N")]

@@ -1,14 +1,12 @@
-//! Better messages for errors of the command line: numbers out of range, values of variables, and flags
-//! under the names of other programs.
+//! Messages for errors of the command line, in the form of all other errors: numbers out of range, values of
+//! variables, and flags under the names of other programs.
 
+use crate::exit::Failure;
 use bidir::names::nearest;
 use clap::builder::PossibleValue;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{Arg, Command, Error};
-use formats::printable;
-
 use std::ffi::{OsStr, OsString};
-use std::fmt::Display;
 use std::path::Path;
 
 /// Flags of other programs, the flag of this program, and a hint.
@@ -96,21 +94,33 @@ pub(super) fn accept_negative(command: Command) -> Command {
     command.mut_subcommands(accept_negative)
 }
 
-/// Returns the same error with a better message where there is one.
-pub(super) fn reworded(error: Error, command: &Command, arguments: &[OsString]) -> Error {
+/// Returns true for the errors that are help texts.
+pub(super) fn is_help(kind: ErrorKind) -> bool {
+    matches!(
+        kind,
+        ErrorKind::DisplayHelp | ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand
+    )
+}
+
+/// Returns the failure for an error of `command`, which read these arguments.
+pub(crate) fn explained(error: &Error, command: &Command, arguments: &[OsString]) -> Failure {
     let root = command;
     let command = called(root, arguments);
     let better = match error.kind() {
-        ErrorKind::UnknownArgument => elsewhere(&error, command)
-            .or_else(|| negative(&error, arguments))
-            .or_else(|| one_hyphen(&error, command, arguments))
-            .or_else(|| of_another(&error, command, root)),
-        ErrorKind::ValueValidation | ErrorKind::InvalidValue => value(&error, command, arguments),
-        ErrorKind::InvalidSubcommand => file(&error),
-        ErrorKind::MissingRequiredArgument => needed(&error, arguments),
+        ErrorKind::UnknownArgument => elsewhere(error, command)
+            .or_else(|| negative(error, arguments))
+            .or_else(|| one_hyphen(error, command, arguments))
+            .or_else(|| of_another(error, command, root))
+            .or_else(|| unknown(error, command)),
+        ErrorKind::ValueValidation | ErrorKind::InvalidValue => value(error, command, arguments),
+        ErrorKind::InvalidSubcommand => file(error).or_else(|| no_command(error, command)),
+        ErrorKind::MissingRequiredArgument => {
+            needed(error, arguments).or_else(|| missing(error, command))
+        }
+        ErrorKind::ArgumentConflict => conflict(error),
         _ => None,
     };
-    better.unwrap_or(error)
+    better.unwrap_or_else(|| in_one_line(error, command))
 }
 
 /// Returns the subcommand that the arguments call.
@@ -129,18 +139,91 @@ fn called<'c>(command: &'c Command, arguments: &[OsString]) -> &'c Command {
 fn text(error: &Error, kind: ContextKind) -> Option<&str> {
     match error.get(kind)? {
         ContextValue::String(text) => Some(text),
+        ContextValue::Strings(texts) => texts.first().map(String::as_str),
         _ => None,
     }
 }
 
+/// Returns the name of a flag without its values.
+fn flag_of(argument: &str) -> &str {
+    argument.split([' ', '=']).next().unwrap_or_default()
+}
+
+/// Returns a failure with a hint at the command's help.
+fn see_help(message: String, command: &Command) -> Failure {
+    let name = command.get_bin_name().unwrap_or("bidir");
+    Failure::usage(message).with_hint(format!("see `{name} --help`"))
+}
+
+/// Returns the failure with clap's own words, without its usage.
+fn in_one_line(error: &Error, command: &Command) -> Failure {
+    let text = error.render().to_string();
+    let is_usage = |line: &&str| line.starts_with("Usage:") || line.starts_with("For more");
+    let lines = text.lines().map(str::trim);
+    let lines = lines.take_while(|line| !is_usage(line));
+    let (tips, lines): (Vec<_>, Vec<_>) = lines
+        .filter(|line| !line.is_empty())
+        .partition(|line| line.starts_with("tip:"));
+    let message = lines.join(" ");
+    let message = message.trim_start_matches("error: ").to_owned();
+    match tips.first().and_then(|tip| tip.strip_prefix("tip: ")) {
+        Some(tip) => Failure::usage(message).with_hint(tip),
+        None => see_help(message, command),
+    }
+}
+
+/// Suggests the nearest flag, or says that an argument is one too many.
+fn unknown(error: &Error, command: &Command) -> Option<Failure> {
+    let given = text(error, ContextKind::InvalidArg)?;
+    if !given.starts_with('-') {
+        return Some(see_help(format!("unexpected argument `{given}`"), command));
+    }
+    let message = format!("there is no flag `{}`", flag_of(given));
+    Some(match text(error, ContextKind::SuggestedArg) {
+        Some(near) => Failure::usage(message).with_hint(format!("did you mean `{near}`?")),
+        None => see_help(message, command),
+    })
+}
+
+/// Suggests the nearest command.
+fn no_command(error: &Error, command: &Command) -> Option<Failure> {
+    let given = text(error, ContextKind::InvalidSubcommand)?;
+    let message = format!("there is no command `{given}`");
+    Some(match text(error, ContextKind::SuggestedSubcommand) {
+        Some(near) => Failure::usage(message).with_hint(format!("did you mean `{near}`?")),
+        None => see_help(message, command),
+    })
+}
+
+/// Names the arguments that are missing.
+fn missing(error: &Error, command: &Command) -> Option<Failure> {
+    let ContextValue::Strings(missing) = error.get(ContextKind::InvalidArg)? else {
+        return None;
+    };
+    let names = missing.join(", ").replace(['<', '>'], "");
+    let name = command.get_bin_name().unwrap_or("bidir");
+    Some(see_help(format!("`{name}` needs {names}"), command))
+}
+
+/// Names two flags that exclude each other, or one that is given twice.
+fn conflict(error: &Error) -> Option<Failure> {
+    let given = flag_of(text(error, ContextKind::InvalidArg)?);
+    let other = flag_of(text(error, ContextKind::PriorArg)?);
+    Some(Failure::usage(if given == other {
+        format!("{given} is given more than once")
+    } else {
+        format!("{given} cannot be used with {other}")
+    }))
+}
+
 /// Suggests the flag of this program for a flag of another program.
-fn elsewhere(error: &Error, command: &Command) -> Option<Error> {
+fn elsewhere(error: &Error, command: &Command) -> Option<Failure> {
     let given = text(error, ContextKind::InvalidArg)?;
     let (_, flag, hint) = ELSEWHERE
         .iter()
         .find(|(names, ..)| names.contains(&given))?;
     let message = format!("there is no flag `{given}`");
-    has_flag(command, flag).then(|| raw(error.kind(), message, Some(hint)))
+    has_flag(command, flag).then(|| Failure::usage(message).with_hint(*hint))
 }
 
 fn has_flag(command: &Command, flag: &str) -> bool {
@@ -149,32 +232,28 @@ fn has_flag(command: &Command, flag: &str) -> bool {
 }
 
 /// Suggests two hyphens for a long flag with one, which clap reads as short flags.
-fn one_hyphen(error: &Error, command: &Command, arguments: &[OsString]) -> Option<Error> {
+fn one_hyphen(error: &Error, command: &Command, arguments: &[OsString]) -> Option<Failure> {
     let given = text(error, ContextKind::InvalidArg)?;
     let words = arguments.iter().filter_map(|argument| argument.to_str());
     let flags = words.map(|word| word.split('=').next().unwrap_or_default());
     let mut flags = flags.filter(|flag| flag.starts_with(given));
     let flag = flags.find(|flag| has_flag(command, &format!("-{flag}")))?;
     let message = format!("there is no flag `{flag}`");
-    Some(raw(
-        error.kind(),
-        message,
-        Some(&format!("did you mean `-{flag}`?")),
-    ))
+    Some(Failure::usage(message).with_hint(format!("did you mean `-{flag}`?")))
 }
 
 /// Names the command that has a flag which `command` lacks.
-fn of_another(error: &Error, command: &Command, root: &Command) -> Option<Error> {
+fn of_another(error: &Error, command: &Command, root: &Command) -> Option<Failure> {
     let given = text(error, ContextKind::InvalidArg)?;
     let mut others = root.get_subcommands();
     let other = others.find(|other| has_flag(other, given))?;
     let message = format!("`{}` has no flag `{given}`", command.get_name());
     let hint = format!("it is a flag of `bidir {}`", other.get_name());
-    Some(raw(error.kind(), message, Some(&hint)))
+    Some(Failure::usage(message).with_hint(hint))
 }
 
 /// Explains that a value such as `-1s` or `-1,0,4,4`, which clap reads as a flag, is negative.
-fn negative(error: &Error, arguments: &[OsString]) -> Option<Error> {
+fn negative(error: &Error, arguments: &[OsString]) -> Option<Failure> {
     let given = text(error, ContextKind::InvalidArg)?;
     let digits = given.strip_prefix('-')?;
     if !digits.starts_with(|digit: char| digit.is_ascii_digit()) {
@@ -187,26 +266,28 @@ fn negative(error: &Error, arguments: &[OsString]) -> Option<Error> {
     let pair = texts.windows(2).find(|pair| pair[1].starts_with(given))?;
     let [flag, value] = pair else { return None };
     let message = format!("{flag}: `{value}` is negative");
-    flag.starts_with("--")
-        .then(|| raw(error.kind(), message, None))
+    flag.starts_with("--").then(|| Failure::usage(message))
 }
 
 /// Explains an invalid value with the expected range or names, and with the variable that it comes from.
-fn value(error: &Error, command: &Command, arguments: &[OsString]) -> Option<Error> {
+fn value(error: &Error, command: &Command, arguments: &[OsString]) -> Option<Failure> {
     let named = text(error, ContextKind::InvalidArg)?;
     let given = text(error, ContextKind::InvalidValue)?;
-    let flag = named.split([' ', '=']).next()?.strip_prefix("--")?;
-    let arg = command
-        .get_arguments()
-        .find(|arg| arg.get_long() == Some(flag))?;
+    let mut args = command.get_arguments();
+    let arg = args.find(|arg| arg.to_string() == named)?;
     let variable = variable(arg, given, arguments);
     let reason = std::error::Error::source(error).map(ToString::to_string);
-    if given.is_empty() && reason.is_none() {
-        return None;
-    }
-    let at = variable.unwrap_or_else(|| format!("--{flag}"));
+    let at = variable.unwrap_or_else(|| flag_of(named).replace(['<', '>'], ""));
     let values = arg.get_possible_values();
     let names: Vec<_> = values.iter().map(PossibleValue::get_name).collect();
+    if given.is_empty() && reason.is_none() {
+        return Some(Failure::usage(match &names[..] {
+            [] => named
+                .replace(['<', '>'], "")
+                .replacen([' ', '='], " needs a value: ", 1),
+            names => format!("{at} needs one of {}", names.join(", ")),
+        }));
+    }
     let quoted = format!("`{given}`");
     let message = match reason {
         Some(reason) if is_of_a_number(&reason) => {
@@ -217,26 +298,29 @@ fn value(error: &Error, command: &Command, arguments: &[OsString]) -> Option<Err
         Some(reason) => format!("{at}: {quoted}: {reason}"),
         None => format!("{at}: {quoted} is not one of {}", names.join(", ")),
     };
-    let near = nearest(given, names).map(|near| format!("did you mean `{near}`?"));
-    Some(raw(error.kind(), message, near.as_deref()))
+    let failure = Failure::usage(message);
+    Some(match nearest(given, names) {
+        Some(near) => failure.with_hint(format!("did you mean `{near}`?")),
+        None => failure,
+    })
 }
 
 /// Suggests the command for a file that stands in the place of a command.
-fn file(error: &Error) -> Option<Error> {
+fn file(error: &Error) -> Option<Failure> {
     let given = text(error, ContextKind::InvalidSubcommand)?;
     let ending = Path::new(given).extension()?.to_str()?;
     let hint = match ending.to_ascii_lowercase().as_str() {
         "pbrt" | "gltf" | "glb" => format!("bidir render {given}"),
-        "toml" => format!("bidir experiment {given} -o FOLDER"),
+        "toml" => format!("bidir experiment {given}"),
         "film" => format!("bidir film info {given}"),
         _ => return None,
     };
     let message = format!("there is no command `{given}`");
-    Some(raw(error.kind(), message, Some(&hint)))
+    Some(Failure::usage(message).with_hint(hint))
 }
 
 /// Explains that a flag needs another one.
-fn needed(error: &Error, arguments: &[OsString]) -> Option<Error> {
+fn needed(error: &Error, arguments: &[OsString]) -> Option<Failure> {
     let ContextValue::Strings(missing) = error.get(ContextKind::InvalidArg)? else {
         return None;
     };
@@ -246,7 +330,7 @@ fn needed(error: &Error, arguments: &[OsString]) -> Option<Error> {
         let flag = flags.iter().find(|flag| is_given(arguments, flag))?;
         Some((flag, missing.replace(['<', '>'], "")))
     })?;
-    Some(raw(error.kind(), format!("{flag} needs {needed}"), None))
+    Some(Failure::usage(format!("{flag} needs {needed}")))
 }
 
 /// Returns true if a flag is among the arguments, alone or as `--flag=value`.
@@ -308,12 +392,4 @@ fn expected(arg: &Arg) -> String {
         Some((least, None)) => format!("a whole number, {least} or more"),
         None => "a whole number, 0 or more".to_owned(),
     }
-}
-
-/// Returns an error in the format of [`crate::console::Console`].
-fn raw(kind: ErrorKind, message: impl Display, hint: Option<&str>) -> Error {
-    let message = message.to_string();
-    let hint = hint.map(|hint| format!("\nhint: {}", printable(hint)));
-    let hint = hint.unwrap_or_default();
-    Error::raw(kind, format!("{}{hint}\n", printable(&message)))
 }

@@ -12,7 +12,6 @@ mod mistakes;
 mod reference;
 mod renamed;
 mod render;
-mod shown;
 mod sources;
 mod threads;
 mod tonemap;
@@ -26,6 +25,7 @@ pub(crate) use farm::{FarmArgs, FarmCommand};
 pub(crate) use film::{FilmCommand, MergeArgs, MissingArgs};
 pub(crate) use help::{View, command};
 pub(crate) use long::{LongArgs, Part};
+pub(crate) use mistakes::explained;
 pub(crate) use reference::ReferenceArgs;
 pub(crate) use render::{BudgetArgs, FilmArgs, RenderArgs, TalkArgs};
 pub(crate) use threads::ThreadsArgs;
@@ -33,9 +33,12 @@ pub(crate) use tonemap::TonemapArgs;
 pub(crate) use values::{Duration, PixelBounds, ReplayTarget, Size};
 pub(crate) use view::{ServeAddress, ViewArgs};
 
-use crate::exit::Exit;
+use crate::exit::{Exit, Failure};
+use bidir::ESTIMATOR_VERSION;
+use clap::error::ErrorKind;
 use clap::{Args, FromArgMatches, Parser, Subcommand, ValueHint};
 use sources::Sources;
+use std::ffi::OsString;
 use std::path::PathBuf;
 
 /// Renders pbrt-v4 and glTF scenes with path tracing and bidirectional path tracing.
@@ -56,25 +59,46 @@ pub(crate) struct Cli {
     pub(crate) renamed: Vec<String>,
 }
 
+/// The reason why a command line calls no command.
+pub(crate) enum Unread {
+    /// It asks for this help text, or is too short to be understood.
+    Help(clap::Error),
+    /// It asks for the [`version`].
+    Version,
+    /// It is wrong.
+    Wrong(Failure),
+}
+
+/// Returns the name of the program, its version, and that of its estimators, which decides which films belong
+/// together; and the commit, if `BIDIR_COMMIT` was set when the program was built.
+pub(crate) fn version() -> String {
+    let commit = option_env!("BIDIR_COMMIT").filter(|commit| !commit.is_empty());
+    let commit = commit.map_or_else(String::new, |commit| format!(", commit {commit}"));
+    let program = formats::film::program();
+    format!("{program} (estimator version {ESTIMATOR_VERSION}{commit})\n")
+}
+
 impl Cli {
     /// Reads the command line and the environment.
-    pub(crate) fn read() -> Result<Self, clap::Error> {
-        Self::parsed().map_err(shown::shown)
-    }
-
-    fn parsed() -> Result<Self, clap::Error> {
+    pub(crate) fn read() -> Result<Self, Unread> {
         let arguments: Vec<_> = std::env::args_os().collect();
         let mut command = mistakes::accept_negative(command(View::requested(&arguments)));
-        let matches = command.try_get_matches_from_mut(&arguments);
-        let matches = matches.map_err(|error| mistakes::reworded(error, &command, &arguments))?;
+        Self::parsed(&mut command, &arguments).map_err(|error| match error.kind() {
+            ErrorKind::DisplayVersion => Unread::Version,
+            kind if mistakes::is_help(kind) => Unread::Help(error),
+            _ => Unread::Wrong(explained(&error, &command, &arguments)),
+        })
+    }
+
+    fn parsed(command: &mut clap::Command, arguments: &[OsString]) -> Result<Self, clap::Error> {
+        let matches = command.try_get_matches_from_mut(arguments)?;
         if let Some(("experiment", matches)) = matches.subcommand()
             && let Some(command) = command.find_subcommand_mut("experiment")
         {
             ExperimentArgs::check(command, matches)?;
         }
-        let cli = Self::from_arg_matches(&matches);
-        let mut cli = cli.map_err(|error| error.format(&mut command))?;
-        cli.renamed = renamed::warnings(&arguments, |name| std::env::var(name).ok());
+        let mut cli = Self::from_arg_matches(&matches)?;
+        cli.renamed = renamed::warnings(arguments, |name| std::env::var(name).ok());
         if let Command::Render(args) = &mut cli.command
             && let Some((name, matches)) = matches.subcommand()
             && let Some(command) = command.find_subcommand(name)
@@ -86,13 +110,21 @@ impl Cli {
 }
 
 /// Colour of messages.
-#[derive(Args, Clone, Copy, Debug, Default)]
+#[derive(Args, Clone, Copy, Debug)]
 pub(crate) struct ColorArgs {
     /// Print messages without colour.
     ///
     /// NO_COLOR and TERM=dumb in the environment do the same; FORCE_COLOR turns colour on.
     #[arg(long, global = true)]
     pub(crate) no_color: bool,
+}
+
+impl ColorArgs {
+    /// Finds the flags in a command line that is not understood otherwise.
+    pub(crate) fn of_words() -> Self {
+        let no_color = std::env::args_os().any(|word| word == "--no-color");
+        Self { no_color }
+    }
 }
 
 /// The commands.

@@ -1,6 +1,7 @@
 //! The flags of `bidir reference`.
 
 use super::render::{FilmArgs, TalkArgs};
+use super::values::count;
 use super::{SceneArgs, ThreadsArgs, mistakes};
 use bidir::settings::Request;
 use clap::{Args, FromArgMatches, ValueHint};
@@ -35,11 +36,11 @@ pub(crate) struct ReferenceArgs {
     ///
     /// Includes the samples that the reference has already.
     #[arg(long, value_name = "N", help_heading = "Samples")]
-    #[arg(value_parser = clap::value_parser!(u64).range(1..=MOST_SAMPLES))]
+    #[arg(value_parser = count(1..=MOST_SAMPLES))]
     pub(crate) spp: Option<u64>,
     /// Add N samples per pixel to an existing reference, with its settings.
     #[arg(long, value_name = "N", help_heading = "Samples")]
-    #[arg(value_parser = clap::value_parser!(u64).range(1..=MOST_SAMPLES))]
+    #[arg(value_parser = count(1..=MOST_SAMPLES))]
     #[arg(conflicts_with_all = ["spp", "estimator", "against", "restart", "size", "crops"])]
     pub(crate) extend: Option<u64>,
     /// Start over, and replace an existing reference.
@@ -83,26 +84,20 @@ impl FromStr for EstimatorFlags {
         let command = clap::Command::new("").no_binary_name(true);
         let command = command.disable_help_flag(true);
         // Variables apply to the whole command, not to one of its estimators.
-        let command = Request::augment_args(command)
+        let mut command = Request::augment_args(command)
             .mut_args(|flag| flag.env(clap::builder::Resettable::Reset));
         let mut words: Vec<_> = text.split_whitespace().collect();
         if words.first().is_some_and(|word| !word.starts_with('-')) {
             words.insert(0, "--integrator");
         }
-        let matches = command.clone().try_get_matches_from(words);
+        let matches = command.try_get_matches_from_mut(words);
         let flags = matches.and_then(|matches| Request::from_arg_matches(&matches));
-        flags
-            .map(Self)
-            .map_err(|error| first_line(&mistakes::reworded(error, &command, &[])))
+        flags.map(Self).map_err(|error| {
+            let failure = mistakes::explained(&error, &command, &[]);
+            let message = failure.message().map(|(message, _)| message.to_owned());
+            message.unwrap_or_default()
+        })
     }
-}
-
-/// Returns the first line of an error, without the usage.
-fn first_line(error: &clap::Error) -> String {
-    let text = error.to_string();
-    let line = text.lines().next().unwrap_or_default();
-    let text = line.trim_start_matches("error: ");
-    text.to_owned()
 }
 
 #[cfg(test)]
@@ -120,8 +115,8 @@ mod tests {
         assert_eq!((args.integrator, args.max_depth), (None, Some(3)));
         for (text, part) in [
             ("photons", "--integrator: `photons` is not one of path"),
-            ("bdpt --spp 4", "unexpected argument '--spp'"),
-            ("bdpt path", "unexpected argument 'path'"),
+            ("bdpt --spp 4", "there is no flag `--spp`"),
+            ("bdpt path", "unexpected argument `path`"),
         ] {
             let error = text.parse::<EstimatorFlags>().unwrap_err();
             assert!(error.contains(part), "{error}");

@@ -156,9 +156,9 @@ pub(crate) struct BudgetArgs {
     /// Samples per pixel [default: the scene's].
     ///
     /// With --time or --noise the default is unlimited; the limit that is reached first ends the render.
-    /// A pass takes one sample of every pixel.
+    /// A pass takes one sample of every pixel. 4k is 4000, 1e6 a million.
     #[arg(long, env = "BIDIR_SPP", value_name = "N")]
-    #[arg(value_parser = clap::value_parser!(u64).range(1..))]
+    #[arg(value_parser = values::count(1..=u64::MAX))]
     pub(crate) spp: Option<u64>,
     /// Stop after this time: 90, 90s, 10m, 1h30m.
     ///

@@ -15,9 +15,9 @@ pub(crate) struct TonemapArgs {
     /// Image: .exr, .hdr, .pfm, .png, .jpg, .tga or .webp.
     #[arg(value_hint = ValueHint::FilePath)]
     pub(crate) image: PathBuf,
-    /// Output image, 8-bit sRGB.
+    /// Output image, 8-bit sRGB [default: NAME.png].
     #[arg(short, long, value_name = "OUT.png", value_hint = ValueHint::FilePath)]
-    pub(crate) output: PathBuf,
+    pub(crate) output: Option<PathBuf>,
     /// Exposure in stops: 1 doubles the light, -1 halves it.
     #[arg(long, value_name = "STOPS", default_value_t = 0.0, value_parser = stops)]
     #[arg(allow_negative_numbers = true)]

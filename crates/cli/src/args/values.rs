@@ -19,6 +19,42 @@ where
     })
 }
 
+/// Returns a parser of whole numbers in a range: `4096`, `4k` (4000), `2M`, `1e6`.
+pub(crate) fn count(
+    range: RangeInclusive<u64>,
+) -> impl Fn(&str) -> Result<u64, String> + Clone + Send + Sync + 'static {
+    move |text: &str| {
+        let number = whole_number(text).filter(|number| range.contains(number));
+        number.ok_or_else(|| format!("`{text}` is not {}", whole_numbers(&range)))
+    }
+}
+
+/// Reads a whole number, which may have a unit or an exponent.
+fn whole_number(text: &str) -> Option<u64> {
+    let text = text.trim();
+    if let Ok(number) = text.parse() {
+        return Some(number);
+    }
+    let units = [('k', 1e3), ('K', 1e3), ('M', 1e6), ('G', 1e9)];
+    let mut units = units.into_iter();
+    let found = units.find_map(|(letter, unit)| Some((text.strip_suffix(letter)?, unit)));
+    let (number, unit) = found.unwrap_or((text, 1.0));
+    let value = number.parse::<f64>().ok()? * unit;
+    let whole = value.round();
+    // Whole numbers beyond 2⁵³ have no exact floats. NaN fails the comparisons, too.
+    let is_whole = (value - whole).abs() <= 1e-9 * whole && whole <= (1_u64 << 53) as f64;
+    is_whole.then_some(whole as u64)
+}
+
+/// Describes the whole numbers in a range for messages.
+fn whole_numbers(range: &RangeInclusive<u64>) -> String {
+    match (*range.start(), *range.end()) {
+        (1, u64::MAX) => "a whole number above 0".to_owned(),
+        (least, u64::MAX) => format!("a whole number, {least} or more"),
+        (least, most) => format!("a whole number from {least} to {most}"),
+    }
+}
+
 /// Reads the name of an instruction set that this machine supports.
 pub(crate) fn isa(name: &str) -> Result<accel::Isa, String> {
     let isa = name
@@ -219,6 +255,37 @@ impl fmt::Display for Duration {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn counts_have_units_and_exponents() {
+        let read = |text| count(1..=u64::MAX)(text).ok();
+        for (text, expected) in [
+            ("64", 64),
+            (" 64 ", 64),
+            ("4k", 4000),
+            ("4K", 4000),
+            ("2.3k", 2300),
+            ("1.5M", 1_500_000),
+            ("1G", 1_000_000_000),
+            ("1e6", 1_000_000),
+            ("1e9", 1_000_000_000),
+            ("2.5E3", 2500),
+            ("4.0", 4),
+            ("18446744073709551615", u64::MAX),
+        ] {
+            assert_eq!(read(text), Some(expected), "{text}");
+        }
+        for text in [
+            "", "k", "0", "0k", "-1", "-4k", "4.5", "1e-3", "4m", "4kk", "1e400", "inf", "nan",
+            "1e17", "4 000", "0x10",
+        ] {
+            assert_eq!(read(text), None, "{text}");
+        }
+        assert_eq!(
+            count(1..=100)("1k").unwrap_err(),
+            "`1k` is not a whole number from 1 to 100"
+        );
+    }
 
     #[track_caller]
     fn check_duration(text: &str, expected: Option<f64>) {

@@ -1,7 +1,7 @@
 //! The flags of `bidir view`.
 
 use super::render::FilmArgs;
-use super::{SceneArgs, ThreadsArgs};
+use super::{SceneArgs, ThreadsArgs, values};
 use bidir::settings::Request;
 use clap::Args;
 use std::net::{IpAddr, Ipv4Addr, SocketAddr};
@@ -37,7 +37,7 @@ pub(crate) struct ViewArgs {
     pub(crate) film: FilmArgs,
     /// Stop rendering at this number of samples per pixel; the page stays [default: unlimited].
     #[arg(long, env = "BIDIR_SPP", value_name = "N", help_heading = "Stopping")]
-    #[arg(value_parser = clap::value_parser!(u64).range(1..))]
+    #[arg(value_parser = values::count(1..=u64::MAX))]
     pub(crate) spp: Option<u64>,
     /// The settings of the estimator.
     #[command(flatten)]

@@ -25,7 +25,7 @@ pub(super) fn run(
     let mut command = Command::new(&python);
     command.args(["-m", "bidir.ray", "experiment"]);
     command.arg(&args.description);
-    command.arg("--output").arg(&args.output);
+    command.arg("--output").arg(args.folder());
     command.args(["--address", address]);
     let flags = [
         (args.quick, "--quick"),

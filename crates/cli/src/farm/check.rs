@@ -1,9 +1,10 @@
 //! Checks of a job that would otherwise fail on every machine of a farm.
 
 use super::Job;
-use crate::args::Cli;
+use crate::args::{Cli, explained};
 use crate::exit::Failure;
 use crate::scene_io::{self, ImageFormat};
+use clap::error::ErrorKind;
 use clap::parser::ValueSource;
 use clap::{CommandFactory, Parser};
 use formats::is_obeyed;
@@ -11,10 +12,16 @@ use std::iter;
 use std::path::Path;
 
 /// The flags of `bidir render` that are refused after `--`, and the reasons.
-const REFUSED: [(&[&str], &str); 4] = [
+const REFUSED: [(&[&str], &str); 6] = [
     (
-        &["output", "stats", "replay", "serve", "display_server"],
-        "all parts would use it",
+        &["output", "stats", "pyramid", "svg", "json", "replay"],
+        "all parts would write it",
+    ),
+    (&["serve", "display_server"], "all parts would use it"),
+    (
+        &["denoise"],
+        "parts write film files, which are not denoised; give `--aov albedo,shading-normal` and use `bidir \
+         denoise` on the image",
     ),
     (&["time", "noise"], "parts would end with passes missing"),
     (
@@ -118,14 +125,70 @@ fn check_flags(job: &Job<'_>) -> Result<(), Failure> {
     let Err(error) = Cli::try_parse_from(words.into_iter().chain(more)) else {
         return Ok(());
     };
-    let text = error.render().to_string();
-    let is_usage = |line: &&str| line.starts_with("Usage:") || line.starts_with("For more");
-    let lines = text
-        .lines()
-        .map(str::trim)
-        .take_while(|line| !is_usage(line));
-    let lines: Vec<_> = lines.filter(|line| !line.is_empty()).collect();
-    let message = lines.join("; ");
+    let message = match error.kind() {
+        ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => {
+            "parts cannot print texts instead of rendering".to_owned()
+        }
+        _ => {
+            let mut command = Cli::command();
+            command.build();
+            let failure = explained(&error, &command, &["bidir", "render"].map(Into::into));
+            let message = failure.message().map(|(message, _)| message.to_owned());
+            message.unwrap_or_default()
+        }
+    };
     let hint = "see `bidir render --help` for the flags that can follow `--`";
-    refuse(message.trim_start_matches("error: "), hint)
+    refuse(message, hint)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bidir::settings::Request;
+    use clap::{Args, Command};
+    use std::any::TypeId;
+    use std::path::PathBuf;
+
+    /// The flags of `bidir render`, beside the settings of estimators, that are right for every part.
+    const OF_EVERY_PART: [&str; 14] = [
+        "quiet",
+        "progress",
+        "size",
+        "crop",
+        "pixelbounds",
+        "cropwindow",
+        "aov",
+        "light_groups",
+        "strategy_layers",
+        "checkpoint_every",
+        "lenient",
+        "strict",
+        "isa",
+        "threads",
+    ];
+
+    #[test]
+    fn every_flag_is_refused_or_right_for_every_part() {
+        let settings = Request::augment_args(Command::new("settings"));
+        let settings = settings.get_arguments().map(|flag| flag.get_id().as_str());
+        let of_every_part: Vec<_> = settings.chain(OF_EVERY_PART).collect();
+        let refused: Vec<_> = REFUSED.iter().flat_map(|(flags, _)| *flags).collect();
+        let cli = Cli::command();
+        let render = cli.find_subcommand("render").unwrap();
+        let flags: Vec<_> = render
+            .get_arguments()
+            .filter(|flag| !flag.is_positional())
+            .collect();
+        for flag in &flags {
+            let id = flag.get_id().as_str();
+            let is_refused = refused.contains(&&id);
+            assert!(is_refused != of_every_part.contains(&id), "--{id}");
+            // Every file or folder that a flag names would be that of all parts.
+            let names_file = flag.get_value_parser().type_id() == TypeId::of::<PathBuf>();
+            assert!(is_refused || !names_file, "--{id}");
+        }
+        for id in refused {
+            assert!(flags.iter().any(|flag| flag.get_id() == *id), "{id}");
+        }
+    }
 }

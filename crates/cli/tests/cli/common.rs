@@ -179,6 +179,14 @@ impl Ran {
         self
     }
 
+    /// Checks that one place of both outputs has a text.
+    #[track_caller]
+    pub(crate) fn once(self, part: &str) -> Self {
+        let both = format!("{}{}", self.stdout, self.stderr);
+        assert_eq!(both.matches(part).count(), 1, "{part:?} in: {both}");
+        self
+    }
+
     pub(crate) fn json(&self) -> serde_json::Value {
         serde_json::from_str(&self.stdout).unwrap()
     }

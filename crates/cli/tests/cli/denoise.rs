@@ -45,6 +45,11 @@ fn a_render_loses_its_noise_and_keeps_its_attributes() {
     let Some(ran) = place.denoising("denoise noisy.exr -o clean.exr") else {
         return;
     };
+    let default = place.denoising("denoise noisy.exr").unwrap();
+    default.expect(0).says("wrote noisy-clean.exr");
+    place
+        .run("compare noisy-clean.exr clean.exr --exact")
+        .expect(0);
     ran.expect(0)
         .says("note: `bidir render --aov albedo,shading-normal`")
         .says("Open Image Denoise 2.")
@@ -120,7 +125,7 @@ fn wrong_input_is_an_error() {
         .run("denoise noisy.exr -o out.png --threads 2000")
         .expect(2);
     for (arguments, code, says) in [
-        ("noisy.exr", 2, "--output"),
+        ("", 2, "`bidir denoise` needs IMAGE"),
         ("noisy.exr -o out.jpg", 2, "output images are .exr or .png"),
         ("missing.exr -o out.exr", 4, "missing.exr"),
         ("room.pbrt -o out.exr", 4, "name an image that ends in .exr"),

@@ -70,11 +70,13 @@ fn an_experiment_has_tables_records_and_a_report() {
 
 #[test]
 fn tables_of_one_seed_promise_no_intervals() {
-    place()
-        .run("experiment test.toml -o out --seeds 1")
+    let place = place();
+    place
+        .run("experiment test.toml --seeds 1")
         .expect(0)
         .prints("room, 2 spp: means over 1 seed, without intervals.")
-        .prints("ratios to all, paired by seed, without intervals.");
+        .prints("ratios to all, paired by seed, without intervals.")
+        .says("wrote test.results/report.html");
 }
 
 #[test]

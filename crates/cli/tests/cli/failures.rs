@@ -1,4 +1,5 @@
 use crate::common::{Ran, Workplace, scenes};
+use std::fs;
 
 #[track_caller]
 fn check(arguments: &str, code: i32, says: &str) {
@@ -177,7 +178,7 @@ fn a_file_in_the_place_of_a_command_gets_a_hint() {
     for (file, hint) in [
         ("scenes/room.pbrt", "bidir render scenes/room.pbrt"),
         ("room.GLB", "bidir render room.GLB"),
-        ("a.toml", "bidir experiment a.toml -o FOLDER"),
+        ("a.toml", "bidir experiment a.toml"),
         ("a.film", "bidir film info a.film"),
     ] {
         let says = format!("error: there is no command `{file}`\nhint: {hint}\n");
@@ -195,11 +196,30 @@ fn missing_files_get_a_hint_at_similar_names() {
         "hint: did you mean `./room.pbrt`?\n",
     );
     let place = Workplace::new();
+    fs::create_dir_all(place.path("scenes/rooms")).unwrap();
+    place.write("scenes/cornell.pbrt", "");
+    place.write("scenes/rooms/a.gltf", "");
+    for (missing, near) in [
+        ("scene/cornell.pbrt", "scenes/cornell.pbrt"),
+        ("./scnes/cornell.pbrt", "./scenes/cornell.pbrt"),
+        ("scenes/cornel.pbrt", "scenes/cornell.pbrt"),
+        ("scene/cornel.pbrt", "scenes/cornell.pbrt"),
+        ("scene/room/a.gltf", "scenes/rooms/a.gltf"),
+    ] {
+        for command in ["render", "info"] {
+            let ran = place.run(&format!("{command} {missing}")).expect(4);
+            ran.says(&format!(": no such file\nhint: did you mean `{near}`?\n"));
+        }
+    }
+    for far in ["elsewhere/cornell.pbrt", "scene/other.pbrt"] {
+        let ran = place.run(&format!("render {far}")).expect(4);
+        assert!(!ran.stderr.contains("hint"), "{}", ran.stderr);
+    }
     place
         .run("experiment shadow-rays -o out")
         .expect(4)
         .says("hint: name `paper`, `beyond` or a .toml file\n");
-    std::fs::create_dir(place.path("experiments")).unwrap();
+    fs::create_dir(place.path("experiments")).unwrap();
     place.write("experiments/shadow-rays.toml", "");
     place
         .run("experiment shadow-rays -o out")
@@ -258,7 +278,11 @@ fn flags_of_other_programs_are_recognised() {
         "error: `info` has no flag `--integrator`\nhint: it is a flag of `bidir render`\n",
     );
     // A command without such a setting has no hint.
-    check("tonemap room.exr --width 100", 2, "unexpected argument");
+    check(
+        "tonemap room.exr --width 100",
+        2,
+        "error: there is no flag `--width`\nhint: see `bidir tonemap --help`\n",
+    );
 }
 
 #[test]
@@ -370,14 +394,14 @@ fn unreadable_and_unwritable_files_exit_with_4_before_rendering() {
         ran.says("no such folder\n").says(&elsewhere);
     }
     let place = Workplace::new();
-    std::fs::create_dir(place.path("out")).unwrap();
+    fs::create_dir(place.path("out")).unwrap();
     place
         .run(&format!("render room.pbrt {far} -o out"))
         .expect(4)
         .says(
             "error: cannot write `out`: it is a folder\nhint: name a file, such as out/NAME.exr\n",
         );
-    std::fs::create_dir(place.path("folder.exr")).unwrap();
+    fs::create_dir(place.path("folder.exr")).unwrap();
     place
         .run(&format!("render room.pbrt {far} -o folder.exr"))
         .expect(4)
@@ -440,8 +464,40 @@ fn broken_scenes_exit_with_3_and_show_the_place() {
 
 #[test]
 fn a_film_beyond_memory_is_an_error_of_the_scene() {
-    let message = "room.pbrt: a film of 65536 x 65536 pixels is too large";
-    check("render room.pbrt --size 65536x65536", 3, message);
+    let message = "a film of 65536 x 65536 pixels is too large";
+    let of_flag = format!("error: --size: {message}");
+    check("render room.pbrt --size 65536x65536", 3, &of_flag);
+    let place = Workplace::new();
+    for (name, [width, height], place_of_size) in [
+        ("square", [65536, 65536], "4:34"),
+        ("wide", [65536, 60000], "4:34"),
+        ("high", [60000, 65536], "4:62"),
+    ] {
+        let scene = crate::common::SCENE
+            .replace("xresolution\" 24", &format!("xresolution\" {width}"))
+            .replace("yresolution\" 16", &format!("yresolution\" {height}"));
+        place.write(&format!("{name}.pbrt"), &scene);
+        let says = format!(
+            "error: {name}.pbrt:{place_of_size}: a film of {width} x {height} pixels is too large"
+        );
+        for command in ["render", "reference"] {
+            let ran = place.run(&format!("{command} {name}.pbrt")).expect(3);
+            ran.says(&says)
+                .says("make it smaller with --size")
+                .says("╭─[");
+        }
+        place
+            .run(&format!("render {name}.pbrt --size 8x8 -o a.exr"))
+            .expect(0);
+    }
+    let gltf = r#"{"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
+        "nodes": [{"camera": 0}],
+        "cameras": [{"type": "perspective", "perspective": {"yfov": 1, "aspectRatio": 900, "znear": 1}}]}"#;
+    place.write("wide.gltf", gltf);
+    place
+        .run("render wide.gltf --pyramid out --strategy-layers 16 --integrator bdpt")
+        .expect(3)
+        .says("error: wide.gltf: cameras[0]: a film of 8192 x 720 pixels is too large");
 }
 
 #[test]

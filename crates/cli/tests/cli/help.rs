@@ -186,10 +186,13 @@ fn the_page_of_all_flags_is_current() {
 #[test]
 fn version_completions_and_manual_are_printed() {
     let place = Workplace::new();
-    place
-        .run("--version")
-        .expect(0)
-        .prints(env!("CARGO_PKG_VERSION"));
+    let version = format!("bidir {} (estimator version ", env!("CARGO_PKG_VERSION"));
+    for command in ["", "render", "film info", "farm slurm"] {
+        let ran = place.run(&format!("{command} --version")).expect(0);
+        assert!(ran.stdout.starts_with(&version), "{}", ran.stdout);
+        let number = format!("version {}", bidir::ESTIMATOR_VERSION);
+        assert!(ran.stdout.contains(&number), "{}", ran.stdout);
+    }
     for shell in ["bash", "zsh", "fish"] {
         place
             .run(&format!("completions {shell}"))

@@ -31,14 +31,15 @@ fn light_paths_that_no_strategy_makes_are_listed() {
     place
         .run("info glass.pbrt")
         .expect(0)
-        .prints("bdpt         misses point, spot")
-        .prints("bdpt         is noisy for caustics")
+        .prints("bdpt, auto, lvc miss point, spot")
+        .prints("bdpt, auto, lvc are noisy for caustics")
         .prints("path         misses caustics of point")
         .prints("light        misses everything seen in mirrors");
     place
         .run("info room.pbrt")
         .expect(0)
-        .prints("bdpt         finds all light paths");
+        .prints("bdpt, auto, light, lvc, path find all light paths")
+        .prints("light groups 1: default (2 lights)");
     let info = place.run("info glass.pbrt --json").expect(0).json();
     assert_eq!(info["blind_spots"]["bdpt"][0]["missing"], true);
 }
@@ -55,6 +56,7 @@ fn features_that_a_render_would_refuse_are_listed() {
         .run("info odd.pbrt")
         .expect(0)
         .prints("the material `hair` is not supported")
+        .once("the material `hair` is not supported")
         .prints("refused      odd.pbrt:")
         .prints("the shape `curve` is not supported");
     place.run("render odd.pbrt -o odd.exr").expect(3);
@@ -70,7 +72,10 @@ fn oddities_of_a_scene_cause_warnings() {
     place
         .run("info odd.pbrt")
         .expect(0)
+        .once("odd.pbrt:6:9:")
         .says("warning: odd.pbrt:6:9:");
+    let ran = place.run("info odd.pbrt --json").expect(0);
+    assert_eq!(ran.once("odd.pbrt:6:9:").stderr, "");
     place
         .run("info odd.pbrt --strict")
         .expect(6)

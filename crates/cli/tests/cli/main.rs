@@ -15,6 +15,7 @@ mod help;
 mod info;
 mod layers;
 mod means;
+mod mistakes;
 mod outputs;
 mod progress;
 #[cfg(unix)]

@@ -144,20 +144,102 @@ fn control_characters_in_arguments_and_variables_are_escaped() {
     ran.says(r"BIDIR_SPP: `\u{1b}]0;t");
 }
 
+/// Makes the files that the commands below read.
+#[cfg(target_os = "linux")]
+fn place_of_files() -> Workplace {
+    let place = Workplace::new();
+    let render = "render room.pbrt --size 8x6 -q -o a.exr --checkpoint a.film";
+    place.run(render).expect(0);
+    place.write(
+        "test.toml",
+        "title = \"t\"\nseeds = 1\nsize = \"8x6\"\n[[scene]]\nfile = \"room.pbrt\"\nreference-spp = 16\n\
+         [[method]]\nname = \"a\"\n[[budget]]\nsamples = 2\n",
+    );
+    place
+}
+
 #[cfg(target_os = "linux")]
 #[test]
 fn an_error_of_stdout_is_an_error() {
-    let place = Workplace::new();
+    let place = place_of_files();
     for words in [
         "--help",
         "render -h",
+        "help film",
         "--version",
+        "render --version",
         "man",
+        "man render",
+        "man --markdown",
         "completions bash",
         "info room.pbrt",
+        "info room.pbrt --json",
+        "compare a.exr a.exr",
+        "compare a.exr a.exr --json",
+        "film info a.film",
+        "film info a.film --json",
+        "missing a.film --spp 4",
+        "farm shell room.pbrt --parts 2",
+        "farm k8s room.pbrt --parts 2",
+        "render room.pbrt --replay 1,1,0",
+        "render room.pbrt --replay 1,1,0 --json",
+        "render room.pbrt --size 8x6 -q --progress openjd",
+        "reference room.pbrt --size 8x6 --spp 16 -q --progress openjd",
+        "experiment test.toml -o out",
     ] {
         let full = fs::File::options().write(true).open("/dev/full").unwrap();
-        let ran = Ran::of(place.command(words).stdout(full)).expect(4);
-        ran.says("error: cannot write to stdout: ");
+        let ran = Ran::of(place.command(words).stdout(full));
+        assert_eq!(ran.code, Some(4), "{words}: {}", ran.stderr);
+        ran.once("error: cannot write to stdout: ");
+    }
+    // The image was written all the same.
+    assert!(place.path("room.exr").exists());
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn an_error_of_stderr_is_an_error_of_commands_that_succeed() {
+    let place = place_of_files();
+    for (words, code) in [
+        ("render room.pbrt --size 8x6 -q --progress ndjson", 4),
+        ("render room.pbrt --size 8x6 -q --progress plain", 4),
+        ("render room.pbrt --size 8x6", 4),
+        ("reference room.pbrt --size 8x6 --spp 16", 4),
+        ("tonemap a.exr -o b.png", 4),
+        ("merge a.film -o b.film", 4),
+        ("film verify a.film", 4),
+        ("experiment test.toml -o again", 4),
+        ("render room.pbrt -q", 0),
+        ("render room.pbrt --spp x", 2),
+        ("missing a.film --spp 4", 6),
+        ("", 2),
+    ] {
+        let full = fs::File::options().write(true).open("/dev/full").unwrap();
+        let ran = Ran::of(place.command(words).stderr(full));
+        assert_eq!(ran.code, Some(code), "{words}");
+    }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn readers_that_leave_are_no_error() {
+    use std::process::Stdio;
+
+    let place = place_of_files();
+    for words in [
+        "--help",
+        "man --markdown",
+        "info room.pbrt",
+        "render room.pbrt --size 8x6 -q --progress openjd",
+        "render room.pbrt --size 8x6 --progress ndjson",
+    ] {
+        let mut command = place.command(words);
+        let mut child = command
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        drop((child.stdout.take(), child.stderr.take()));
+        assert_eq!(child.wait().unwrap().code(), Some(0), "{words}");
     }
 }

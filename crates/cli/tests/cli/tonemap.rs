@@ -37,6 +37,15 @@ fn the_default_picture_equals_that_of_the_render() {
     let place = Workplace::new();
     place.run("render room.pbrt -q -o room.exr").expect(0);
     place.run("tonemap room.exr -o same.png").expect(0);
+    fs::create_dir(place.path("out")).unwrap();
+    fs::copy(place.path("room.exr"), place.path("out/copy.exr")).unwrap();
+    place
+        .run("tonemap out/copy.exr")
+        .expect(0)
+        .says("wrote copy.png");
+    place.run("compare copy.png room.png --exact").expect(0);
+    // The default of a PNG would replace it.
+    place.run("tonemap copy.png").expect(4).says("copy.png");
     place.run("compare same.png room.png --exact").expect(0);
     place
         .run("tonemap room.exr -o other.png --operator agx")
@@ -112,7 +121,7 @@ fn wrong_input_is_an_error() {
     let place = Workplace::new();
     write_image(&place, "in.pfm", &[[1.0; 3]]);
     for (arguments, code, says) in [
-        ("in.pfm", 2, "--output"),
+        ("", 2, "`bidir tonemap` needs IMAGE"),
         ("in.pfm -o out.jpg", 2, "output images are .png"),
         (
             "in.pfm -o out.png --operator aces",

@@ -61,6 +61,7 @@ impl<'a> Builder<'a> {
         let nodes = Nodes::of(document, context.layout.render_from_world())?;
         let view = view::find(context, &nodes)?;
         let film = view.film(context)?;
+        let film_place = view.film_place(context);
         let resolution = film.resolution;
         let mut builder = Self {
             document,
@@ -82,6 +83,7 @@ impl<'a> Builder<'a> {
         builder.add_lights(context, &world_from_camera, outlook)?;
         needs.set(builder.needs(view.eye().is_none()));
         let mut assembly = builder.assembly;
+        assembly.film_place = film_place;
         assembly.summary.materials = builder.materials.count();
         assembly.summary.textures = document.root.textures.len();
         let camera = view.camera(resolution, world_from_camera)?;

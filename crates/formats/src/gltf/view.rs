@@ -159,6 +159,12 @@ impl View {
         Some(place.translation.as_dvec3())
     }
 
+    /// Returns the place of the film's size. None: the caller's options give it.
+    pub(super) fn film_place(&self, context: &Context<'_>) -> Option<Place> {
+        let is_given = context.options.resolution.is_some();
+        (!is_given).then(|| self.place.clone())
+    }
+
     /// Returns the film, in the size of the caller's options, else in the camera's aspect ratio.
     pub(super) fn film(&self, context: &Context<'_>) -> Result<FilmSettings, GltfFault> {
         let own = match self.aspect {

@@ -41,6 +41,8 @@ pub(crate) struct Assembly<P> {
     instances: Vec<P>,
     lamps: Vec<Placed<P>>,
     volumes: Volumes,
+    /// The place of the film's size. None: the caller's options give it.
+    pub(crate) film_place: Option<P>,
     /// The camera's point, and the medium that the file names for it.
     pub(crate) camera: Option<(Vec3, MediumId, P)>,
 }
@@ -92,6 +94,7 @@ pub(super) struct Built<P> {
     pub(super) view: View,
     pub(super) settings: SceneSettings,
     pub(super) lamps: Vec<Placed<P>>,
+    pub(super) film_place: Option<P>,
     pub(super) summary: Summary,
 }
 
@@ -119,6 +122,7 @@ impl<P: Clone> Assembly<P> {
             instances: Vec::new(),
             lamps: Vec::new(),
             volumes: Volumes::default(),
+            film_place: None,
             camera: None,
         }
     }
@@ -285,6 +289,7 @@ impl<P: Clone> Assembly<P> {
             view,
             settings: self.settings,
             lamps: self.lamps,
+            film_place: self.film_place,
             summary: self.summary,
         })
     }

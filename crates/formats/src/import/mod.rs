@@ -29,7 +29,7 @@ pub(crate) use precision::VertexError;
 pub(crate) use space::{Layout, Survey, box_corners};
 pub(crate) use volumes::Content as VolumeContent;
 
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{Error, ErrorKind, FilePlace, Result};
 use crate::files::Files;
 use crate::limits;
 use crate::source::Fault;
@@ -84,6 +84,8 @@ pub struct Loaded {
     pub summary: Summary,
     /// The first lamps that no ray can hit.
     pub lamps: Vec<Lamp>,
+    /// The place of the film's size. None: the caller's options give it.
+    pub film_place: Option<FilePlace>,
     /// The identity of the scene.
     pub digest: SceneDigest,
     /// Every file that was read, by each name that it was asked for; the scene file is the first.
@@ -239,7 +241,12 @@ pub(crate) fn load<'a, D: Document>(
         .chain(log.files.clone())
         .collect();
     let is_from_disk = |name: &PathBuf| document.files().is_from_disk(name);
+    let film_place = built.film_place.map(|place| {
+        let fault = Fault::new(ErrorKind::Limit, place, String::new());
+        document.error(fault).into_place()
+    });
     Ok(Loaded {
+        film_place,
         lamps: lamp::unhittable(&built.scene, &built.lamps, text),
         scene: built.scene,
         view: built.view,

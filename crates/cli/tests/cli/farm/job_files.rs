@@ -51,7 +51,7 @@ shell room.pbrt --parts 8 -o .exr => output images are .exr
 shell room.pbrt --parts 8 -o room.part-2.exr => named like a part
 shell room.pbrt --parts 8 -o a.part-x.part-0-of-8.exr => named like a part
 shell room.pbrt --parts 8 -o a\u{7}.exr => has control characters
-shell room.pbrt --parts 8 -- --integrator photon => [possible values: path, light, bdpt, lvc, auto]
+shell room.pbrt --parts 8 -- --integrator photon => `photon` is not one of path, light, bdpt, lvc, auto
 shell room.pbrt --parts 8 -- --bogus => see `bidir render --help`
 shell room.pbrt --parts 8 -- --spp 4 => --spp cannot be given after `--`: give it before
 shell room.pbrt --parts 8 --spp 64 -- --mis power --spp=4 => --spp cannot be given
@@ -63,6 +63,15 @@ shell room.pbrt --parts 8 -- --resume => --resume cannot be given
 shell room.pbrt --parts 8 -- --restart => --restart cannot be given
 shell room.pbrt --parts 8 -- -o a.exr => --output cannot be given
 shell room.pbrt --parts 8 -- --stats a.json => --stats cannot be given
+shell room.pbrt --parts 8 -- --pyramid=pyx --size 8x8 => --pyramid cannot be given after `--`: all parts would
+slurm room.pbrt --parts 8 -- --pyramid pyx => --pyramid cannot be given
+k8s room.pbrt --parts 8 -- --replay 1,1,1 --svg a.svg => cannot be given after `--`: all parts would write it
+hyperqueue room.pbrt --parts 8 -- --denoise => --denoise cannot be given after `--`: parts write film files
+shell room.pbrt --parts 8 -- --outfile a.exr => --output cannot be given
+shell room.pbrt --parts 8 -- --json => --json cannot be given
+shell room.pbrt --parts 8 -- --help => parts cannot print texts instead of rendering
+shell room.pbrt --parts 8 -- other.pbrt => unexpected argument `other.pbrt`
+shell room.pbrt --parts 8 -- --spp4 => there is no flag `--spp4`
 shell room.pbrt --parts 8 -- --serve 80 => --serve cannot be given
 shell room.pbrt --parts 8 -- --replay 1,1,1 => --replay cannot be given
 shell room.pbrt --parts 8 -- --time 1h => --time cannot be given

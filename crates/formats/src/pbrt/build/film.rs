@@ -19,6 +19,8 @@ pub(super) struct BuiltFilm {
     /// Width and height in the file, which determine the camera's view, so that another size shows the same
     /// picture.
     pub(super) own_resolution: [u32; 2],
+    /// The place of the size. None: the caller's options give it.
+    pub(super) place: Option<Span>,
     /// The name of the image.
     pub(super) output: Option<String>,
     /// The layers.
@@ -44,7 +46,9 @@ pub(super) fn build(
         reader.integer("xresolution", 1280, 1)?,
         reader.integer("yresolution", 720, 1)?,
     ];
-    let resolution = reader.context.options.resolution(own, span)?;
+    let size_span = size_place(&mut reader, own);
+    let resolution = reader.context.options.resolution(own, size_span)?;
+    let is_given = reader.context.options.resolution.is_some();
     let mut settings = FilmSettings::new(resolution, filter);
     let described = read_crop(&mut reader, own, resolution)?;
     settings.crop = reader.context.options.crop(described, resolution, span)?;
@@ -58,9 +62,19 @@ pub(super) fn build(
     Ok(BuiltFilm {
         settings,
         own_resolution: own,
+        place: (!is_given).then_some(size_span),
         output,
         aovs,
     })
+}
+
+/// Returns the place of the longer side of a film, else of the film.
+fn size_place(reader: &mut Reader<'_, '_>, [width, height]: [u32; 2]) -> Span {
+    let sides = ["xresolution", "yresolution"];
+    let longer = usize::from(height > width);
+    let mut place = |name| Some(reader.find(ParameterType::Integer, name)?.value_span);
+    let found = place(sides[longer]).or_else(|| place(sides[1 - longer]));
+    found.unwrap_or(reader.span())
 }
 
 /// Returns the film of a scene without one.

@@ -118,6 +118,7 @@ impl<'a> Builder<'a> {
             fillings: Vec::new(),
             last_emission: None,
         };
+        builder.assembly.film_place = film.place;
         builder.add_camera_medium(context, lens.eye)?;
         builder.add_materials(context)?;
         let from_world = [context.layout.render_from_world()];

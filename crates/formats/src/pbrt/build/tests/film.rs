@@ -116,3 +116,34 @@ fn an_infinite_exposure_is_refused_with_its_place() {
     let text = "Film \"rgb\" \"float iso\" 3e38 WorldBegin";
     assert!(load_text(text, &STRICT).view.film().exposure.is_finite());
 }
+
+#[test]
+fn the_size_of_a_film_has_its_place() {
+    let place = |text: &str, options: &LoadOptions| {
+        let found = load_text(text, options).film_place?;
+        Some(found.error(ErrorKind::Memory, "large").to_string())
+    };
+    let sized = LoadOptions {
+        resolution: Some([8, 8]),
+        ..STRICT
+    };
+    for (film, at) in [
+        ("", "1:1"),
+        ("Film \"rgb\"", "1:6"),
+        ("Film \"rgb\" \"integer xresolution\" 4000", "1:34"),
+        ("Film \"rgb\" \"integer yresolution\" 4", "1:34"),
+        (
+            "Film \"rgb\" \"integer xresolution\" 40 \"integer yresolution\" 20",
+            "1:34",
+        ),
+        (
+            "Film \"rgb\" \"integer xresolution\" 40 \"integer yresolution\" 50",
+            "1:59",
+        ),
+    ] {
+        let text = format!("{film} WorldBegin");
+        let expected = format!("s.pbrt:{at}: large");
+        assert_eq!(place(&text, &STRICT), Some(expected), "{film}");
+        assert_eq!(place(&text, &sized), None, "{film}");
+    }
+}

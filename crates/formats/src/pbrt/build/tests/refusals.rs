@@ -32,7 +32,7 @@ fn wrong_parameters_are_errors() {
     );
     check(
         "Film \"rgb\" \"integer xresolution\" 100000 WorldBegin",
-        "s.pbrt:1:6: the film has 100000 × 720 pixels; each side can have 1 to 65536",
+        "s.pbrt:1:34: the film has 100000 × 720 pixels; each side can have 1 to 65536",
     );
     check(
         "Film \"rgb\" \"float cropwindow\" [0 1 0.5 0.5] WorldBegin",
