@@ -483,7 +483,8 @@ fn grids_too_large_or_too_small_to_compute_with_are_refused() {
             "uniformgrid",
             &format!("\"float density\" [{values}] \"integer {size}\" 16385"),
             &format!(
-                "s.pbrt:2:69: the grid has {expected} cells, but may have only 16384 along an axis"
+                "s.pbrt:2:69: the grid has {expected} cells, but may have only 16384 along an axis; \
+                 make it coarser, or cut it into media side by side"
             ),
         );
     }
