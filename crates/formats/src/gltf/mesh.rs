@@ -9,7 +9,7 @@ use super::document::{Context, Document};
 use super::json::Primitive;
 use super::place::{GltfFault, Place};
 use crate::repair::{self, Repairs};
-use bidir::math::{Vec2, Vec3};
+use bidir::math::Vec2;
 
 /// A primitive in the space of its mesh, with default morph weights applied.
 #[derive(Clone, Debug, Default)]

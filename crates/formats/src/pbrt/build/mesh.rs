@@ -8,7 +8,6 @@ use crate::error::ErrorKind;
 use crate::limits::MOST_LEVELS;
 use crate::pbrt::parameters::{Parameter, ParameterType, Values};
 use crate::ply::PlyMesh;
-use crate::repair::Repairs;
 use crate::source::{Fault, Span};
 use glam::DVec3;
 
