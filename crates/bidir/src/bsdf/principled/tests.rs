@@ -1,7 +1,9 @@
 use super::{Principled, PrincipledCoat, PrincipledParameters, Wall, sheen, under};
 use crate::bsdf::microfacet::Ggx;
+use crate::bsdf::tests::numbers;
 use crate::bsdf::{Bsdf, CoatedConductor, TransportMode, fresnel};
 use crate::math::{PI, Vec2, Vec3, sqr, warp};
+use crate::sampler::{Domain, Sampler, SamplerKind};
 use crate::spectrum::Spectrum;
 
 fn direction(cos: f32) -> Vec3 {
@@ -86,21 +88,16 @@ fn cloth_reflects_no_more_than_the_bound_says() {
     }
 }
 
-/// Points of the unit cube that fill it evenly: multiples of 1/φ, 1/φ² and 1/φ³, where φ⁴ = φ + 1.
-fn lattice(n: u32) -> impl Iterator<Item = [f32; 3]> {
-    let step = 1.0 / 1.220_744_084_605_759_5_f64;
-    let steps = [step, step * step, step * step * step];
-    (0..n).map(move |i| steps.map(|step| (0.5 + f64::from(i) * step).fract() as f32))
-}
-
 /// All light that leaves towards all sides, by draws of importance.
 fn scattered(bsdf: &Principled, wo: Vec3) -> f64 {
     let n = 1 << 15;
     let bsdf = Bsdf::Principled(*bsdf);
-    let drawn = lattice(n).filter_map(|[u_lobe, x, y]| {
-        bsdf.sample(wo, TransportMode::Importance, || u_lobe, Vec2::new(x, y))
+    let sampler = Sampler::new(SamplerKind::Sobol, 3);
+    let drawn = (0..n).filter_map(|index| {
+        let (u_lobe, u) = numbers(&sampler.stream(Domain::Camera, 1, index));
+        bsdf.sample(wo, TransportMode::Importance, || u_lobe, u)
     });
-    drawn.map(|drawn| f64::from(drawn.weight[0])).sum::<f64>() / f64::from(n)
+    drawn.map(|drawn| f64::from(drawn.weight[0])).sum::<f64>() / n as f64
 }
 
 #[track_caller]
