@@ -2,7 +2,7 @@
 
 use crate::args::RenderArgs;
 use crate::console::{Console, Display, LineFormat, say};
-use crate::exit::{Exit, Failure};
+use crate::exit::Failure;
 use crate::progress::write_openjd;
 use crate::scene_io::{FilmHeader, LoadedScene};
 use crate::signals::Signals;
@@ -105,7 +105,7 @@ fn resources(args: &RenderArgs) -> Resources {
 /// Returns the failure of the command for an error of the session.
 fn failure(loaded: &LoadedScene, error: &SessionError) -> Failure {
     match error {
-        SessionError::NoPath { .. } => Failure::usage(error.to_string()),
+        SessionError::NoPath { .. } | SessionError::Stopped => Failure::usage(error.to_string()),
         SessionError::Film(error) => loaded.too_large(error),
     }
 }
