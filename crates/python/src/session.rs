@@ -148,7 +148,8 @@ impl Session {
             driver::SessionError::NoPath { .. } => raise(py, "SettingsError", &error.to_string()),
             driver::SessionError::Film(error) => scene.too_large(py, error),
             driver::SessionError::Stopped => {
-                let text = "the time ended in training: give it more time, or make the image smaller";
+                let text =
+                    "the time ended in training: give it more time, or make the image smaller";
                 raise(py, "RenderError", text)
             }
         })?;

@@ -31,6 +31,13 @@ DIFFUSE_ENDS = [
         RUNNING,
     ),
     (
+        "light vertices seen by the shading normal that they have",
+        DIFFUSE,
+        "turned: turned.bitmask(),",
+        "turned: 0,",
+        RUNNING,
+    ),
+    (
         "light vertices lost behind the last four",
         CONNECT,
         "if !others.is_empty() {",
@@ -47,8 +54,8 @@ DIFFUSE_ENDS = [
     (
         "connections of diffuse vertices behind a shading normal",
         DIFFUSE,
-        "[g_z, s_z, g_y, s_y].map",
-        "[g_z, s_z, g_y, g_y].map",
+        "[g_z, g_y, s_y].map",
+        "[g_z, g_y, g_y].map",
         RUNNING,
     ),
     (

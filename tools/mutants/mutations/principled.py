@@ -7,6 +7,13 @@ VALUE = "crates/bidir/src/bsdf/principled/value.rs"
 DRAW = "crates/bidir/src/bsdf/principled/draw.rs"
 
 PRINCIPLED = [
+    (
+        "a grain that mirrored parameters do not mirror",
+        "crates/bidir/src/material/principled.rs",
+        "Vec2::new(x, y * at.handedness.sign())",
+        "Vec2::new(x, y)",
+        unit("the_grain_is_mirrored"),
+    ),
     # --- the principled material --------------------------------------------------------------
     (
         "a diffuse base under Fresnel's layer in one direction only",

@@ -49,7 +49,7 @@ pub use dielectric::Dielectric;
 pub use diffuse::Diffuse;
 pub use diffuse_transmission::DiffuseTransmission;
 pub use multiple::FacetScattering;
-pub use principled::{Principled, PrincipledCoat, PrincipledParameters, Wall};
+pub use principled::{Layer, Principled, PrincipledCoat, PrincipledParameters, Wall};
 pub use thin_dielectric::ThinDielectric;
 
 use crate::math::{Vec2, Vec3};
@@ -148,6 +148,15 @@ impl BsdfSample {
     }
 }
 
+/// How a surface scatters, as far as it decides which normals can be seen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Lobes {
+    /// Also diffusely.
+    Diffuse,
+    /// By facets alone, around mirrored or refracted directions.
+    Glossy,
+}
+
 /// The scattering of one surface point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Bsdf {
@@ -243,6 +252,38 @@ impl Bsdf {
             Self::CoatedDiffuse(bsdf) => bsdf.is_delta(),
             Self::CoatedConductor(bsdf) => bsdf.is_delta(),
             Self::Principled(bsdf) => bsdf.is_delta(),
+        }
+    }
+
+    /// How it scatters, without a coat that has a normal of its own.
+    pub fn lobes(&self) -> Lobes {
+        match self {
+            Self::Diffuse(_) | Self::DiffuseTransmission(_) | Self::CoatedDiffuse(_) => {
+                Lobes::Diffuse
+            }
+            Self::Conductor(_)
+            | Self::Dielectric(_)
+            | Self::ThinDielectric(_)
+            | Self::CoatedConductor(_) => Lobes::Glossy,
+            Self::Principled(bsdf) => bsdf.lobes(),
+        }
+    }
+
+    /// The normal of a clear coat in the local frame. None: the layers of the surface have one frame.
+    #[inline]
+    pub fn coat_normal(&self) -> Option<Vec3> {
+        match self {
+            Self::Principled(bsdf) => bsdf.coat_normal(),
+            _ => None,
+        }
+    }
+
+    /// The same surface whose clear coat, if it has one, has its own normal `n`. Space: local.
+    #[must_use]
+    pub fn with_coat_normal(self, n: Vec3) -> Self {
+        match self {
+            Self::Principled(bsdf) => Self::Principled(bsdf.with_coat_normal(n)),
+            other => other,
         }
     }
 

@@ -18,7 +18,8 @@ use crate::bsdf::microfacet::Ggx;
 use crate::bsdf::{
     Bsdf, Conductor, Dielectric, Diffuse, DiffuseTransmission, FacetScattering, ThinDielectric,
 };
-use crate::math::ONE_MINUS_EPSILON;
+use crate::math::{ONE_MINUS_EPSILON, Vec3};
+use crate::shape::SurfacePoint;
 use crate::spectrum::{ColorModel, Rgb, Spectrum, Wavelengths};
 use crate::texture::{ColorTexture, FloatTexture, Needs, TexturePoint};
 use std::sync::Arc;
@@ -192,6 +193,16 @@ impl Material {
     pub fn relief(&self) -> Option<&Relief> {
         match self {
             Self::Embossed(embossed) => Some(&embossed.relief),
+            _ => None,
+        }
+    }
+
+    /// The unit normal of a clear coat at a point. None: there is no coat.
+    #[inline]
+    pub fn coat_normal(&self, surface: &SurfacePoint, at: &TexturePoint) -> Option<Vec3> {
+        match self {
+            Self::Principled(material) => material.coat_normal(surface, at),
+            Self::Embossed(embossed) => embossed.material.coat_normal(surface, at),
             _ => None,
         }
     }

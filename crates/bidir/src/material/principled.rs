@@ -1,9 +1,10 @@
 //! The principled material: factors and textures as glTF 2.0 has them, each value the product of both.
 
-use super::unit;
+use super::{NormalMap, unit};
 use crate::bsdf::microfacet::Ggx;
 use crate::bsdf::{Bsdf, Principled, PrincipledCoat, PrincipledParameters, Wall};
-use crate::math::{Vec2, sqr};
+use crate::math::{Vec2, Vec3, sqr};
+use crate::shape::SurfacePoint;
 use crate::spectrum::{ColorModel, Rgb, Wavelengths};
 use crate::texture::{ColorTexture, FloatTexture, Needs, TexturePoint};
 
@@ -106,7 +107,7 @@ impl ScaledFloat {
 pub struct Anisotropy {
     /// 0: not at all. Range: `[0, 1]`.
     pub strength: f32,
-    /// The direction that highlights stretch in: cosine and sine of its angle to the tangent.
+    /// The direction that highlights stretch in: cosine and sine of its angle from the tangent towards the side of ∂p/∂v.
     pub direction: Vec2,
     /// The direction in the first two channels, 0.5 standing for 0, and what strength is scaled by in
     /// the third. None: (1, 0) and 1.
@@ -114,16 +115,21 @@ pub struct Anisotropy {
 }
 
 impl Anisotropy {
-    /// Strength, and the direction as cosine and sine.
+    /// Strength, and the direction as cosine and sine in the shading frame, whose y is on the side of ∂p/∂v or its
+    /// opposite.
     #[inline]
     fn eval(&self, at: &TexturePoint) -> (f32, Vec2) {
+        let on_surface = |[x, y]: [f32; 2]| Vec2::new(x, y * at.handedness.sign());
         let Some(texture) = self.texture.as_ref().filter(|_| self.strength > 0.0) else {
-            return (self.strength, self.direction);
+            return (self.strength, on_surface(self.direction.to_array()));
         };
         let [x, y, scale] = texture.eval(at);
         let direction = Vec2::new(2.0 * x - 1.0, 2.0 * y - 1.0).normalize_or(Vec2::X);
         let turned = self.direction.rotate(direction);
-        (self.strength * scale.clamp(0.0, 1.0), turned)
+        (
+            self.strength * scale.clamp(0.0, 1.0),
+            on_surface(turned.to_array()),
+        )
     }
 }
 
@@ -156,6 +162,8 @@ pub struct PrincipledMaterial {
     pub coat: ScaledFloat,
     /// The perceived roughness of the coat.
     pub coat_roughness: ScaledFloat,
+    /// The normals of the coat. None: those of the mesh, whatever turns the base's.
+    pub coat_normal: Option<NormalMap>,
     /// The colour of the sheen.
     pub sheen: ScaledColor,
     /// The perceived roughness of the sheen.
@@ -185,6 +193,7 @@ impl Default for PrincipledMaterial {
             diffuse_transmission_color: white,
             coat: zero.clone(),
             coat_roughness: zero.clone(),
+            coat_normal: None,
             sheen: black,
             sheen_roughness: zero,
         }
@@ -192,6 +201,13 @@ impl Default for PrincipledMaterial {
 }
 
 impl PrincipledMaterial {
+    /// The normal of the coat. None: there is no coat.
+    pub(super) fn coat_normal(&self, surface: &SurfacePoint, at: &TexturePoint) -> Option<Vec3> {
+        let map = self.coat_normal.as_ref();
+        let normal = || map.map_or(surface.shading.z, |map| map.front(surface, at));
+        (self.coat.factor > 0.0).then(normal)
+    }
+
     /// Slopes along the grain and across, and where the grain points.
     #[inline]
     fn facets(&self, at: &TexturePoint) -> (Ggx, Vec2) {
@@ -229,11 +245,17 @@ impl PrincipledMaterial {
             &self.coat_roughness,
             &self.sheen_roughness,
         ];
+        let has_sides = self.coat_normal.is_some() || self.anisotropy.strength > 0.0;
+        let sides = if has_sides {
+            Needs::ALL
+        } else {
+            Needs::NOTHING
+        };
         let grain = self.anisotropy.texture.as_ref();
         let all = colors.into_iter().map(ScaledColor::needs);
         let all = all.chain(numbers.into_iter().map(ScaledFloat::needs));
         all.chain(grain.map(ColorTexture::needs))
-            .fold(Needs::NOTHING, Needs::and)
+            .fold(sides, Needs::and)
     }
 
     /// The scattering at a point. Parts that the material lacks are not looked up.
@@ -274,6 +296,7 @@ impl PrincipledMaterial {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::texture::Handedness;
 
     #[test]
     fn highlights_stretch_along_the_direction_of_the_grain() {
@@ -289,6 +312,26 @@ mod tests {
         };
         check(anisotropy(None), 0.8, Vec2::Y);
         check(anisotropy(Some(texture)), 0.4, -Vec2::X);
+    }
+
+    /// With mirrored parameters it is on the other side of the tangent.
+    #[test]
+    fn the_grain_is_mirrored_with_the_parameters() {
+        let direction = Vec2::new(0.6, 0.8);
+        let mirrored = TexturePoint {
+            handedness: Handedness::Left,
+            ..TexturePoint::of_parameters(Vec2::ZERO)
+        };
+        let strength = 0.8;
+        for texture in [None, Some(ColorTexture::Constant([1.0, 0.5, 1.0]))] {
+            let anisotropy = Anisotropy {
+                strength,
+                direction,
+                texture,
+            };
+            let (_, grain) = anisotropy.eval(&mirrored);
+            assert!(grain.distance(Vec2::new(0.6, -0.8)) < 1e-6, "{grain}");
+        }
     }
 
     #[test]

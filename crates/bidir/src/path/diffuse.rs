@@ -21,11 +21,15 @@
 //!
 //! r_0 / e is absent for a light that no ray can hit; an end at infinity has neither d² nor a cosine.
 //!
+//! Where the camera's direction turns the shading normal (`visible`), a camera vertex is none of these, and connections
+//! of a light vertex are [general](DiffuseConnections::is_turned).
+//!
 //! [`JoinedPath`](super::JoinedPath) and [`PathSums`](super::PathSums) are the specification, for every kind of
 //! vertex; the two agree but for rounding. No lane depends on the other lanes.
 
 use super::densities::factor;
 use super::running::{ANY_DEEPER, EndSums, PathStart};
+use super::visible::{LEAST_PART, MOST_LEAST, least_cosine};
 use super::{MisHeuristic, PathContext, Scattering, Segment, Vertex};
 use crate::bsdf::{Bsdf, TransportMode};
 use crate::guide::Cell;
@@ -69,7 +73,7 @@ impl DiffuseEnd {
     };
 
     /// `vertex` of a walk of `mode`, with the sums there, which hold for all of its connections. [None](Self::NONE)
-    /// where it is not diffuse, where nothing is scattered, where rays from it may go through media, or where weights
+    /// where it is not diffuse, where nothing is scattered, where the camera sees another shading normal, where rays from it may go through media, or where weights
     /// are not those of the balance heuristic with one roulette for paths of any length.
     pub(super) fn new(
         context: &PathContext<'_>,
@@ -82,9 +86,14 @@ impl DiffuseEnd {
         let is_balance = settings.mis == MisHeuristic::Balance;
         let is_clear = context.job.scene.is_clear_around(&vertex.locus);
         let [cos_s, cos_g] = [vertex.frame.z, vertex.locus.n_g].map(|n| n.dot(vertex.wo));
+        let least = match mode {
+            TransportMode::Radiance => least_cosine(cos_g.abs()),
+            TransportMode::Importance => 0.0,
+        };
+        let is_facing = cos_s * cos_g > 0.0 && cos_s.abs() >= least;
         match &vertex.scattering {
             Scattering::Surface(Bsdf::Diffuse(bsdf))
-                if is_balance && is_even && is_clear && cos_s * cos_g > 0.0 =>
+                if is_balance && is_even && is_clear && is_facing =>
             {
                 let ratio = match mode {
                     TransportMode::Radiance => 1.0,
@@ -151,8 +160,15 @@ impl DiffuseEnd {
         Some((contribution, (n / (n + others)) as f32))
     }
 
+    /// True where the direction `w` from this light vertex towards the camera sees another shading normal.
+    #[inline]
+    pub fn is_turned(&self, w: Vec3) -> bool {
+        let cos_g = self.n_g.dot(w);
+        cos_g > 0.0 && self.n_s.dot(w) < least_cosine(cos_g)
+    }
+
     /// C and the weight of the light image of `vertex`, which this is, number `s` of a light subpath with these `sums`:
-    /// `segment` leads to the lens point. None: C is zero.
+    /// `segment` leads to the lens point, by whose direction nothing [turns](Self::is_turned). None: C is zero.
     #[inline]
     pub fn light_image(
         &self,
@@ -199,7 +215,10 @@ impl DiffuseEnd {
         let [g_z, s_z] = [dot(&lanes.n_g, &w), dot(&lanes.n_s, &w)];
         let [g_y, s_y] = [-dot_each(y.n_g, &w), -dot_each(y.n_s, &w)];
         // Not true of a NaN.
-        let [a, b, c, d] = [g_z, s_z, g_y, s_y].map(|cos| cos.cmpgt(Vec4::ZERO));
+        let [a, c, d] = [g_z, g_y, s_y].map(|cos| cos.cmpgt(Vec4::ZERO));
+        let least = (g_z * LEAST_PART).min(Vec4::splat(MOST_LEAST));
+        let b = s_z.cmpge(least);
+        let turned = a & c & !b;
         let factors = g_z * s_y * inverse2;
         let r_z = y.density * s_y * (g_z * inverse2);
         let r_y = lanes.density * s_z * (g_y * inverse2);
@@ -209,6 +228,7 @@ impl DiffuseEnd {
             z,
             factors: Vec4::select(a & b & c & d, factors, Vec4::ZERO).to_array(),
             weights: weights.to_array(),
+            turned: turned.bitmask(),
         }
     }
 }
@@ -220,10 +240,17 @@ pub struct DiffuseConnections<'a> {
     /// (n_g·w)_z (n_s·-w)_y / d²; 0 where either end scatters nothing to the other.
     factors: [f32; 4],
     weights: [f32; 4],
+    turned: u32,
 }
 
 impl DiffuseConnections<'_> {
-    /// C, which may be zero, and the weight of number `lane`.
+    /// True where the connection has to be found as that of any two vertices: it sees another shading normal at z.
+    #[inline]
+    pub fn is_turned(&self, lane: usize) -> bool {
+        self.turned >> lane & 1 == 1
+    }
+
+    /// C, which may be zero, and the weight of number `lane`, which [is not turned](Self::is_turned).
     #[inline]
     pub fn get(&self, lane: usize) -> (Spectrum, f32) {
         let contribution = self.z[lane].flux * self.y.flux * self.factors[lane];

@@ -33,6 +33,7 @@ mod segment;
 mod shares;
 mod subpaths;
 mod vertex;
+mod visible;
 mod walk;
 
 pub use crate::strategy::{Strategies, Strategy};

@@ -1,8 +1,9 @@
 //! The effect of a vertex on light: its value scatter(wo, wi) in the integrand, the directions that walks
 //! draw there, and their densities. Visibility and roulette are no part of it.
 
+use super::visible::{Drawn, on_side};
 use super::{PathContext, Scattering, Vertex};
-use crate::bsdf::{BsdfValue, TransportMode};
+use crate::bsdf::{Bsdf, BsdfValue, TransportMode};
 use crate::light::LightPoint;
 use crate::math::{Vec2, Vec3};
 use crate::medium::MediumScattering;
@@ -41,12 +42,12 @@ pub struct Turn<'a> {
 
 /// A unit direction at a vertex.
 #[derive(Clone, Copy, Debug)]
-struct Side {
-    world: Vec3,
+pub(super) struct Side {
+    pub(super) world: Vec3,
     /// In the shading frame of a surface.
-    local: Vec3,
+    pub(super) local: Vec3,
     /// The cosine to its geometric normal.
-    cos_g: f32,
+    pub(super) cos_g: f32,
 }
 
 impl Side {
@@ -70,6 +71,16 @@ impl Side {
     fn normal_ratio(&self) -> f32 {
         (self.local.z / self.cos_g).abs()
     }
+
+    /// The same, 0 where the normals disagree.
+    #[inline]
+    fn lit_ratio(&self) -> f32 {
+        if self.agrees() {
+            self.normal_ratio()
+        } else {
+            0.0
+        }
+    }
 }
 
 impl<'a> Turn<'a> {
@@ -79,19 +90,37 @@ impl<'a> Turn<'a> {
         self.vertex
     }
 
-    /// The value of a surface or of a medium; cameras and lights have none. This is the only caller of `Bsdf::eval`.
+    /// The value of a surface or of a medium, f with the ratio of [`scatter`](Self::scatter); cameras and lights have
+    /// none.
     #[inline]
     fn value(&self) -> BsdfValue {
         self.value.get().unwrap_or_else(|| {
             let Self { wo, wi, .. } = self;
             let value = match &self.vertex.scattering {
-                Scattering::Surface(bsdf) => bsdf.eval(wo.local, wi.local, self.mode),
+                Scattering::Surface(bsdf) => self.surface_value(bsdf),
                 Scattering::Medium(medium) => phase_value(medium, wo.world, wi.world),
                 Scattering::Camera | Scattering::Light => BsdfValue::NONE,
             };
             self.value.set(Some(value));
             value
         })
+    }
+
+    #[inline]
+    fn surface_value(&self, bsdf: &Bsdf) -> BsdfValue {
+        let Self { wo, wi, mode, .. } = self;
+        let (camera, light) = match mode {
+            TransportMode::Radiance => (wo, wi),
+            TransportMode::Importance => (wi, wo),
+        };
+        if !self.vertex.is_seen_plainly(bsdf, camera) {
+            return self
+                .vertex
+                .value_by_frames(bsdf, [wo.world, wi.world], *mode);
+        }
+        let value = bsdf.eval(wo.local, wi.local, *mode);
+        let f = value.f * light.lit_ratio();
+        BsdfValue { f, ..value }
     }
 
     /// The value of the vertex in the measurement contribution: scattering, emission or
@@ -101,23 +130,13 @@ impl<'a> Turn<'a> {
     /// |ω·n_s| / |ω·n_g| with ω the direction that light comes from: `wi` for radiance, `wo` for
     /// importance. That is the adjoint of shading normals [Veach97, §5.3]; it makes the
     /// integrand one function of the path, whichever end a walk began at. If shading and
-    /// geometric normal disagree on the side of a direction, nothing is scattered.
+    /// geometric normal disagree on the side of ω, nothing is scattered; towards the camera the shading normal
+    /// turns (`visible`).
     #[inline]
     pub fn scatter(&self, context: &PathContext<'_>) -> Spectrum {
-        let Self { vertex, wo, wi, .. } = self;
-        match &vertex.scattering {
-            Scattering::Camera | Scattering::Light => vertex.leaving(context, wi.world),
-            Scattering::Surface(_) => {
-                if !wo.agrees() || !wi.agrees() {
-                    return Spectrum::ZERO;
-                }
-                let from = match self.mode {
-                    TransportMode::Radiance => wi,
-                    TransportMode::Importance => wo,
-                };
-                self.value().f * from.normal_ratio()
-            }
-            Scattering::Medium(_) => self.value().f,
+        match &self.vertex.scattering {
+            Scattering::Camera | Scattering::Light => self.vertex.leaving(context, self.wi.world),
+            Scattering::Surface(_) | Scattering::Medium(_) => self.value().f,
         }
     }
 
@@ -188,7 +207,11 @@ impl Vertex {
     /// The albedo for a walk that comes along -`w`; 1 at the ends of paths.
     pub fn albedo(&self, w: Vec3) -> Spectrum {
         match &self.scattering {
-            Scattering::Surface(bsdf) => bsdf.albedo(self.frame.to_local(w)),
+            Scattering::Surface(bsdf) => {
+                let local = self.frame.to_local(w);
+                let cos = local.z.abs().copysign(self.locus.n_g.dot(w));
+                bsdf.albedo(local.with_z(cos))
+            }
             Scattering::Medium(medium) => medium.albedo,
             Scattering::Camera | Scattering::Light => Spectrum::ONE,
         }
@@ -220,16 +243,29 @@ impl Vertex {
             Scattering::Camera | Scattering::Light => return None,
         };
         let wo = Side::new(self, self.wo);
+        let is_plain = match mode {
+            TransportMode::Radiance => self.is_seen_plainly(bsdf, &wo),
+            TransportMode::Importance => wo.agrees() && bsdf.coat_normal().is_none(),
+        };
+        if !is_plain {
+            return self.sample_by_frames(bsdf, mode, u_lobe(), u);
+        }
         let sample = bsdf.sample(wo.local, mode, u_lobe, u)?;
         let wi = Side::new(self, self.frame.to_world(sample.wi));
-        if !wo.agrees() || !wi.agrees() {
-            return None;
-        }
         // `sample.weight` has the shading cosine of `wi`: for radiance that is `scatter` times the
         // geometric cosine already.
         let weight = match mode {
-            TransportMode::Radiance => sample.weight,
-            TransportMode::Importance => sample.weight * (wo.normal_ratio() / wi.normal_ratio()),
+            TransportMode::Radiance if wi.agrees() => sample.weight,
+            TransportMode::Importance if self.is_seen_plainly(bsdf, &wi) => {
+                sample.weight * (wo.normal_ratio() / wi.normal_ratio())
+            }
+            TransportMode::Radiance => return None,
+            // A Dirac lobe leads elsewhere by the frame that this direction sees.
+            TransportMode::Importance if sample.is_delta => return None,
+            TransportMode::Importance => {
+                let wi = on_side(wi.world, wi.local.z * wi.cos_g);
+                return self.finite_scattered(bsdf, wi, mode);
+            }
         };
         Some(Scattered {
             wi: wi.world,
@@ -238,6 +274,60 @@ impl Vertex {
             pdf_reverse: sample.pdf_reverse,
             albedo_reverse: sample.albedo_reverse,
             is_delta: sample.is_delta,
+        })
+    }
+
+    /// The same where layers are not seen by the frame of the vertex.
+    #[cold]
+    #[inline(never)]
+    fn sample_by_frames(
+        &self,
+        bsdf: &Bsdf,
+        mode: TransportMode,
+        u_lobe: f32,
+        u: Vec2,
+    ) -> Option<Scattered> {
+        let plain = self.frames(bsdf);
+        let frames = match mode {
+            TransportMode::Radiance => self.frames_toward(bsdf, self.wo).unwrap_or(plain),
+            TransportMode::Importance if self.faces(&plain, self.wo) => plain,
+            TransportMode::Importance => return None,
+        };
+        let sample = match frames.sample(bsdf, self.wo, (mode, u_lobe, u))? {
+            Drawn::Finite(wi, _) if mode == TransportMode::Radiance => {
+                return self.finite_scattered(bsdf, wi, mode);
+            }
+            Drawn::Finite(wi, cos) => {
+                let wi = on_side(wi, cos * self.locus.n_g.dot(wi));
+                return self.finite_scattered(bsdf, wi, mode);
+            }
+            Drawn::Dirac(sample) => sample,
+        };
+        // Walks from a light draw no Dirac lobe by a frame that they do not know.
+        (mode == TransportMode::Radiance && self.faces(&frames, sample.wi)).then(|| Scattered {
+            wi: sample.wi,
+            weight: sample.weight,
+            pdf: sample.pdf,
+            pdf_reverse: 0.0,
+            albedo_reverse: self.albedo(sample.wi).max_lane(),
+            is_delta: true,
+        })
+    }
+
+    /// The direction `wi`, drawn from the lobes that are not Dirac, where frames depend on the camera. None: nothing is
+    /// scattered there.
+    #[cold]
+    #[inline(never)]
+    fn finite_scattered(&self, bsdf: &Bsdf, wi: Vec3, mode: TransportMode) -> Option<Scattered> {
+        let value = self.value_by_frames(bsdf, [self.wo, wi], mode);
+        let cos_g = self.locus.n_g.dot(wi).abs();
+        (value.pdf > 0.0 && !value.f.is_black()).then(|| Scattered {
+            wi,
+            weight: value.f * (cos_g / value.pdf),
+            pdf: value.pdf,
+            pdf_reverse: value.pdf_reverse,
+            albedo_reverse: value.albedo_reverse,
+            is_delta: false,
         })
     }
 

@@ -148,20 +148,30 @@ impl Vertex {
         }
         let material = scene.material(hit.material).choose(&at, u_mix);
         let in_air = material.bsdf(&at, scene.color(), &context.wavelengths);
-        let bsdf = in_air.within(hit.around);
-        let frame = match (material.relief(), &hit.differentials) {
-            (Some(relief), Some(differentials)) => relief.frame(surface, differentials, &at),
-            _ => surface.shading,
-        };
-        Self {
+        let mut bsdf = in_air.within(hit.around);
+        let mut frame = surface.shading;
+        if let Some(differentials) = &hit.differentials {
+            if let Some(relief) = material.relief() {
+                frame = relief.frame(surface, differentials, &at);
+            }
+            let coat = material.coat_normal(surface, &at);
+            let is_apart = |n: &Vec3| n.distance_squared(frame.z) > 1e-10;
+            if let Some(n) = coat.filter(is_apart) {
+                bsdf = bsdf.with_coat_normal(frame.to_local(n));
+            }
+        }
+        let vertex = Self {
             frame,
             wo,
             beta,
-            albedo_fwd: bsdf.albedo(frame.to_local(wo)).max_lane(),
             light: hit.light.map(|(light, _)| light),
             light_primitive: hit.light.map_or(0, |(_, at)| at.primitive),
             cell: context.job.guide.cell(surface.point, frame.z),
             ..Self::new(surface.locus(), Scattering::Surface(bsdf))
+        };
+        Self {
+            albedo_fwd: vertex.albedo(wo).max_lane(),
+            ..vertex
         }
     }
 
@@ -207,8 +217,9 @@ impl Vertex {
     pub fn receiver(&self, w: Vec3) -> Receiver {
         let facing = match &self.scattering {
             Scattering::Surface(bsdf) if !bsdf.transmits() => {
+                let is_below = self.locus.n_g.dot(w) < 0.0;
                 let n = self.frame.z;
-                Facing::Front(if n.dot(w) < 0.0 { -n } else { n })
+                Facing::Front(if is_below { -n } else { n })
             }
             Scattering::Surface(_) => Facing::Both(self.frame.z),
             Scattering::Medium(_) => Facing::Anywhere,

@@ -33,7 +33,7 @@ pub use map::{Beyond, Change, ImageFilter, ImageMap, Wrap};
 pub use mapping::{Mapping, TextureSpace};
 pub use noise::{Marble, Noise, NoiseKind, fractal_noise};
 pub use pattern::{Bilerp, Cells, Checkerboard, Dots};
-pub use point::{Footprint, TexturePoint};
+pub use point::{Footprint, Handedness, TexturePoint};
 pub use range::Range;
 
 use crate::math::Vec3;
@@ -280,7 +280,7 @@ impl<T: Value> DirectionMix<T> {
 pub struct Needs {
     /// True where the point or the normal matters.
     pub surface: bool,
-    /// True where it matters how wide a pixel is.
+    /// True where it matters how wide a pixel is, or where parameters lead.
     pub footprint: bool,
 }
 

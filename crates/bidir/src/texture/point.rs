@@ -14,6 +14,39 @@ pub struct TexturePoint {
     pub normal: Vec3,
     /// The footprint of a pixel.
     pub footprint: Footprint,
+    /// The side of the surface's second parameter; right-handed where it is not known.
+    pub handedness: Handedness,
+}
+
+/// The side of the normal's left that ∂p/∂v is on, seen along ∂p/∂u.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Handedness {
+    /// ∂p/∂u, ∂p/∂v and the normal are right-handed.
+    Right,
+    /// They are left-handed: the parameters are mirrored.
+    Left,
+}
+
+impl Handedness {
+    /// The sides of these differentials around a normal.
+    #[inline]
+    pub fn of(differentials: &Differentials, normal: Vec3) -> Self {
+        let turn = differentials.dp_du.cross(differentials.dp_dv);
+        if turn.dot(normal) < 0.0 {
+            Self::Left
+        } else {
+            Self::Right
+        }
+    }
+
+    /// 1, or -1 for left-handed ones.
+    #[inline]
+    pub fn sign(self) -> f32 {
+        match self {
+            Self::Right => 1.0,
+            Self::Left => -1.0,
+        }
+    }
 }
 
 /// The part of a surface that a pixel covers: a function of the point and the camera.
@@ -45,6 +78,7 @@ impl TexturePoint {
             point: surface.point,
             normal: surface.shading.z,
             footprint: Footprint::POINT,
+            handedness: Handedness::Right,
         }
     }
 
@@ -56,10 +90,11 @@ impl TexturePoint {
             point: Vec3::ZERO,
             normal: Vec3::Z,
             footprint: Footprint::POINT,
+            handedness: Handedness::Right,
         }
     }
 
-    /// The same point where a pixel is `width` wide.
+    /// The same point where a pixel is `width` wide, with the sides of its parameters.
     #[inline]
     #[must_use]
     pub fn seen(self, width: f32, differentials: &Differentials) -> Self {
@@ -70,6 +105,7 @@ impl TexturePoint {
                 gradient_u,
                 gradient_v,
             },
+            handedness: Handedness::of(differentials, self.normal),
             ..self
         }
     }

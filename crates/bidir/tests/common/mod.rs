@@ -11,9 +11,9 @@ use bidir::film::{FilmSettings, Filter};
 use bidir::integrator::IntegratorKind;
 use bidir::light::EmissionSides;
 use bidir::material::{
-    Anisotropy, CLEAR, CoatSettings, CoatedConductorMaterial, CoatedDiffuseMaterial,
-    ConductorIndex, Material, Mixture, PrincipledMaterial, Roughness, RoughnessMapping,
-    ScaledColor, ScaledFloat,
+    Anisotropy, Bitangent, CLEAR, CoatSettings, CoatedConductorMaterial, CoatedDiffuseMaterial,
+    ConductorIndex, Material, Mixture, NormalMap, PrincipledMaterial, Relief, Roughness,
+    RoughnessMapping, ScaledColor, ScaledFloat,
 };
 use bidir::math::{Affine3A, Vec2, Vec3};
 use bidir::medium::{Coefficients, Glow, HenyeyGreenstein, Medium, MediumId, MediumSides};
@@ -235,6 +235,26 @@ pub(crate) fn principled_rough() -> Material {
     }))
 }
 
+/// Brushed metal and plastic under a coat of this roughness, which has the normals of the mesh or of a map.
+pub(crate) fn principled_layers(roughness: f32, coat_normal: Option<NormalMap>) -> Material {
+    Material::Principled(Arc::new(PrincipledMaterial {
+        color: ScaledColor::constant([0.8, 0.5, 0.3]),
+        metallic: ScaledFloat::constant(0.4),
+        roughness: ScaledFloat::constant(0.6),
+        anisotropy: Anisotropy {
+            strength: 0.6,
+            direction: Vec2::new(0.8, 0.6),
+            texture: None,
+        },
+        coat: ScaledFloat::constant(0.8),
+        coat_roughness: ScaledFloat::constant(roughness),
+        coat_normal,
+        sheen: ScaledColor::constant([0.1, 0.3, 0.5]),
+        sheen_roughness: ScaledFloat::constant(0.6),
+        ..PrincipledMaterial::default()
+    }))
+}
+
 /// Plastic and glass by shares, smooth, under a smooth coat.
 pub(crate) fn principled_smooth() -> Material {
     Material::Principled(Arc::new(PrincipledMaterial {
@@ -246,6 +266,20 @@ pub(crate) fn principled_smooth() -> Material {
         coat: ScaledFloat::constant(0.8),
         ..PrincipledMaterial::default()
     }))
+}
+
+/// A map of normals that are all tilted so far along x and y.
+pub(crate) fn slant(x: f32, y: f32) -> NormalMap {
+    NormalMap {
+        texture: ColorTexture::Constant([(x + 1.0) / 2.0, (y + 1.0) / 2.0, 1.0]),
+        scale: 1.0,
+        bitangent: Bitangent::AlongV,
+    }
+}
+
+/// The material under a map of normals, 45° steep.
+pub(crate) fn slanted(material: Material) -> Material {
+    material.embossed(Relief::NormalMap(slant(0.9, -0.45)))
 }
 
 /// The parallelogram at `corner` with edges `a` and `b`; the front is the side of a × b.
@@ -304,6 +338,26 @@ pub(crate) fn add_walls(builder: &mut SceneBuilder, material: MaterialId) {
             builder.shape(Shape::Mesh(wall), material, None);
         }
     }
+}
+
+/// Walls, a ceiling light, and floors and balls whose normals are far from those of the mesh: diffuse, metal,
+/// plastic, and layers of which the coat has normals of its own. Nothing is a Dirac distribution.
+pub(crate) fn steep_room(lens_radius: f32) -> Shot {
+    let mut builder = builder(8, lens_radius);
+    let wall = builder.material(slanted(diffuse([0.7, 0.6, 0.5])));
+    add_walls(&mut builder, wall);
+    let light = quad(Vec3::new(-0.7, 1.9, -0.5), Vec3::X * 1.4, Vec3::Z);
+    builder.shape(Shape::Mesh(light), wall, emission([6.0, 5.0, 4.0]));
+    let [coated, apart] = [None, Some(slant(-0.5, 0.3))].map(|map| principled_layers(0.5, map));
+    let materials = [metal(0.4), varnish(0.3), glass(0.5), coated, apart];
+    for (i, material) in (0u8..).zip(materials) {
+        let material = builder.material(slanted(material));
+        let x = -1.4 + 0.7 * f32::from(i);
+        builder.shape(sphere(Vec3::new(x, -1.2, 0.3), 0.33), material, None);
+        let panel = quad(Vec3::new(x - 0.3, -0.7, 1.8), Vec3::Y * 1.9, Vec3::X * 0.6);
+        builder.shape(Shape::Mesh(panel), material, None);
+    }
+    builder.build().expect("the room is valid")
 }
 
 /// One-sided emission, as shapes take it.

@@ -6,8 +6,8 @@
 use crate::common::Shot;
 use crate::common::statistics::{Replicates, WHOLE, check_agree, replicates};
 use crate::common::{
-    add_walls, builder, diffuse, emission, glass, lacquer, metal, mix, paper, principled_rough,
-    principled_smooth, quad, sphere, varnish,
+    add_walls, builder, diffuse, emission, glass, lacquer, metal, mix, paper, principled_layers,
+    principled_rough, principled_smooth, quad, slant, slanted, sphere, varnish,
 };
 use bidir::driver::Settings;
 use bidir::integrator::IntegratorKind;
@@ -158,6 +158,29 @@ fn a_principled_surface_of_rough_lobes() {
 #[test]
 fn a_principled_surface_of_smooth_lobes() {
     check_balance(principled_smooth(), Lobes::Dirac);
+}
+
+#[test]
+fn slanted_normals() {
+    for material in [diffuse([0.8, 0.6, 0.4]), varnish(0.3), metal(0.3)] {
+        check_balance(slanted(material), Lobes::Finite);
+    }
+}
+
+/// Walks from a light draw no mirrored direction by a normal that only the camera sees; of rough glass the light
+/// tracer alone is too noisy to tell.
+#[test]
+fn slanted_mirrors_and_glass() {
+    for material in [metal(0.0), glass(0.0), glass(0.4), varnish(0.0)] {
+        check_balance(slanted(material), Lobes::Dirac);
+    }
+}
+
+#[test]
+fn a_coat_with_normals_of_its_own() {
+    for map in [None, Some(slant(-0.5, 0.3))] {
+        check_balance(slanted(principled_layers(0.5, map)), Lobes::Finite);
+    }
 }
 
 /// The albedo of a mixture's camera samples is the mean of its parts'.

@@ -73,7 +73,7 @@ fn rewalk(
         if let Some(after) = walk.get(i + 2).copied() {
             let (wi, mut back) = (next.segment_to(&after).w, next.segment_to(&vertex));
             back.pass(&edge(context, &next, &vertex)?);
-            walk[i].pdf_rev = next.turn(wi, back.w, mode).pdf(context) * back.to_b;
+            walk[i].pdf_rev = next.turn(wi, back.w, mode.reversed()).pdf(context) * back.to_b;
             walk[i + 1].albedo_rev = next.albedo(wi).max_lane();
         }
     }
@@ -224,8 +224,13 @@ fn strategies(context: &PathContext<'_>, path: &[Vertex]) -> Option<Vec<(usize, 
     let reversed: Vec<Vertex> = path.iter().rev().copied().collect();
     let mut densities = PathDensities::default();
     let mut result = Vec::new();
+    let is_drawn = |walk: &[Vertex]| walk.iter().all(|vertex| vertex.pdf_fwd > 0.0);
     for s in 0..n {
         let camera = rewalk(context, &reversed[..n - s], TransportMode::Radiance)?;
+        // Walks from a light end where its shading normal faces away.
+        if !is_drawn(&camera) {
+            continue;
+        }
         if s == 0 {
             let mut x0 = path[0];
             x0.pdf_rev = camera[n - 1].pdf_fwd;
@@ -237,6 +242,9 @@ fn strategies(context: &PathContext<'_>, path: &[Vertex]) -> Option<Vec<(usize, 
             continue;
         }
         let mut light = rewalk(context, &path[..s], TransportMode::Importance)?;
+        if !is_drawn(&light) {
+            continue;
+        }
         let edge = edge(context, &path[s - 1], &path[s])?;
         let mut joined = JoinedPath::connection(&light, &camera);
         joined.pass(&edge);
@@ -342,6 +350,15 @@ fn layered_and_mixed_surfaces_are_one_function_of_the_path() {
     let scene = common::gallery(0.1);
     check_paths(MisHeuristic::Balance, LightPointChoice::Fresh, &scene);
     check_paths(MisHeuristic::Power, LightPointChoice::Fresh, &scene);
+}
+
+/// The same where the camera sees other shading normals than light does, and layers have normals of their own.
+#[test]
+fn steep_shading_normals_are_one_function_of_the_path() {
+    let scene = common::steep_room(0.1);
+    check_stored(&scene);
+    check_paths(MisHeuristic::Balance, LightPointChoice::Fresh, &scene);
+    check_paths(MisHeuristic::Power, LightPointChoice::Shared, &scene);
 }
 
 /// The same in fog, through a medium that only absorbs, in rough glass that is not empty, and from a fire.

@@ -4,13 +4,15 @@
 //! The footprint of a pixel decides how fine textures and bumps are. It must be the same from
 //! whichever end a path was walked.
 
-use crate::common::Shot;
 use crate::common::statistics::{Replicates, WHOLE, check_agree, replicates};
+use crate::common::{self, Shot};
 use crate::common::{add_walls, builder, diffuse, emission, metal, quad, sphere};
+use bidir::bsdf::TransportMode;
 use bidir::driver::Settings;
 use bidir::integrator::IntegratorKind;
 use bidir::material::{Bitangent, Material, Mixture, NormalMap, Relief};
-use bidir::math::{Affine3A, Vec2, Vec3};
+
+use bidir::math::{Affine3A, PI, Vec2, Vec3};
 use bidir::path::{Job, PathContext, PathSettings, Scattering, Vertex};
 use bidir::sampler::{Domain, Sampler, SamplerKind};
 use bidir::scene::{Chances, SceneBuilder};
@@ -198,4 +200,62 @@ fn a_point_looks_the_same_to_every_walk() {
         let (near, far) = (near.1, far.1);
         assert!((near - far).abs() < 1e-2, "albedos of {near} and {far}");
     }
+}
+
+/// The light that a point under a slant sends along `wo` in a furnace: the mean weight of walks.
+fn furnace(material: Material, wo: Vec3) -> f32 {
+    let mut builder = builder(SIZE, 0.0);
+    add_floor(&mut builder, material);
+    let floor = builder.build().expect("the floor is valid");
+    let settings = PathSettings::default();
+    let context = PathContext {
+        job: Job::of_own_subpaths(&floor.scene, &floor.view, &settings),
+        wavelengths: Wavelengths::default(),
+    };
+    let target = Vec3::new(0.2, -1.3, 0.3);
+    let seen = vertex(&context, target + wo, target);
+    let n = 200;
+    let value = |i: i32| {
+        // Even over the upper hemisphere.
+        let at = |k: i32, of: i32| (k as f32 + 0.5) / of as f32;
+        let (y, phi) = (at(i % n, n), 2.0 * PI * at(i / n, 2 * n));
+        let r = (1.0 - y * y).sqrt();
+        let wi = Vec3::new(r * phi.cos(), y, r * phi.sin());
+        let scatter = seen
+            .turn(seen.wo, wi, TransportMode::Radiance)
+            .scatter(&context);
+        scatter[0] * y * 2.0 * PI
+    };
+    (0..2 * n * n).map(value).sum::<f32>() / (2 * n * n) as f32
+}
+
+/// A white surface under normals that face away from the viewer is nearly as bright as without.
+#[test]
+fn relief_is_not_black_at_grazing_angles() {
+    let slants = [(0.58, 0.0), (0.4, 0.4), (0.0, -0.6), (-0.2, 0.5)];
+    for degrees in [75.0f32, 80.0, 85.0, 88.0] {
+        let (sin, cos) = degrees.to_radians().sin_cos();
+        for turn in 0..4 {
+            let (y, x) = (f32::from(turn as u8) * 1.5).sin_cos();
+            let wo = Vec3::new(x * sin, cos, y * sin);
+            for (x, y) in slants {
+                let relief = Relief::NormalMap(common::slant(x, y));
+                let kept = furnace(diffuse([1.0; 3]).embossed(relief), wo);
+                // A slope s that faces the viewer loses the light below its horizon.
+                let slope = x.hypot(y);
+                let least = (1.0 + 1.0 / slope.hypot(1.0)) / 2.0 - 5e-3;
+                assert!(
+                    kept >= least && kept < 1.005,
+                    "{degrees}, {turn}, {x}, {y}: {kept}"
+                );
+            }
+        }
+    }
+}
+
+/// The test above can fail: the value of a flat surface is 1.
+#[test]
+fn a_white_surface_keeps_all_light() {
+    let kept = furnace(diffuse([1.0; 3]), Vec3::new(0.9, 0.2, 0.1).normalize());
+    assert!((kept - 1.0).abs() < 2e-3, "{kept}");
 }

@@ -144,6 +144,7 @@ fn infos(described: &Described) -> Vec<&TextureInfo> {
         specular.and_then(|specular| specular.specular_color_texture.as_ref()),
         coat.and_then(|coat| coat.clearcoat_texture.as_ref()),
         coat.and_then(|coat| coat.clearcoat_roughness_texture.as_ref()),
+        coat.and_then(|coat| coat.clearcoat_normal_texture.as_ref()),
         sheen.and_then(|sheen| sheen.sheen_color_texture.as_ref()),
         sheen.and_then(|sheen| sheen.sheen_roughness_texture.as_ref()),
         transmission.and_then(|transmission| transmission.transmission_texture.as_ref()),

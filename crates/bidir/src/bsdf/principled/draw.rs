@@ -59,7 +59,7 @@ impl Principled {
 
     /// Draws a direction from a lobe that is no Dirac distribution. None: it does not leave.
     #[inline]
-    fn sample_lobe(&self, lobe: Lobe, wo: Vec3, rest: f32, u: Vec2) -> Option<Vec3> {
+    pub(super) fn sample_lobe(&self, lobe: Lobe, wo: Vec3, rest: f32, u: Vec2) -> Option<Vec3> {
         let facing = |wi: Vec3| Vec3::new(wi.x, wi.y, wi.z.copysign(wo.z));
         match lobe {
             Lobe::Coat => self.coat_ggx().sample_mirror(wo, u),
@@ -164,7 +164,7 @@ impl Principled {
 impl Probs {
     /// The lobe of the number `u`, and what of `u` is left to choose by.
     #[inline]
-    fn choose(self, u: f32) -> (Lobe, f32) {
+    pub(super) fn choose(self, u: f32) -> (Lobe, f32) {
         let lobes = [
             (Lobe::Coat, self.coat),
             (Lobe::Facets, self.facets),

@@ -15,6 +15,7 @@
 //! than its own lobe leaves, so nothing gains (docs/derivations/principled.md).
 
 mod draw;
+mod layers;
 mod multiple;
 mod parameters;
 mod sheen;
@@ -23,6 +24,7 @@ mod tests;
 mod under;
 mod value;
 
+pub use layers::Layer;
 pub use parameters::{Coat as PrincipledCoat, PrincipledParameters, Wall};
 
 use super::dielectric::{Dielectric, Lobe as Side};
@@ -74,6 +76,8 @@ pub struct Principled {
     /// k̄ of a transparent solid's facets, likewise.
     lost_through: Sides,
     wall: Wall,
+    /// The normal of the coat, in the frame of the base.
+    coat_normal: Vec3,
 }
 
 /// The ways in which light leaves, as they are drawn.
@@ -152,10 +156,16 @@ impl Principled {
     /// Albedos of the layers for light along `w`.
     #[inline]
     fn layers(&self, w: Vec3) -> Layers {
+        self.layers_between([w; 2])
+    }
+
+    /// Albedos of the layers for light along a direction, which base and coat see in frames of their own.
+    #[inline]
+    fn layers_between(&self, [base, coat]: [Vec3; 2]) -> Layers {
         Layers {
-            coat: self.coat_albedo(w),
-            sheen: self.sheen_albedo(w),
-            weight: under::facet_weight(w.z.abs(), self.alpha()),
+            coat: self.coat_albedo(coat),
+            sheen: self.sheen_albedo(base),
+            weight: under::facet_weight(base.z.abs(), self.alpha()),
         }
     }
 

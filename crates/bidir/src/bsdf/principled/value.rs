@@ -21,28 +21,46 @@ impl LobeValue {
 impl Principled {
     #[inline]
     pub(in crate::bsdf) fn eval(&self, wo: Vec3, wi: Vec3, mode: TransportMode) -> BsdfValue {
-        if wo.z == 0.0 || wi.z == 0.0 {
+        self.eval_layers([[wo; 2], [wi; 2]], [1.0; 2], mode)
+    }
+
+    /// The same for directions that base and coat see in frames of their own, f of each times its ratio.
+    #[inline]
+    pub(crate) fn eval_layers(
+        &self,
+        [wo, wi]: [[Vec3; 2]; 2],
+        ratios: [f32; 2],
+        mode: TransportMode,
+    ) -> BsdfValue {
+        if [wo, wi].iter().flatten().any(|w| w.z == 0.0) {
             return BsdfValue::NONE;
         }
-        let pair = [wo, wi].map(|w| self.along_grain(w));
-        let seen = pair.map(|w| self.layers(w));
+        let of_coat = [wo[1], wi[1]];
+        let pair = [wo, wi].map(|[base, _]| self.along_grain(base));
+        let seen = [0, 1].map(|end| self.layers_between([pair[end], of_coat[end]]));
         let shares = [0, 1].map(|end| self.shares(pair[end], &seen[end]));
-        let is_reflected = same_hemisphere(wo, wi);
-        let [facets, coat] = if is_reflected {
-            [self.reflecting_facets(pair), self.coat_lobe(pair)]
+        let [is_reflected, by_coat] = [pair, of_coat].map(|[wo, wi]| same_hemisphere(wo, wi));
+        let coat = if by_coat {
+            self.coat_lobe(of_coat)
         } else {
-            [self.crossing_facets(pair, mode), LobeValue::NONE]
+            LobeValue::NONE
+        };
+        let once = if is_reflected {
+            self.reflecting_facets(pair)
+        } else {
+            self.crossing_facets(pair, mode)
         };
         let facets = if self.is_multiple() {
-            self.with_multiple(facets, pair, mode)
+            self.with_multiple(once, pair, mode)
         } else {
-            facets
+            once
         };
-        let f = if is_reflected {
-            self.reflected(pair, &seen, facets.f) + coat.f
+        let base = if is_reflected {
+            self.reflected(pair, &seen, facets.f)
         } else {
             self.crossed(&seen, facets.f)
         };
+        let f = base * ratios[0] + coat.f * ratios[1];
         let stays = self.diffuse_reflection_prob();
         let side = if is_reflected { stays } else { 1.0 - stays };
         let even = if is_reflected { EVEN } else { 0.0 };

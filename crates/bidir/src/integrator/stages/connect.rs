@@ -134,7 +134,11 @@ impl Connector<'_> {
                     weight,
                     root_visibility: of_camera.root_visibility(z[lane].cell()),
                 };
-                self.offer(t, end, connection);
+                if connections.is_turned(lane) {
+                    self.offer_general(t, end, None);
+                } else {
+                    self.offer(t, end, connection);
+                }
             } else if end.place.s > 0 {
                 self.offer_general(t, end, None);
             }

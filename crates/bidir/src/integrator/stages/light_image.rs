@@ -10,8 +10,8 @@ use crate::film::SplatPlace;
 use crate::locus::Locus;
 use crate::math::Vec2;
 use crate::path::{
-    EndSums, Job, JoinedPath, PathContext, PathSums, RunningSums, Scattering, Segment, Vertex,
-    Weights,
+    DiffuseEnd, EndSums, Job, JoinedPath, PathContext, PathSums, RunningSums, Scattering, Segment,
+    Vertex, Weights,
 };
 use crate::sampler::{Dimension, Purpose};
 use crate::spectrum::Spectrum;
@@ -127,7 +127,8 @@ impl<'a> LightImage<'a> {
             return self.of_any(context, |_| 1.0);
         };
         let light = sums.at(z);
-        if let Some(end) = sums.diffuse(z) {
+        let is_plain = |end: &&DiffuseEnd| !end.is_turned(self.segment.w);
+        if let Some(end) = sums.diffuse(z).filter(is_plain) {
             let of_walk = (self.light.len(), self.end(), light);
             let found = end.light_image(context, of_walk, self.lens, &self.segment);
             let (contribution, weight) = found?;

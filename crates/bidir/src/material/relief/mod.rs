@@ -43,6 +43,19 @@ pub enum Bitangent {
     AlongV,
 }
 
+/// The frame of `surface` with the z nearest to `normal` on the front, or as it is where that is undefined.
+fn fronted(surface: &SurfacePoint, normal: Vec3, tangent: Vec3) -> Frame {
+    let Some(normal) = normal.try_normalize() else {
+        return surface.shading;
+    };
+    let front = if normal.dot(surface.n_g) < 0.0 {
+        -normal
+    } else {
+        normal
+    };
+    Frame::from_z_and_tangent(front, tangent)
+}
+
 /// A material under a relief.
 #[derive(Clone, Debug)]
 pub struct Embossed {
@@ -95,35 +108,24 @@ impl Relief {
     ) -> Frame {
         let (normal, tangent) = match self {
             Self::Displacement(height) => displaced(height, surface, differentials, at),
-            Self::NormalMap(map) => (map.normal(surface, differentials, at), surface.shading.x),
+            Self::NormalMap(map) => (map.normal(surface, at), surface.shading.x),
         };
-        let Some(normal) = normal.try_normalize() else {
-            return surface.shading;
-        };
-        let front = if normal.dot(surface.n_g) < 0.0 {
-            -normal
-        } else {
-            normal
-        };
-        Frame::from_z_and_tangent(front, tangent)
+        fronted(surface, normal, tangent)
     }
 }
 
 impl NormalMap {
-    fn normal(
-        &self,
-        surface: &SurfacePoint,
-        differentials: &Differentials,
-        at: &TexturePoint,
-    ) -> Vec3 {
+    /// The normal of the map at a point, on the side of the geometric normal.
+    pub(super) fn front(&self, surface: &SurfacePoint, at: &TexturePoint) -> Vec3 {
+        fronted(surface, self.normal(surface, at), surface.shading.x).z
+    }
+
+    fn normal(&self, surface: &SurfacePoint, at: &TexturePoint) -> Vec3 {
         let stored = Vec3::from(self.texture.eval(at)) * 2.0 - 1.0;
         let frame = &surface.shading;
         let side = match self.bitangent {
             Bitangent::RightHanded => 1.0,
-            Bitangent::AlongV => {
-                let turn = differentials.dp_du.cross(differentials.dp_dv);
-                1f32.copysign(turn.dot(frame.z))
-            }
+            Bitangent::AlongV => at.handedness.sign(),
         };
         let scale = Vec3::new(self.scale, self.scale * side, 1.0);
         frame.to_world(stored * scale)
@@ -151,6 +153,7 @@ fn displaced(
             point: at.point + along * step,
             normal: (n + dn * step).normalize_or(n),
             footprint: at.footprint,
+            handedness: at.handedness,
         };
         along + n * ((height.eval(&moved) - h) / step) + dn * h
     };

@@ -80,11 +80,15 @@ impl Reader<'_, '_> {
         let Some(info) = &self.described.normal_texture else {
             return Ok(material);
         };
-        Ok(material.embossed(Relief::NormalMap(NormalMap {
+        Ok(material.embossed(Relief::NormalMap(self.normal_map(info)?)))
+    }
+
+    fn normal_map(&mut self, info: &TextureInfo) -> Result<NormalMap, GltfFault> {
+        Ok(NormalMap {
             texture: self.image(info, Encoding::Linear)?,
             scale: info.scale.unwrap_or(1.0),
             bitangent: Bitangent::AlongV,
-        })))
+        })
     }
 
     fn principled(&mut self, color: [f32; 4]) -> Result<PrincipledMaterial, GltfFault> {
@@ -227,10 +231,8 @@ impl Reader<'_, '_> {
             let factor = coat.clearcoat_roughness_factor;
             let texture = coat.clearcoat_roughness_texture.as_ref();
             material.coat_roughness = self.number(factor, texture, Part::Green)?;
-            if coat.clearcoat_normal_texture.is_some() {
-                let message = "the normal texture of a clear coat has no effect: the coat has \
-                     the normals of its base";
-                self.context.warn(self.place.clone(), message);
+            if let Some(info) = &coat.clearcoat_normal_texture {
+                material.coat_normal = Some(self.normal_map(info)?);
             }
         }
         if let Some(sheen) = &extensions.sheen {

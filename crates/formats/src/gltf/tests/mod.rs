@@ -1,5 +1,6 @@
 //! Small files made here, read as any other.
 
+mod frames;
 mod geometry;
 mod look;
 mod nested;

@@ -1,0 +1,77 @@
+//! A clear coat whose normal is not that of the base: lobes of two frames, chosen together.
+//!
+//! Each factor that belongs to the coat and one direction, its lobe and what it leaves of the light, is a function of
+//! the direction in the coat's frame; all else is of the base's. Mirrored directions of the two do not
+//! coincide, so smooth facets become rough ones that are hardly to be told from them, and no lobe is Dirac.
+
+use super::{Lobe, Principled};
+use crate::bsdf::Lobes;
+use crate::bsdf::microfacet::{Ggx, SMOOTH_ALPHA};
+use crate::math::{Vec2, Vec3};
+
+/// The slope of facets that would be smooth.
+const LEAST_ALPHA: f32 = 2.0 * SMOOTH_ALPHA;
+
+/// A layer with a frame of its own.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Layer {
+    /// All but the coat.
+    Base,
+    /// The clear coat.
+    Coat,
+}
+
+impl Principled {
+    /// How its base scatters.
+    pub(in crate::bsdf) fn lobes(&self) -> Lobes {
+        let is_glossy = self.diffuse <= 0.0 && self.through.is_black() && self.sheen.is_black();
+        if is_glossy {
+            Lobes::Glossy
+        } else {
+            Lobes::Diffuse
+        }
+    }
+
+    /// The normal of the coat, in the frame of the base. None: they have one frame.
+    #[inline]
+    pub(in crate::bsdf) fn coat_normal(&self) -> Option<Vec3> {
+        (self.coat_normal != Vec3::Z).then_some(self.coat_normal)
+    }
+
+    /// The same under a coat with the normal `n`; without a coat the same.
+    pub(in crate::bsdf) fn with_coat_normal(self, n: Vec3) -> Self {
+        if self.coat <= 0.0 || n == Vec3::Z {
+            return self;
+        }
+        let ggx = if self.ggx.is_smooth() {
+            Ggx::new(LEAST_ALPHA, LEAST_ALPHA)
+        } else {
+            self.ggx
+        };
+        Self {
+            ggx,
+            coat_alpha: self.coat_alpha.max(LEAST_ALPHA),
+            coat_normal: n,
+            ..self
+        }
+    }
+
+    /// Draws a direction as `sample` does, for `wo` in the frames of base and coat; it is in the frame of the layer
+    /// that is returned. Weight and densities are not those of both layers together. None: nothing is scattered.
+    pub(crate) fn sample_layers(
+        &self,
+        [base, coat]: [Vec3; 2],
+        u_lobe: f32,
+        u: Vec2,
+    ) -> Option<(Layer, Vec3)> {
+        let base = self.along_grain(base);
+        let shares = self.shares(base, &self.layers_between([base, coat]));
+        let (lobe, rest) = self.probs_of(&shares)?.choose(u_lobe);
+        if lobe == Lobe::Coat {
+            let wi = self.coat_ggx().sample_mirror(coat, u)?;
+            return Some((Layer::Coat, wi));
+        }
+        let wi = self.sample_lobe(lobe, base, rest, u)?;
+        Some((Layer::Base, self.off_grain(wi)))
+    }
+}

@@ -1,0 +1,302 @@
+//! The frames by which a surface is seen: shading normals turn towards a camera that they would face away from.
+//!
+//! With o the direction from a vertex towards the camera's end of its path, N and S the geometric and the shading
+//! normal on the side of o, and κ = min(¾ o·N, 0.15), a layer scatters by the normal S',
+//!
+//! - S where that is near enough: where o·S ≥ κ if it scatters diffusely, and elsewhere where r·N ≥ κ, with
+//!   r = 2 (o·S) S - o the mirrored direction;
+//! - else the nearest to S that has o·S' = κ, or the one that mirrors o to r, lifted until r·N = κ.
+//!
+//! S' depends on the path alone, and so does its value, whichever end a walk came from. Walks from a light do not know
+//! o, and draw by S (docs/derivations/mis-weights.md#shading-normals).
+
+use super::Vertex;
+use super::scatter::Side;
+use crate::bsdf::{Bsdf, BsdfSample, BsdfValue, Layer, Lobes, TransportMode};
+use crate::math::{Frame, Vec2, Vec3};
+use crate::spectrum::Spectrum;
+
+/// The greatest κ.
+pub(super) const MOST_LEAST: f32 = 0.15;
+/// The greatest part of o·N that κ is.
+pub(super) const LEAST_PART: f32 = 0.75;
+
+/// The least cosine between o and S', or between the mirrored direction and N, where o·N is `cos`.
+#[inline]
+pub(super) fn least_cosine(cos: f32) -> f32 {
+    (LEAST_PART * cos).min(MOST_LEAST)
+}
+
+/// S' of a layer with `lobes` for the unit direction `o`, on the side of `n_s`; o·N > 0. None: it is `n_s`.
+fn turned(n_s: Vec3, n_g: Vec3, o: Vec3, lobes: Lobes) -> Option<Vec3> {
+    let side = 1f32.copysign(n_g.dot(o));
+    let (n_s, n_g) = (n_s * side, n_g * side);
+    let (cos, along) = (n_g.dot(o), n_s.dot(o));
+    let least = least_cosine(cos);
+    let within = |height: f32| (1.0 - height * height).max(0.0).sqrt();
+    let normal = match lobes {
+        Lobes::Diffuse if along >= least => return None,
+        Lobes::Diffuse => o * least + (n_s - o * along).normalize_or_zero() * within(least),
+        Lobes::Glossy => {
+            let mirrored = n_s * (2.0 * along.max(0.0)) - o;
+            let height = mirrored.dot(n_g);
+            if height >= least {
+                return None;
+            }
+            let flat = (mirrored - n_g * height).normalize_or_zero();
+            o + n_g * least + flat * within(least)
+        }
+    };
+    let normal = normal.normalize_or(n_g);
+    let is_in_front = normal.dot(n_g) > 0.0;
+    Some(if is_in_front { normal } else { n_g } * side)
+}
+
+/// The frames of a surface's layers: of its base, and of a clear coat with a normal of its own.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Frames {
+    base: Frame,
+    coat: Option<Frame>,
+}
+
+impl Frames {
+    /// A direction in each frame.
+    fn to_local(self, w: Vec3) -> [Vec3; 2] {
+        let base = self.base.to_local(w);
+        [base, self.coat.map_or(base, |coat| coat.to_local(w))]
+    }
+
+    /// Draws a direction for `wo` as `Bsdf::sample` does. None: nothing is scattered.
+    pub(super) fn sample(
+        &self,
+        bsdf: &Bsdf,
+        wo: Vec3,
+        (mode, u_lobe, u): (TransportMode, f32, Vec2),
+    ) -> Option<Drawn> {
+        let local = self.to_local(wo);
+        if let (Bsdf::Principled(layers), Some(coat)) = (bsdf, &self.coat) {
+            let (layer, wi) = layers.sample_layers(local, u_lobe, u)?;
+            let frame = match layer {
+                Layer::Base => &self.base,
+                Layer::Coat => coat,
+            };
+            return Some(Drawn::Finite(frame.to_world(wi), wi.z));
+        }
+        let sample = bsdf.sample(local[0], mode, || u_lobe, u)?;
+        let wi = self.base.to_world(sample.wi);
+        Some(if sample.is_delta {
+            Drawn::Dirac(BsdfSample { wi, ..sample })
+        } else {
+            Drawn::Finite(wi, sample.wi.z)
+        })
+    }
+}
+
+/// `w` or its opposite, by the sign of `agreement`: walks from a light that draw a direction which the normals see on
+/// different sides take its opposite. These two parts of the sphere are images of each other.
+pub(super) fn on_side(w: Vec3, agreement: f32) -> Vec3 {
+    if agreement < 0.0 { -w } else { w }
+}
+
+/// A direction drawn in world space.
+pub(super) enum Drawn {
+    /// From the lobes that are not Dirac, with its cosine in the frame of its layer.
+    Finite(Vec3, f32),
+    /// From a Dirac lobe, with its weight and coefficients.
+    Dirac(BsdfSample),
+}
+
+impl Vertex {
+    /// True if the base scatters between `o`, towards the camera, and any other direction by the frame of the vertex,
+    /// and so does all else.
+    #[inline]
+    pub(super) fn is_seen_plainly(&self, bsdf: &Bsdf, o: &Side) -> bool {
+        let (along, cos) = (o.local.z * 1f32.copysign(o.cos_g), o.cos_g.abs());
+        // What mirrors above the surface is seen by diffuse layers, too.
+        let height = 2.0 * along * self.frame.z.dot(self.locus.n_g) - cos;
+        let is_near = cos > 0.0 && height >= least_cosine(cos);
+        (is_near || self.is_near_enough(bsdf, o.world)) && bsdf.coat_normal().is_none()
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn is_near_enough(&self, bsdf: &Bsdf, o: Vec3) -> bool {
+        turned(self.frame.z, self.locus.n_g, o, bsdf.lobes()).is_none()
+    }
+
+    /// The frames as they are.
+    pub(super) fn frames(&self, bsdf: &Bsdf) -> Frames {
+        let coat = bsdf.coat_normal().map(|n| self.frame.to_world(n));
+        Frames {
+            base: self.frame,
+            coat: coat.map(Frame::from_z),
+        }
+    }
+
+    /// The frames that the direction `o` towards the camera sees. None: those that they are.
+    pub(super) fn frames_toward(&self, bsdf: &Bsdf, o: Vec3) -> Option<Frames> {
+        let plain = self.frames(bsdf);
+        let turn = |frame: &Frame, lobes: Lobes| {
+            let z = turned(frame.z, self.locus.n_g, o, lobes)?;
+            Some(Frame::from_z_and_tangent(z, frame.x))
+        };
+        let base = turn(&plain.base, bsdf.lobes());
+        let coat = plain.coat.and_then(|coat| turn(&coat, Lobes::Glossy));
+        (base.is_some() || coat.is_some()).then(|| Frames {
+            base: base.unwrap_or(plain.base),
+            coat: coat.or(plain.coat),
+        })
+    }
+
+    /// Value and densities between two directions of a walk, as [`Turn`](super::Turn) has them, where layers are not
+    /// seen by the frame of the vertex: the camera's walk draws by the frames that it sees, the light's by those that
+    /// they are.
+    #[cold]
+    #[inline(never)]
+    pub(super) fn value_by_frames(
+        &self,
+        bsdf: &Bsdf,
+        [wo, wi]: [Vec3; 2],
+        mode: TransportMode,
+    ) -> BsdfValue {
+        let camera = match mode {
+            TransportMode::Radiance => wo,
+            TransportMode::Importance => wi,
+        };
+        let plain = self.frames(bsdf);
+        let Some(seen) = self.frames_toward(bsdf, camera) else {
+            return self.value_in(
+                bsdf,
+                &plain,
+                [wo, wi].map(|w| plain.to_local(w)),
+                [wo, wi],
+                mode,
+            );
+        };
+        let locals = [wo, wi].map(|w| seen.to_local(w));
+        let by_camera = self.value_in(bsdf, &seen, locals, [wo, wi], mode);
+        let cos_g = self.locus.n_g.dot(camera);
+        let drawn = plain
+            .to_local(camera)
+            .map(|local| on_side(local, local.z * cos_g));
+        let light = |w: Vec3| if self.faces(&plain, w) { 1.0 } else { 0.0 };
+        let [pdf, pdf_reverse] = match mode {
+            TransportMode::Radiance => {
+                let locals = [drawn, plain.to_local(wi)];
+                let by_light = self.value_in(bsdf, &plain, locals, [wo, wi], mode);
+                [by_camera.pdf, by_light.pdf_reverse * light(wi)]
+            }
+            TransportMode::Importance => {
+                let locals = [plain.to_local(wo), drawn];
+                let by_light = self.value_in(bsdf, &plain, locals, [wo, wi], mode);
+                [by_light.pdf * light(wo), by_camera.pdf_reverse]
+            }
+        };
+        BsdfValue {
+            pdf,
+            pdf_reverse,
+            ..by_camera
+        }
+    }
+
+    /// True where a layer sees `w` on the side that the surface is on.
+    pub(super) fn faces(&self, frames: &Frames, w: Vec3) -> bool {
+        let cos_g = self.locus.n_g.dot(w);
+        frames.to_local(w).iter().any(|local| local.z * cos_g > 0.0)
+    }
+
+    /// The value by these frames, where both directions are `locals`, f with the ratio of cosines of each layer that
+    /// sees the light.
+    fn value_in(
+        &self,
+        bsdf: &Bsdf,
+        frames: &Frames,
+        [o, i]: [[Vec3; 2]; 2],
+        [wo, wi]: [Vec3; 2],
+        mode: TransportMode,
+    ) -> BsdfValue {
+        let (light, locals) = match mode {
+            TransportMode::Radiance => (wi, i),
+            TransportMode::Importance => (wo, o),
+        };
+        let cos_g = self.locus.n_g.dot(light);
+        let ratios = locals.map(|local| (local.z / cos_g).max(0.0));
+        let value = match (bsdf, frames.coat) {
+            (Bsdf::Principled(layers), Some(_)) => layers.eval_layers([o, i], ratios, mode),
+            _ => {
+                let value = bsdf.eval(o[0], i[0], mode);
+                let f = value.f * ratios[0];
+                BsdfValue { f, ..value }
+            }
+        };
+        let is_on_edge = self.locus.n_g.dot(wo) == 0.0 || cos_g == 0.0;
+        BsdfValue {
+            f: if is_on_edge { Spectrum::ZERO } else { value.f },
+            albedo_reverse: self.albedo(wi).max_lane(),
+            ..value
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::sin_cos;
+
+    /// Unit directions and normals, each pair on one side: the first is the geometric normal's.
+    fn cases() -> impl Iterator<Item = [Vec3; 2]> {
+        let at = |i: u16, z: f32| {
+            let (sin, cos) = sin_cos(2.4 * f32::from(i));
+            (Vec3::new(cos, sin, 0.0) * (1.0 - z * z).sqrt()).with_z(z)
+        };
+        (0..40).flat_map(move |i| {
+            let o = at(i, 0.01 + 0.98 * (f32::from(i) * 0.618).fract());
+            (0..40).map(move |j| [o, at(3 * j + 1, 0.2 + 0.8 * (f32::from(j) * 0.414).fract())])
+        })
+    }
+
+    /// The normal is one that the camera sees by its rule, on the front, and as it was where it may be.
+    #[test]
+    fn turned_normals_are_seen() {
+        let n_g = Vec3::Z;
+        let mut turns = [0; 2];
+        for [o, n_s] in cases() {
+            for (i, lobes) in [Lobes::Diffuse, Lobes::Glossy].into_iter().enumerate() {
+                let n = turned(n_s, n_g, o, lobes).unwrap_or(n_s);
+                let least = least_cosine(o.z);
+                let seen = match lobes {
+                    Lobes::Diffuse => n.dot(o),
+                    Lobes::Glossy => (n * (2.0 * n.dot(o)) - o).z,
+                };
+                assert!((n.length() - 1.0).abs() < 1e-4 && n.z > 0.0 && n.dot(o) > 0.0);
+                assert!(
+                    seen > least - 1e-4,
+                    "{seen} < {least}: {o}, {n_s}, {lobes:?}"
+                );
+                let is_turned = n != n_s;
+                turns[i] += usize::from(is_turned);
+                assert!(
+                    !is_turned || seen < least + 1e-3,
+                    "{seen}: {o}, {n_s}, {lobes:?}"
+                );
+                // Seen from below, and with all on the other side, it is the same.
+                let below = turned(-n_s, -n_g, o, lobes).unwrap_or(-n_s);
+                assert!(below.distance(-n) < 1e-5);
+            }
+            assert!(turned(n_g, n_g, o, Lobes::Glossy).is_none());
+        }
+        assert!(turns.iter().all(|&turns| turns > 200), "{turns:?}");
+    }
+
+    /// It turns steadily: near directions see near normals.
+    #[test]
+    fn turned_normals_are_continuous() {
+        for [o, n_s] in cases() {
+            let near = (o + Vec3::new(1e-4, -1e-4, 5e-5)).normalize();
+            for lobes in [Lobes::Diffuse, Lobes::Glossy] {
+                let [a, b] = [o, near].map(|o| turned(n_s, Vec3::Z, o, lobes).unwrap_or(n_s));
+                assert!(a.distance(b) < 0.02, "{a}, {b}: {o}, {n_s}, {lobes:?}");
+            }
+        }
+    }
+}

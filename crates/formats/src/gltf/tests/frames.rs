@@ -1,0 +1,221 @@
+//! Layers in frames of their own, and frames of mirrored surfaces, by what a plate scatters.
+
+use super::{Draft, F32, floats};
+use crate::image::encode_png;
+use crate::import::Loaded;
+use bidir::bsdf::TransportMode;
+use bidir::math::{Vec2, Vec3};
+use bidir::path::{Job, PathContext, PathSettings, Vertex};
+use bidir::sampler::{Domain, Sampler, SamplerKind};
+use bidir::scene::Chances;
+use bidir::spectrum::{Spectrum, Wavelengths};
+use serde_json::{Value, json};
+
+/// Texture coordinates of the corners from the lower left, counter-clockwise.
+const UVS: [f32; 8] = [0.0, 1.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0];
+
+/// A plate in the plane z = 0 that faces +z, with a material and a 1 × 1 image of each colour.
+fn plate(material: &Value, uvs: [f32; 8], texels: &[[f32; 3]]) -> Draft {
+    let mut draft = Draft::empty();
+    let corners = [
+        -1., -1., 0., 1., -1., 0., 1., 1., 0., -1., -1., 0., 1., 1., 0., -1., 1., 0.,
+    ];
+    let at = |i: usize| Vec2::new(uvs[2 * i], uvs[2 * i + 1]).to_array();
+    let uvs = [0, 1, 2, 0, 2, 3].map(at).concat();
+    let position = draft.accessor(&floats(&corners), (F32, "VEC3", 6));
+    let uv = draft.accessor(&floats(&uvs), (F32, "VEC2", 6));
+    let normal = draft.accessor(&floats(&[0.0, 0.0, 1.0].repeat(6)), (F32, "VEC3", 6));
+    let attributes = json!({ "POSITION": position, "NORMAL": normal, "TEXCOORD_0": uv });
+    draft.json["meshes"] = json!([{ "primitives": [{ "attributes": attributes, "material": 0 }] }]);
+    draft.json["nodes"] = json!([{ "mesh": 0 }]);
+    draft.json["scenes"] = json!([{ "nodes": [0] }]);
+    draft.json["materials"] = json!([material]);
+    let views: Vec<usize> = texels
+        .iter()
+        .map(|&texel| draft.view(&encode_png([1, 1], &[linear(texel)]).unwrap()))
+        .collect();
+    let image = |view: &usize| json!({ "bufferView": view, "mimeType": "image/png" });
+    draft.json["images"] = views.iter().map(image).collect();
+    draft.json["textures"] = (0..views.len())
+        .map(|source| json!({ "source": source }))
+        .collect();
+    draft
+}
+
+/// The value that the encoder stores as `texel`: it takes numbers of light.
+fn linear(texel: [f32; 3]) -> [f32; 3] {
+    texel.map(|x| {
+        if x <= 0.04045 {
+            x / 12.92
+        } else {
+            ((x + 0.055) / 1.055).powf(2.4)
+        }
+    })
+}
+
+/// The texel of a normal.
+fn normal(x: f32, y: f32, z: f32) -> [f32; 3] {
+    Vec3::new(x, y, z)
+        .normalize()
+        .to_array()
+        .map(|n| (n + 1.0) / 2.0)
+}
+
+/// f cosθ between `wo`, towards the camera, and `wi` near the centre of the plate.
+fn scattered(loaded: &Loaded, wo: Vec3, wi: Vec3) -> f32 {
+    let settings = PathSettings::default();
+    let context = PathContext {
+        job: Job::of_own_subpaths(&loaded.scene, &loaded.view, &settings),
+        wavelengths: Wavelengths::default(),
+    };
+    let stream = Sampler::new(SamplerKind::Independent, 1).stream(Domain::Camera, 0, 0);
+    let space = context.job.scene.space().from_world();
+    let centre = space.transform_point3(glam::DVec3::new(0.1, 0.05, 0.0));
+    let origin = centre.as_vec3() + wo * 0.01;
+    let hit = context
+        .job
+        .scene
+        .intersect(origin, -wo, Chances::new(&stream, 1));
+    let hit = hit.expect("the plate is there");
+    let vertex = Vertex::surface(&context, &hit, wo, Spectrum::ONE, || 0.5);
+    let turn = vertex.turn(wo, wi, TransportMode::Radiance);
+    turn.scatter(&context)[0] * vertex.locus.n_g.dot(wi).abs()
+}
+
+/// Pairs of directions above the plate.
+fn pairs() -> impl Iterator<Item = [Vec3; 2]> {
+    let direction = |k: u8| {
+        let part = |step: f32| (0.31 + step * f32::from(k)).fract();
+        let (sin, cos) = (6.28 * part(0.618)).sin_cos();
+        let z = 0.15 + 0.8 * part(0.414);
+        Vec3::new(cos, sin, 0.0) * (1.0 - z * z).sqrt() + Vec3::Z * z
+    };
+    (0..40).map(move |k| [direction(2 * k), direction(2 * k + 1)])
+}
+
+/// Checks that the two plates scatter alike, the second between directions that are mirrored along an axis.
+#[track_caller]
+fn check_alike(name: &str, [first, second]: [&Loaded; 2], mirror: Vec3) {
+    let mut greatest = 0.0f32;
+    for [wo, wi] in pairs() {
+        let a = scattered(first, wo, wi);
+        let b = scattered(second, wo * mirror, wi * mirror);
+        greatest = greatest.max(a);
+        assert!(
+            (a - b).abs() <= 1e-3 * a.max(b) + 1e-5,
+            "{name}: {a}, {b} for {wo} and {wi}"
+        );
+    }
+    assert!(greatest > 0.05, "{name}: nothing is scattered");
+}
+
+/// Metal brushed along a slant, with normals that are tilted another way.
+fn brushed() -> Value {
+    json!({
+        "pbrMetallicRoughness": { "roughnessFactor": 0.5 },
+        "normalTexture": { "index": 0 },
+        "extensions": { "KHR_materials_anisotropy": {
+            "anisotropyStrength": 0.9, "anisotropyRotation": 0.6, "anisotropyTexture": { "index": 1 },
+        } },
+    })
+}
+
+/// A mirrored surface is the mirror image, be it mirrored by its texture coordinates, its node, or a parent.
+#[test]
+fn what_turns_in_a_frame_is_mirrored_with_the_surface() {
+    let texels = [normal(0.2, 0.3, 1.0), [0.9, 0.7, 1.0]];
+    let draft = |uvs| plate(&brushed(), uvs, &texels);
+    let plain = draft(UVS).load().unwrap();
+    let mirrored_u = std::array::from_fn(|i| if i % 2 == 0 { 1.0 - UVS[i] } else { UVS[i] });
+    let mirrored_v = std::array::from_fn(|i| if i % 2 == 1 { 1.0 - UVS[i] } else { UVS[i] });
+    let [along_x, along_y] = [Vec3::new(-1.0, 1.0, 1.0), Vec3::new(1.0, -1.0, 1.0)];
+    check_alike("u", [&plain, &draft(mirrored_u).load().unwrap()], along_x);
+    check_alike("v", [&plain, &draft(mirrored_v).load().unwrap()], along_y);
+    for (scale, mirror) in [([-2.0, 2.0, 2.0], along_x), ([1.0, -1.0, 1.0], along_y)] {
+        let mut node = draft(UVS);
+        node.json["nodes"][0]["scale"] = json!(scale);
+        check_alike("node", [&plain, &node.load().unwrap()], mirror);
+        let mut parent = draft(UVS);
+        parent.json["nodes"] = json!([{ "children": [1], "scale": scale }, { "mesh": 0 }]);
+        check_alike("parent", [&plain, &parent.load().unwrap()], mirror);
+        // Beside an equal one: both are instances of one object.
+        let mut shared = draft(UVS);
+        let beside = json!({ "mesh": 0, "translation": [9.0, 0.0, 0.0] });
+        shared.json["nodes"] = json!([{ "mesh": 0, "scale": scale }, beside]);
+        shared.json["scenes"] = json!([{ "nodes": [0, 1] }]);
+        check_alike("instance", [&plain, &shared.load().unwrap()], mirror);
+    }
+    // Two mirrors are a turn by 180°.
+    let mut turned = draft(UVS);
+    turned.json["nodes"][0]["scale"] = json!([-1.0, -1.0, 1.0]);
+    check_alike("turn", [&plain, &turned.load().unwrap()], along_x * along_y);
+}
+
+/// The image is mirrored, not only turned: without the mirror of directions it is another one.
+#[test]
+fn a_brushed_surface_is_not_its_mirror_image() {
+    let texels = [normal(0.2, 0.3, 1.0), [0.9, 0.7, 1.0]];
+    let loaded = plate(&brushed(), UVS, &texels).load().unwrap();
+    let mirror = Vec3::new(-1.0, 1.0, 1.0);
+    let differs = |[wo, wi]: [Vec3; 2]| {
+        let [a, b] = [(wo, wi), (wo * mirror, wi * mirror)].map(|(o, i)| scattered(&loaded, o, i));
+        (a - b).abs() > 0.1 * a.max(b)
+    };
+    assert!(pairs().filter(|&pair| differs(pair)).count() > 20);
+}
+
+/// Black under a clear coat: what is seen is the coat.
+fn coated(extra: &Value) -> Value {
+    let mut coat = json!({ "clearcoatFactor": 1, "clearcoatRoughnessFactor": 0.5 });
+    let mut material = json!({ "pbrMetallicRoughness": {
+        "baseColorFactor": [0, 0, 0, 1], "metallicFactor": 0,
+    } });
+    if extra["coat"] == json!(true) {
+        coat["clearcoatNormalTexture"] = json!({ "index": 0 });
+    }
+    if extra["base"] == json!(true) {
+        material["normalTexture"] = json!({ "index": 1 });
+    }
+    let black = json!({ "specularFactor": 0 });
+    material["extensions"] =
+        json!({ "KHR_materials_clearcoat": coat, "KHR_materials_specular": black });
+    material
+}
+
+/// A coat has the normals of the mesh, or those of its own map, whatever those of its base are.
+#[test]
+fn a_coat_has_normals_of_its_own() {
+    let load = |coat: bool, base: bool, of_coat: [f32; 3], of_base: [f32; 3]| {
+        let material = coated(&json!({ "coat": coat, "base": base }));
+        plate(&material, UVS, &[of_coat, of_base]).load().unwrap()
+    };
+    let (flat, slant) = (normal(0.0, 0.0, 1.0), normal(0.5, -0.2, 1.0));
+    let steep = normal(-0.9, 0.4, 1.0);
+    let plain = load(false, false, flat, flat);
+    check_alike(
+        "base mapped",
+        [&plain, &load(false, true, flat, slant)],
+        Vec3::ONE,
+    );
+    check_alike(
+        "base steep",
+        [&plain, &load(false, true, flat, steep)],
+        Vec3::ONE,
+    );
+    let own = load(true, false, slant, flat);
+    check_alike(
+        "both mapped",
+        [&own, &load(true, true, slant, steep)],
+        Vec3::ONE,
+    );
+    check_alike(
+        "mapped apart",
+        [&own, &load(true, true, slant, normal(0.2, 0.2, 1.0))],
+        Vec3::ONE,
+    );
+    let apart = |[wo, wi]: [Vec3; 2]| {
+        let [a, b] = [&plain, &own].map(|loaded| scattered(loaded, wo, wi));
+        (a - b).abs() > 0.2 * a.max(b)
+    };
+    assert!(pairs().filter(|&pair| apart(pair)).count() > 10);
+}
