@@ -7,6 +7,7 @@ from .diffuse import DIFFUSE_ENDS
 from .laboratory import LABORATORY
 from .materials import MATERIALS
 from .media import MEDIA
+from .normals import NORMALS
 from .paths import PATHS
 from .pictures import PICTURES
 from .principled import PRINCIPLED
@@ -14,5 +15,5 @@ from .scenes import SCENES
 from .textures import TEXTURES
 from .views import VIEWS
 
-MUTATIONS = (PATHS + DIFFUSE_ENDS + PICTURES + SCENES + MATERIALS + MEDIA + PRINCIPLED + TEXTURES
+MUTATIONS = (PATHS + DIFFUSE_ENDS + PICTURES + SCENES + MATERIALS + NORMALS + MEDIA + PRINCIPLED + TEXTURES
              + VIEWS + LABORATORY)

@@ -1,8 +1,6 @@
 """Faults in paths: geometry, densities, weights, and which connections are made."""
 
-from .tests import PATH, RUNNING, analytic, coverage, estimators, formats, materials, relief, unit
-
-VISIBLE = "crates/bidir/src/path/visible.rs"
+from .tests import PATH, RUNNING, analytic, coverage, estimators, unit
 
 PATHS = [
     # --- path: geometry and scattering ----------------------------------------------------
@@ -33,48 +31,6 @@ PATHS = [
         "(self.local.z / self.cos_g).abs()",
         "1.0",
         PATH,
-    ),
-    (
-        "correction of shading normals for one mode only",
-        "crates/bidir/src/path/scatter.rs",
-        "TransportMode::Importance => (wi, wo),",
-        "TransportMode::Importance => (wo, wi),",
-        PATH,
-    ),
-    (
-        "shading normals turned by where the walk came from",
-        VISIBLE,
-        "TransportMode::Importance => wi,",
-        "TransportMode::Importance => wo,",
-        PATH,
-    ),
-    (
-        "light walks with the density of normals that the camera sees",
-        VISIBLE,
-        "[by_light.pdf, by_camera.pdf_reverse]",
-        "[by_camera.pdf, by_camera.pdf_reverse]",
-        materials("slanted_normals"),
-    ),
-    (
-        "shading normals that face away from the viewer",
-        VISIBLE,
-        "Lobes::Diffuse if along >= least => return None,",
-        "Lobes::Diffuse if along >= -1.0 => return None,",
-        relief("relief_is_not_black"),
-    ),
-    (
-        "a coat lit by the cosine of its base",
-        VISIBLE,
-        "let ratios = locals.map(|local| (local.z / cos_g).max(0.0));",
-        "let ratios = [(locals[0].z / cos_g).max(0.0); 2];",
-        formats("a_coat_has_normals_of_its_own"),
-    ),
-    (
-        "a coat with the normals of its base",
-        "crates/bidir/src/path/vertex.rs",
-        "coat.filter(is_apart)",
-        "coat.filter(|n| is_apart(n) && n.z > 2.0)",
-        formats("a_coat_has_normals_of_its_own"),
     ),
     # --- path: densities and weights ------------------------------------------------------
     (
