@@ -76,8 +76,8 @@ MEDIA = [
     (
         "media that are foreseen, and let all light through",
         "crates/bidir/src/integrator/stages/connect.rs",
-        "term.contribution * connection.transmittance",
-        "term.contribution",
+        "term.contribution *= connection.transmittance;",
+        "term.contribution *= Spectrum::ONE;",
         FURNACE,
     ),
     (

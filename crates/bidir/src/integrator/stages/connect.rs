@@ -225,7 +225,7 @@ impl Connector<'_> {
         };
         let value = term.value();
         let luminance = self.context.luminance(value.map(f32::abs));
-        term.contribution = term.contribution * connection.transmittance;
+        term.contribution *= connection.transmittance;
         let candidate = Candidate {
             term,
             score: Candidate::score(luminance * connection.root_visibility),
