@@ -349,7 +349,9 @@ def render(
             done = session.next_pass
             raise RenderInterruptedError(f"stopped after {done} passes", image) from error
     if end == "time" and rendered == 0:
-        raise RenderError(f"no pass was complete after {time:g} s: give it more time, or make the image smaller")
+        raise RenderError(
+            f"no pass was complete after {time:g} s: give it more time, or make the image smaller"
+        )
     session._stopping = end
     keeper.save()
     return session.snapshot()
