@@ -5,16 +5,12 @@
 mod blocks;
 mod constants;
 mod cost;
-mod counts;
 mod effort;
 mod emission;
 mod extent;
-mod known;
 mod learning;
 mod moments;
 mod plan;
-mod quads;
-mod selection;
 mod survey;
 #[cfg(test)]
 mod tests;
@@ -32,7 +28,7 @@ use crate::scene::Scene;
 use crate::stats::RayCounts;
 use crate::view::View;
 use constants::MOST_CACHED;
-use counts::of_connections;
+use moments::of_connections;
 use survey::Survey;
 
 /// The results of a short render before the first pass: a pure function of scene, settings and its number of
@@ -85,11 +81,10 @@ pub(super) fn prepare(
         settings: &settings,
     };
     let survey = Survey::run(task, effort)?;
-    let cells = survey.found.cells();
-    let plan = is_open.then(|| Plan::best(task, &survey, &cells));
+    let plan = is_open.then(|| Plan::best(task, &survey));
     let mut decided = plan.map_or_else(|| settings.clone(), |plan| plan.apply(&settings));
     let mut training = Training::new(&survey);
-    training.learn(task, &decided, &survey, &cells);
+    training.learn(task, &decided, &survey);
     training.bound_cache(view.film(), &mut decided);
     training.plan = plan.map(|plan| Plan {
         samples_per_subpath: decided.lvc.samples_per_subpath,
