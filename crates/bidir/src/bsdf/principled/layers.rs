@@ -12,6 +12,9 @@ use crate::math::{Vec2, Vec3};
 /// The slope of facets that would be smooth.
 const LEAST_ALPHA: f32 = 2.0 * SMOOTH_ALPHA;
 
+/// The normal of a coat in the frame of its base, where they are one.
+pub(super) const UPRIGHT: [i16; 3] = [0, 0, i16::MAX];
+
 /// A layer with a frame of its own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Layer {
@@ -35,12 +38,15 @@ impl Principled {
     /// The normal of the coat, in the frame of the base. None: they have one frame.
     #[inline]
     pub(in crate::bsdf) fn coat_normal(&self) -> Option<Vec3> {
-        (self.coat_normal != Vec3::Z).then_some(self.coat_normal)
+        let normal = || Vec3::from(self.coat_normal.map(f32::from)).normalize();
+        (self.coat_normal != UPRIGHT).then(normal)
     }
 
     /// The same under a coat with the normal `n`; without a coat the same.
     pub(in crate::bsdf) fn with_coat_normal(self, n: Vec3) -> Self {
-        if self.coat <= 0.0 || n == Vec3::Z {
+        let steps = (n * f32::from(i16::MAX)).round().to_array();
+        let coat_normal = steps.map(|step| step as i16);
+        if self.coat <= 0.0 || coat_normal == UPRIGHT {
             return self;
         }
         let ggx = if self.ggx.is_smooth() {
@@ -51,7 +57,7 @@ impl Principled {
         Self {
             ggx,
             coat_alpha: self.coat_alpha.max(LEAST_ALPHA),
-            coat_normal: n,
+            coat_normal,
             ..self
         }
     }

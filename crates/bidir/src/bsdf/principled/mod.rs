@@ -76,8 +76,8 @@ pub struct Principled {
     /// k̄ of a transparent solid's facets, likewise.
     lost_through: Sides,
     wall: Wall,
-    /// The normal of the coat, in the frame of the base.
-    coat_normal: Vec3,
+    /// The normal of the coat, in the frame of the base. Unit: 1/[`i16::MAX`].
+    coat_normal: [i16; 3],
 }
 
 /// The ways in which light leaves, as they are drawn.

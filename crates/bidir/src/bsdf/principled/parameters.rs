@@ -5,7 +5,7 @@ use super::sheen::SHEEN_ALPHA;
 use super::{Principled, under};
 use crate::bsdf::microfacet::Ggx;
 use crate::bsdf::multiple::{self, Sides};
-use crate::math::{INV_PI, Vec2, Vec3, sqr};
+use crate::math::{INV_PI, Vec2, sqr};
 use crate::spectrum::Spectrum;
 
 /// The medium behind a transparent surface.
@@ -147,7 +147,7 @@ impl Principled {
             lost: lost.unwrap_or(0.0),
             lost_through: Sides::NONE,
             wall,
-            coat_normal: Vec3::Z,
+            coat_normal: super::layers::UPRIGHT,
         }
         .with_lost_through()
     }
