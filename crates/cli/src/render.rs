@@ -243,8 +243,10 @@ impl Job<'_> {
             if let Some(exit) = self.signals.exit() {
                 break End::Signal(exit);
             }
+            // The alarm may ring a little late.
+            let is_late = budget.time.is_some_and(|time| spent.total >= time);
             let begun = Instant::now();
-            if !session.step(&reporter) {
+            if is_late && rendered == 0 || !session.step(&reporter) {
                 break self.broken_off(budget, rendered);
             }
             rendered += 1;

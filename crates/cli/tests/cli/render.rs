@@ -366,7 +366,9 @@ fn black_and_uniform_images_say_why() {
     let place = Workplace::new();
     let check = |flags: &str, camera: &str, world: &str, expected: &str| {
         let film = "Film \"rgb\" \"integer xresolution\" 8 \"integer yresolution\" 8";
-        let text = format!("{camera}\nCamera \"perspective\"\n{film}\nWorldBegin\n{world}\n");
+        let filter = "PixelFilter \"box\"";
+        let text =
+            format!("{camera}\nCamera \"perspective\"\n{film}\n{filter}\nWorldBegin\n{world}\n");
         place.write("blank.pbrt", &text);
         let ran = place.run(&format!(
             "render blank.pbrt --spp 2 -q -o blank.exr {flags}"
@@ -401,12 +403,13 @@ fn black_and_uniform_images_say_why() {
     );
     let lit = format!("{point} {ball}");
     check(
-        "--max-depth 0",
-        outside,
+        "",
+        &format!("Integrator \"path\" \"integer maxdepth\" 0\n{outside}"),
         &lit,
         &black("with at most 0 scattering events"),
     );
-    check("--strategies s0", outside, &lit, &black("the strategies"));
+    let alone = "--integrator bdpt --strategies s0";
+    check(alone, outside, &lit, &black("the strategies"));
     let coal = format!("{point} Material \"diffuse\" \"rgb reflectance\" [0 0 0] {ball}");
     check(
         "",

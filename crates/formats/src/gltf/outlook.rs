@@ -72,6 +72,8 @@ pub(super) fn better(loaded: &Loaded, needs: Needs) -> Option<Outlook> {
 /// Width and height of the small picture, and its passes.
 const SIZE: [u32; 2] = [32, 24];
 const PASSES: u64 = 8;
+/// The scattering events of its paths: more than a lamp behind several panes needs.
+const DEPTH: u32 = 32;
 
 /// Returns true if less than half of the places in view are lit.
 fn is_dark(scene: &Scene, view: &View) -> bool {
@@ -83,7 +85,8 @@ fn is_dark(scene: &Scene, view: &View) -> bool {
     let Ok(small) = View::new(camera, small) else {
         return false;
     };
-    let settings = Settings::new(IntegratorKind::Bdpt);
+    let mut settings = Settings::new(IntegratorKind::Bdpt);
+    settings.path.max_depth = Some(DEPTH);
     let Ok(mut session) = Session::new(scene, &small, settings, &Resources::default()) else {
         return false;
     };
