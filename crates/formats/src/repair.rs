@@ -60,7 +60,7 @@ impl Repairs {
 
 /// Returns true for a vector that has no direction.
 pub(crate) fn has_no_direction(v: &[f32; 3]) -> bool {
-    !v.iter().all(|x| x.is_finite()) || *v == [0.0; 3]
+    !v.iter().all(|x| x.is_finite()) || v.iter().all(|&x| x == 0.0)
 }
 
 /// Twice the area of a triangle, along the normal of its front.

@@ -168,7 +168,6 @@ impl Pose {
             right,
             up,
             forward,
-            ..self
         }
     }
 }

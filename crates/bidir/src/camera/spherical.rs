@@ -90,7 +90,7 @@ impl Spherical {
 
     /// A direction of the world in camera space, and dω_camera/dω_world = |det S⁻¹| / |S⁻¹ω|³.
     #[inline]
-    fn to_camera(&self, w: Vec3) -> (Vec3, f32) {
+    fn in_camera(&self, w: Vec3) -> (Vec3, f32) {
         let local = self.pose.to_local(w);
         let Some([_, inverse]) = &self.stretch else {
             return (local, 1.0);
@@ -102,7 +102,7 @@ impl Spherical {
 
     #[inline]
     pub(super) fn raster(&self, w: Vec3) -> Vec2 {
-        let (local, _) = self.to_camera(w);
+        let (local, _) = self.in_camera(w);
         let p = match self.mapping {
             SphericalMapping::Equirectangular => {
                 let around = libm::atan2f(local.z, local.x) / (2.0 * PI);
@@ -137,7 +137,7 @@ impl Spherical {
     #[inline]
     pub(super) fn density(&self, w: Vec3) -> f32 {
         let area = self.resolution.x * self.resolution.y;
-        let (local, change) = self.to_camera(w);
+        let (local, change) = self.in_camera(w);
         let density = match self.mapping {
             SphericalMapping::Equirectangular => {
                 let sin = libm::hypotf(local.x, local.z);

@@ -55,10 +55,15 @@ pub(super) fn blank_warning(
     picture: &Picture,
 ) -> Option<String> {
     let first = picture.pixels.first()?;
-    if picture.pixels.iter().any(|pixel| pixel != first) {
+    let bits = |pixel: &[f32; 3]| pixel.map(|value| (value + 0.0).to_bits());
+    if picture
+        .pixels
+        .iter()
+        .any(|pixel| bits(pixel) != bits(first))
+    {
         return None;
     }
-    if *first == [0.0; 3] {
+    if bits(first) == [0; 3] {
         return Some(format!(
             "the image is black: {}",
             darkness(scene, view, settings)

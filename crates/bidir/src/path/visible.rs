@@ -221,13 +221,12 @@ impl Vertex {
         };
         let cos_g = self.locus.n_g.dot(light);
         let ratios = locals.map(|local| (local.z / cos_g).max(0.0));
-        let value = match (bsdf, frames.coat) {
-            (Bsdf::Principled(layers), Some(_)) => layers.eval_layers([o, i], ratios, mode),
-            _ => {
-                let value = bsdf.eval(o[0], i[0], mode);
-                let f = value.f * ratios[0];
-                BsdfValue { f, ..value }
-            }
+        let value = if let (Bsdf::Principled(layers), Some(_)) = (bsdf, frames.coat) {
+            layers.eval_layers([o, i], ratios, mode)
+        } else {
+            let value = bsdf.eval(o[0], i[0], mode);
+            let f = value.f * ratios[0];
+            BsdfValue { f, ..value }
         };
         let is_on_edge = self.locus.n_g.dot(wo) == 0.0 || cos_g == 0.0;
         BsdfValue {

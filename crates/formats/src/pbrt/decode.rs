@@ -56,6 +56,7 @@ enum State {
 }
 
 impl State {
+    #[expect(clippy::match_same_arms, reason = "each state has its arms together")]
     fn after(self, byte: u8) -> Self {
         match (self, byte) {
             (Self::Comment, b'\r' | b'\n') => Self::Between,

@@ -30,11 +30,17 @@ impl Principled {
 
     #[inline]
     fn lost_of(&self, w: Vec3) -> Lost {
-        let mirrors = (self.lost > 0.0).then(|| multiple::of_mirrors(self.ggx, w));
-        let is_solid = !self.lost_through.is_none();
         Lost {
-            mirrors: mirrors.unwrap_or(0.0),
-            through: is_solid.then(|| self.interface().lost_of(w)).unwrap_or(0.0),
+            mirrors: if self.lost > 0.0 {
+                multiple::of_mirrors(self.ggx, w)
+            } else {
+                0.0
+            },
+            through: if self.lost_through.is_none() {
+                0.0
+            } else {
+                self.interface().lost_of(w)
+            },
         }
     }
 

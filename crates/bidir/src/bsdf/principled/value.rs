@@ -6,6 +6,7 @@ use crate::math::{Vec3, warp};
 use crate::spectrum::Spectrum;
 
 /// f of one lobe between two directions, and the densities of drawing each direction for the other.
+#[derive(Clone, Copy)]
 pub(super) struct LobeValue {
     pub(super) f: Spectrum,
     pub(super) densities: [f32; 2],

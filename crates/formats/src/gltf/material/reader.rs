@@ -188,6 +188,7 @@ impl Reader<'_, '_> {
 
     /// Reads the medium inside: at `attenuationDistance`, `attenuationColor` is left of the light. Some(None): it is
     /// clear. None: there is no volume, or no light gets in.
+    #[expect(clippy::option_option, reason = "a volume may be clear")]
     pub(super) fn inside(&self) -> Result<Option<Option<Medium>>, GltfFault> {
         let extensions = &self.described.extensions;
         let clear = extensions.transmission.as_ref();

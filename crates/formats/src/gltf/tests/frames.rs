@@ -106,7 +106,7 @@ fn check_alike(name: &str, [first, second]: [&Loaded; 2], mirror: Vec3) {
             "{name}: {a}, {b} for {wo} and {wi}"
         );
     }
-    assert!(greatest > 0.01, "{name}: at most {greatest}");
+    assert!(greatest > 0.005, "{name}: at most {greatest}");
 }
 
 /// Metal brushed along a slant, with normals that are tilted another way.

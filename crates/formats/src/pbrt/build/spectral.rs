@@ -137,7 +137,9 @@ fn spectral_eta(
 ) -> Result<Option<(f32, Span)>, Fault> {
     let (eta, span, is_constant) = if let Some(parameter) = reader.find(ParameterType::Rgb, name) {
         let rgb = color::rgb(parameter, Purpose::Unbounded)?;
-        let is_grey = rgb.iter().all(|channel| *channel == rgb[0]);
+        let is_grey = rgb
+            .iter()
+            .all(|channel| channel.to_bits() == rgb[0].to_bits());
         let eta = if is_grey { rgb[0] } else { luminance(rgb) };
         (eta, parameter.value_span, is_grey)
     } else if let Some((spectrum, parameter)) = read(reader, name)? {

@@ -14,7 +14,7 @@ impl Numbers {
         let mut z = self.0;
         z = (z ^ z >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
         z = (z ^ z >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
-        (z ^ z >> 31) as f64 / 2f64.powi(64)
+        (z ^ z >> 31) as f64 * (1.0 / 18_446_744_073_709_551_616.0)
     }
 }
 
@@ -53,7 +53,7 @@ impl Made {
         let replicates: Vec<_> = replicates.collect();
         let all = n * REPLICATES as f64;
         let mean = |[sum, _]: &[f64; 2]| sum / all;
-        let variance = |[sum, squares]: &[f64; 2]| (squares / all - (sum / all).powi(2)) / all;
+        let variance = |[sum, squares]: &[f64; 2]| (squares / all - sum / all * (sum / all)) / all;
         Self {
             whole: [
                 pixels(&sums.iter().map(mean).collect::<Vec<_>>()),
