@@ -136,7 +136,7 @@ impl Job<'_> {
         );
         let Some(mut session) = started? else {
             return match (self.signals.exit(), budget.time) {
-                (None, Some(time)) => Err(self.no_pass(time, is_resumed, None)),
+                (None, Some(time)) => Err(Self::no_pass(time, is_resumed, None)),
                 _ => Ok(stopped(self.signals, is_resumed, self.console)),
             };
         };
@@ -163,7 +163,7 @@ impl Job<'_> {
             End::Signal(_) if session.film().passes().is_empty() => {
                 return Ok(stopped(self.signals, false, self.console));
             }
-            End::NoPass(time) => return Err(self.no_pass(time, is_resumed, pass_time)),
+            End::NoPass(time) => return Err(Self::no_pass(time, is_resumed, pass_time)),
             End::Signal(_) | End::Limit(_) => {}
         }
         let header = writer.header(&session, course.stopping);
@@ -183,9 +183,9 @@ impl Job<'_> {
         // One without a light was warned of before it was rendered.
         let is_lit = !self.loaded.scene.lights().is_empty();
         let blank = session.blank_warning().filter(|_| is_lit);
-        blank
-            .iter()
-            .for_each(|warning| self.console.warning(warning));
+        if let Some(warning) = &blank {
+            self.console.warning(warning);
+        }
         self.print_end(&summary, &report, &writer, end);
         Ok(match end {
             End::Signal(exit) => self.exit(exit),
@@ -195,7 +195,7 @@ impl Job<'_> {
 
     /// Returns the failure of a run whose `time` ended before one of its passes did, each of which takes `pass_time`,
     /// if that is known.
-    fn no_pass(&self, time: Duration, is_resumed: bool, pass_time: Option<Duration>) -> Failure {
+    fn no_pass(time: Duration, is_resumed: bool, pass_time: Option<Duration>) -> Failure {
         let further = if is_resumed { "further " } else { "" };
         let time = args::Duration(time);
         let message = format!("no {further}pass was complete after {time}: nothing was written");

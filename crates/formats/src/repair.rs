@@ -134,7 +134,7 @@ mod tests {
     fn check_normal(normal: [f32; 3], others: [f32; 3], expected: [f32; 3]) {
         let mut normals = [normal, others, others, others];
         assert_eq!(repair_normals(&QUAD, &HALVES, &mut normals), 1);
-        assert_eq!(normals[0], expected);
+        assert_eq!(normals[0].map(f32::to_bits), expected.map(f32::to_bits));
     }
 
     #[test]

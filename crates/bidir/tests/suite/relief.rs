@@ -220,7 +220,7 @@ fn furnace(material: Material, wo: Vec3) -> f32 {
         let at = |k: i32, of: i32| (k as f32 + 0.5) / of as f32;
         let (y, phi) = (at(i % n, n), 2.0 * PI * at(i / n, 2 * n));
         let r = (1.0 - y * y).sqrt();
-        let wi = Vec3::new(r * phi.cos(), y, r * phi.sin());
+        let wi = Vec3::new(r * libm::cosf(phi), y, r * libm::sinf(phi));
         let scatter = seen
             .turn(seen.wo, wi, TransportMode::Radiance)
             .scatter(&context);
@@ -234,16 +234,16 @@ fn furnace(material: Material, wo: Vec3) -> f32 {
 fn relief_is_not_black_at_grazing_angles() {
     let slants = [(0.58, 0.0), (0.4, 0.4), (0.0, -0.6), (-0.2, 0.5)];
     for degrees in [75.0f32, 80.0, 85.0, 88.0] {
-        let (sin, cos) = degrees.to_radians().sin_cos();
+        let (sin, cos) = libm::sincosf(degrees.to_radians());
         for turn in 0..4 {
-            let (y, x) = (f32::from(turn as u8) * 1.5).sin_cos();
+            let (y, x) = libm::sincosf(f32::from(turn as u8) * 1.5);
             let wo = Vec3::new(x * sin, cos, y * sin);
             for (x, y) in slants {
                 let relief = Relief::NormalMap(common::slant(x, y));
                 let kept = furnace(diffuse([1.0; 3]).embossed(relief), wo);
                 // A slope s that faces the viewer loses the light below its horizon.
-                let slope = x.hypot(y);
-                let least = (1.0 + 1.0 / slope.hypot(1.0)) / 2.0 - 5e-3;
+                let slope = libm::hypotf(x, y);
+                let least = (1.0 + 1.0 / libm::hypotf(slope, 1.0)) / 2.0 - 5e-3;
                 assert!(
                     kept >= least && kept < 1.005,
                     "{degrees}, {turn}, {x}, {y}: {kept}"

@@ -169,7 +169,7 @@ fn a_varnish_shows_what_stochastic_layers_of_any_depth_do() {
         for (i, [wo, wi]) in directions().into_iter().enumerate() {
             let closed = f64::from(bsdf.eval(wo, wi, TransportMode::Radiance).f[0]);
             let case = format!("{}, pair {i}", stack.name());
-            let both = [wo, wi].map(glam::Vec3::as_dvec3);
+            let both = [wo, wi].map(Vec3::as_dvec3);
             let walked = means(&case, WALKS, |stream| stack.layered(both, ENDLESS, stream));
             battery.mean_within(&case, walked, closed, TOLERANCE);
         }
@@ -236,7 +236,7 @@ fn a_layer_without_interface_shows_its_base() {
         thickness: 0.0,
         ..VARNISH
     };
-    let [wo, wi] = directions()[1].map(glam::Vec3::as_dvec3);
+    let [wo, wi] = directions()[1].map(Vec3::as_dvec3);
     let stream = samples("matched", 1).next().expect("one sample");
     let value = stack.layered([wo, wi], DEFAULT, &stream);
     assert!((value - 0.5 / PI).abs() < 1e-9, "{value}");

@@ -48,7 +48,7 @@ fn linear(texel: [f32; 3]) -> [f32; 3] {
         if x <= 0.04045 {
             x / 12.92
         } else {
-            ((x + 0.055) / 1.055).powf(2.4)
+            libm::powf((x + 0.055) / 1.055, 2.4)
         }
     })
 }
@@ -86,7 +86,7 @@ fn scattered(loaded: &Loaded, wo: Vec3, wi: Vec3) -> f32 {
 fn pairs() -> impl Iterator<Item = [Vec3; 2]> {
     let direction = |k: u8| {
         let part = |step: f32| (0.31 + step * f32::from(k)).fract();
-        let (sin, cos) = (6.28 * part(0.618)).sin_cos();
+        let (sin, cos) = libm::sincosf(std::f32::consts::TAU * part(0.618));
         let z = 0.15 + 0.8 * part(0.414);
         Vec3::new(cos, sin, 0.0) * (1.0 - z * z).sqrt() + Vec3::Z * z
     };

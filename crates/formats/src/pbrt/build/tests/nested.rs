@@ -53,7 +53,7 @@ fn check_light(balls: &str, expected: f32) {
 
 /// What is left of light over lengths of both media.
 fn left(half: f32, quarter: f32) -> f32 {
-    0.5f32.powf(half) * 0.25f32.powf(quarter)
+    libm::powf(0.5, half) * libm::powf(0.25, quarter)
 }
 
 #[test]
