@@ -60,8 +60,8 @@ const fn yes() -> bool {
 }
 
 impl Renders<'_> {
-    /// The effective number of samples of a mean over `block` × `block` pixels: N samples have N E[x]² / E[x²],
-    /// with the mean of E[x²] / E[x]² over blocks, as some have missed what is rare. The fewest of all channels.
+    /// The effective number of samples of a mean over `block` × `block` pixels: N samples have N E\[x\]² / E\[x²\],
+    /// with the mean of E\[x²\] / E\[x\]² over blocks, as some have missed what is rare. The fewest of all channels.
     fn effective(&self, block: usize) -> f64 {
         let [mean, variance] = self.whole;
         let blocks = Blocks::new(mean.size, block);

@@ -103,7 +103,7 @@ pub(super) fn mean_of_mirrors(ggx: Ggx) -> f32 {
 }
 
 /// What leaves facets that reflect `mean` of the light on average, of the light that one turn leaves to others:
-/// F̄² Ē / (1 - F̄ (1 - Ē)), Ē = 1 - k̄ [Kulla17].
+/// F̄² Ē / (1 - F̄ (1 - Ē)), Ē = 1 - k̄ \[Kulla17\].
 #[inline]
 pub(super) fn remaining(mean: Spectrum, lost: f32) -> Spectrum {
     mean.map(|f| sqr(f) * (1.0 - lost) / (1.0 - f * lost).max(1e-6))
@@ -153,14 +153,14 @@ impl Sides {
     }
 }
 
-/// x on the less dense side: 1 - F̄ [Kulla17], unless the other side's were above 1. `ratio` is k̄ of the denser side over
+/// x on the less dense side: 1 - F̄ \[Kulla17\], unless the other side's were above 1. `ratio` is k̄ of the denser side over
 /// that of this.
 #[inline]
 fn outer_crossing(eta: f32, ratio: f32) -> f32 {
     mean_transmittance(eta).min(sqr(eta) * ratio)
 }
 
-/// 1 - ∫ 2μ F dμ of an interface of index `eta` above 1, from the less dense side [Kulla17].
+/// 1 - ∫ 2μ F dμ of an interface of index `eta` above 1, from the less dense side \[Kulla17\].
 #[inline]
 pub(super) fn mean_transmittance(eta: f32) -> f32 {
     1.0 - (eta - 1.0) / (4.08567 + 1.00071 * eta)

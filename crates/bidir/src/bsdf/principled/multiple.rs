@@ -1,4 +1,4 @@
-//! Light that the facets of the base scatter more than once, as in [`multiple`](crate::bsdf::multiple): metal and what
+//! Light that the facets of the base scatter more than once, as in [`multiple`]: metal and what
 //! else reflects much on the side it comes from, a solid's transparent part on both sides, and a thin wall's, which
 //! mirrors either way, in proportion to Fresnel's mean reflectance. What crosses takes the base colour once.
 
