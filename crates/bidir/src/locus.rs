@@ -106,9 +106,26 @@ impl Locus {
     /// to the side that `w` leaves to.
     #[inline]
     pub fn ray_origin(&self, w: Vec3) -> Vec3 {
-        let n_g = self.n_g;
-        let distance = self.error * (n_g.x.abs() + n_g.y.abs() + n_g.z.abs());
-        self.point + n_g * distance.copysign(n_g.dot(w))
+        self.pushed_off(w, Vec3::splat(self.error))
+    }
+
+    /// The end of a ray from the point `from` that does not meet the surface of this place: pushed off by the error and
+    /// by what a ray of that length adds. Its direction, the corners as its origin sees them and the `t` of a hit are
+    /// rounded, each by at most half an epsilon of the way; another half is room.
+    #[inline]
+    pub fn ray_end(&self, from: Vec3) -> Vec3 {
+        let back = from - self.point;
+        self.pushed_off(
+            back,
+            Vec3::splat(self.error) + 2.0 * f32::EPSILON * back.abs(),
+        )
+    }
+
+    /// The point on the side that `w` leaves to, off the surface by errors up to these in its coordinates.
+    #[inline]
+    fn pushed_off(&self, w: Vec3, errors: Vec3) -> Vec3 {
+        let distance = self.n_g.abs().dot(errors);
+        self.point + self.n_g * distance.copysign(self.n_g.dot(w))
     }
 
     /// The direction to this place from the point `from`, of any length.

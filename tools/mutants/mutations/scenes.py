@@ -32,6 +32,13 @@ SCENES = [
         "point: surface.locus.point,",
         layers("layers::plane"),
     ),
+    (
+        "the far ends of shadow rays are as exact as the near ones",
+        "crates/bidir/src/locus.rs",
+        "Vec3::splat(self.error) + 2.0 * f32::EPSILON * back.abs()",
+        "Vec3::splat(self.error)",
+        unit("no_surface_shadows_itself"),
+    ),
     # --- scattering models ----------------------------------------------------------------
     (
         "eta squared forgotten",

@@ -1,7 +1,8 @@
 //! v(a, b): how much of a shadow ray gets from one end to the other. Surfaces are as opaque to it as
 //! they are there (`coverage`), glass too: light through a smooth interface is found by walks.
 //!
-//! Both ends are pushed off their surface by the error of their point, so that none shadows itself.
+//! Both ends are pushed off their surface by the error of their point, the far one by that of the ray, too, so that none
+//! shadows itself.
 
 use super::Scene;
 use super::passage::Crossings;
@@ -60,9 +61,8 @@ pub(super) fn shadow_ray(a: &Locus, b: &Locus) -> accel::Ray {
     if b.is_infinite() {
         return accel::Ray::new(a.ray_origin(b.point), b.point);
     }
-    let across = b.point - a.point;
-    let from = a.ray_origin(across);
-    let to = b.ray_origin(-across);
+    let from = a.ray_origin(b.point - a.point);
+    let to = b.ray_end(from);
     accel::Ray {
         t_max: 1.0,
         ..accel::Ray::new(from, to - from)

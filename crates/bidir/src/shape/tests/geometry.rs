@@ -1,8 +1,12 @@
 use super::{Example, disk, examples, mirrored, moved, sphere, triangle, uneven};
-use crate::math::{ONE_MINUS_EPSILON, PI, Vec2, Vec3};
+use crate::locus::Locus;
+use crate::material::Material;
+use crate::math::{DAffine3, DVec3, ONE_MINUS_EPSILON, PI, Vec2, Vec3, warp};
 use crate::sampler::{Dimension, Purpose};
+use crate::scene::{Scene, SceneBuilder};
 use crate::shape::{Disk, Mesh, Orientation, Place, Shape, Sphere, SurfacePoint};
 use crate::testing::samples;
+use crate::texture::ColorTexture;
 
 /// Points of the surface, drawn.
 fn points(example: &Example) -> impl Iterator<Item = SurfacePoint> {
@@ -199,8 +203,8 @@ fn a_mesh_has_the_tangents_of_its_vertices() {
     };
     let expected = first * 0.3 + second * 0.5;
     assert!(tangent(&mesh, None).distance(expected.normalize()) < 1e-6);
-    let stretched = glam::DVec3::new(1.0, -3.0, 0.5);
-    let place = Place(glam::DAffine3::from_scale(stretched));
+    let stretched = DVec3::new(1.0, -3.0, 0.5);
+    let place = Place(DAffine3::from_scale(stretched));
     let moved = (expected.as_dvec3() * stretched).as_vec3().normalize();
     let flat = Mesh {
         tangents: vec![first, second, Vec3::ZERO],
@@ -227,5 +231,59 @@ fn triangles_of_any_size_have_their_area() {
             (area / (size * size / 2.0) - 1.0).abs() < 1e-5,
             "{size}: {area}"
         );
+    }
+}
+
+/// A scene of one shape, which is an object at `place` if there is one.
+fn scene_of(shape: Shape, place: Option<DAffine3>) -> Scene {
+    let mut builder = SceneBuilder::new();
+    let material = builder.material(Material::Diffuse {
+        reflectance: ColorTexture::Constant([0.5; 3]),
+    });
+    if let Some(place) = place {
+        let object = builder.object();
+        builder.object_shape(object, shape, material);
+        builder.instance(object, place);
+    } else {
+        builder.shape(shape, material, None);
+    }
+    builder.build().expect("the scene is valid")
+}
+
+/// Rays are as inexact as they are long, surfaces as their coordinates are large.
+#[test]
+fn no_surface_shadows_itself_from_afar() {
+    let place = DAffine3::from_scale_rotation_translation(
+        DVec3::new(0.02, -0.01, 0.03),
+        glam::DQuat::from_rotation_x(0.6),
+        DVec3::new(0.1, -0.04, 0.07),
+    );
+    for example in examples() {
+        for place in [None, Some(place)] {
+            let name = (example.name, place.is_some());
+            let scene = scene_of(example.shape.clone(), place);
+            for (i, sample) in samples(example.name, 2000).enumerate() {
+                let u = sample.get_2d(Dimension::at(0, Purpose::LightPosition));
+                let own = example.shape.sample(0, u).surface;
+                let at = place.map_or(own, |place| {
+                    let place = Place(place);
+                    let uv = match example.shape {
+                        Shape::Mesh(_) => warp::triangle(u),
+                        _ => own.uv,
+                    };
+                    let point = place.point(own.point);
+                    example.shape.surface_point_at(&place, 0, uv, point)
+                });
+                let u = sample.get_2d(Dimension::at(0, Purpose::Scatter));
+                let towards = warp::cosine_hemisphere(u);
+                let distance = [10.0, 1e3, 1e5][i % 3];
+                let far = at.point + at.shading.to_world(towards) * distance;
+                let ends = [at.locus(), Locus::in_space(far)];
+                for [a, b] in [ends, [ends[1], ends[0]]] {
+                    let seen = scene.transmittance(&a, &b);
+                    assert!(seen > 0.0, "{name:?} at {} from {far}", at.point);
+                }
+            }
+        }
     }
 }
