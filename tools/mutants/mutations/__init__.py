@@ -13,7 +13,8 @@ from .pictures import PICTURES
 from .principled import PRINCIPLED
 from .scenes import SCENES
 from .textures import TEXTURES
+from .training import TRAINING
 from .views import VIEWS
 
-MUTATIONS = (PATHS + DIFFUSE_ENDS + PICTURES + SCENES + MATERIALS + NORMALS + MEDIA + PRINCIPLED + TEXTURES
-             + VIEWS + LABORATORY)
+MUTATIONS = (PATHS + DIFFUSE_ENDS + TRAINING + PICTURES + SCENES + MATERIALS + NORMALS + MEDIA
+             + PRINCIPLED + TEXTURES + VIEWS + LABORATORY)

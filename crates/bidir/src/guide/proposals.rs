@@ -108,6 +108,50 @@ impl PairSums {
         *traced += 1;
         *arrived += u32::from(has_arrived);
     }
+
+    /// By the cell of camera vertices Σ_c √(κ_c Σ X²).
+    pub(crate) fn roots(&self) -> Vec<f64> {
+        let rows = self.squares.chunks_exact(Cells::COUNT);
+        rows.map(|squares| {
+            let pairs = self.light_vertices.iter().zip(squares);
+            pairs.map(|(kappa, square)| (kappa * square).sqrt()).sum()
+        })
+        .collect()
+    }
+
+    /// n κ / M of a connection of these cells if it did not add `square` to what is known, where `all` is κ and `sum`
+    /// that of [`roots`](Self::roots), and if `more` light vertices of each light subpath were in its cell.
+    pub(crate) fn count_factor(
+        &self,
+        [all, sum]: [f64; 2],
+        [light, camera]: [Cell; 2],
+        [square, more]: [f64; 2],
+    ) -> f64 {
+        let kappa = self.light_vertices[light.index()];
+        let squares = self.squares[Cells::pair(light, camera)];
+        let root = |squares: f64| (kappa * squares.max(0.0)).sqrt();
+        let own = root(squares - square);
+        let others = sum - root(squares) + own;
+        let learned = if others <= 1e-9 * sum {
+            // Without knowledge all light vertices are as likely as others.
+            1.0
+        } else if kappa > 0.0 {
+            own / others * all / (kappa + more)
+        } else {
+            0.0
+        };
+        UNIFORM_PART + (1.0 - UNIFORM_PART) * learned
+    }
+
+    /// √V̂ of pair number `pair` if a connection that arrived or not were not known.
+    pub(crate) fn root_visibility_without(&self, pair: usize, has_arrived: bool) -> f32 {
+        let [traced, arrived] = self.arrived[pair];
+        let others = [
+            traced.saturating_sub(1),
+            arrived.saturating_sub(u32::from(has_arrived)),
+        ];
+        f32::from(root_visibility(Some(&others))) / f32::from(VISIBILITY_UNITS)
+    }
 }
 
 /// A draw of a cell.
@@ -413,5 +457,40 @@ mod tests {
             assert_eq!(part.pick(1), 0);
             assert!(part.pick(1 << 22) < 1 << 22);
         }
+    }
+
+    /// What one connection taught can be taken back.
+    #[test]
+    fn a_connection_is_judged_by_the_others() {
+        let cells = Cells::new(&mut []);
+        let [y, z, other] = [Vec3::X, Vec3::Y, Vec3::Z].map(|n| cells.of(Vec3::ZERO, n));
+        let mut sums = PairSums::uniform(vec![1.0; Cells::COUNT]);
+        let (own, pair) = (5.0, Cells::pair(z, y));
+        for (pair, square, has_arrived) in [(pair, 2.0, true), (Cells::pair(other, y), 3.0, false)]
+        {
+            sums.add(pair, square);
+            sums.see(pair, has_arrived);
+        }
+        let before = LightProposals::new(cells.clone(), &sums);
+        sums.add(pair, own);
+        sums.see(pair, false);
+        let all = [Cells::COUNT as f64, sums.roots()[y.index()]];
+        for light in [z, other] {
+            let square = if light == z { own } else { 0.0 };
+            let found = sums.count_factor(all, [light, y], [square, 0.0]);
+            if light == z {
+                let expected = before.count_factor(light, before.row(y));
+                assert!(
+                    (found / expected - 1.0).abs() < 1e-3,
+                    "{found} for {expected}"
+                );
+            } else {
+                let learned = LightProposals::new(cells.clone(), &sums);
+                let after = learned.count_factor(light, learned.row(y));
+                assert!((found / after - 1.0).abs() < 1e-3, "{found} for {after}");
+            }
+        }
+        let found = sums.root_visibility_without(pair, false);
+        assert!((found - before.row(y).root_visibility(z)).abs() < 1e-6);
     }
 }

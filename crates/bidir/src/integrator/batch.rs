@@ -26,6 +26,8 @@ pub struct Sample {
     pub wavelengths: Wavelengths,
     /// The random numbers of the camera subpath, and of its connections.
     pub camera: SampleStream,
+    /// The random numbers of the light points of the camera subpath.
+    pub points: SampleStream,
     /// The random numbers of the light subpath and of its light image.
     pub light: SampleStream,
 }
@@ -47,6 +49,7 @@ impl Sample {
             pixel,
             wavelengths: scene.color().sample_wavelengths(u),
             camera,
+            points: camera,
             light,
         }
     }

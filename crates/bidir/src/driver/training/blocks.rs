@@ -2,6 +2,7 @@
 
 use super::super::spread;
 use super::constants::BLOCKS_PER_SIDE as SIDE;
+use super::survey::QUAD;
 use crate::film::PixelRect;
 
 /// The blocks.
@@ -41,10 +42,10 @@ impl Blocks {
     /// The number of samples of each, of the first `count` of the survey.
     pub(super) fn samples(&self, count: u64) -> Vec<f64> {
         let mut samples = vec![0.0; BLOCKS];
-        for number in 0..count {
-            let [x, y] = spread::point(&self.crop, number).map(i64::from);
+        for quad in 0..count / QUAD {
+            let [x, y] = spread::point(&self.crop, quad).map(i64::from);
             if let Some(index) = self.crop.index(x, y) {
-                samples[self.of(index)] += 1.0;
+                samples[self.of(index)] += QUAD as f64;
             }
         }
         samples

@@ -24,19 +24,11 @@ pub(super) const MOST_PARTS: usize = 8;
 
 /// Blocks along each side of the film, of each of which variances are relative to the mean.
 pub(super) const BLOCKS_PER_SIDE: usize = 16;
+/// The pixels of a block whose mean is judged beside pixels: 16 x 16, as eyes and denoisers see.
+pub(super) const BLOCK_PIXELS: f64 = 256.0;
 /// ε relative to the square of the image's mean: bounds what dark blocks count.
 pub(super) const DARK: f64 = 0.01;
 
-/// `path` may cost so many times as much as `lvc`. This and the next three were chosen on a grid, by the mean and the
-/// worst of 46 scenes (docs/data/auto-46.csv): predicted variances lack the gain of `lvc` by learned proposals.
-pub(super) const PATH_ALLOWANCE: f64 = 0.9;
-/// `bdpt` may cost so many times as much as `lvc`.
-pub(super) const BDPT_ALLOWANCE: f64 = 0.85;
-/// `lvc` with 24 candidates may cost so many times as much as with 12, as candidates of one camera vertex vary together;
-/// with four light points, too.
-pub(super) const MANY_ALLOWANCE: f64 = 0.9;
-/// `lvc` with eight light points may cost so many times as much as with two: those of one camera vertex vary together.
-pub(super) const LIGHTS_ALLOWANCE: f64 = 0.8;
 /// The least variance of a plan, as estimates may be negative: where nothing varies, cost decides. Unit: its second
 /// moment.
 pub(super) const LEAST_VARIANCE: f64 = 1e-6;

@@ -4,7 +4,7 @@ use super::Settings;
 use super::constants::{
     CANDIDATE, CONNECTED_CAMERA_RAY, CONNECTION_RAY, DIFFUSE_CANDIDATE, LIGHT_IMAGE, LIGHT_RAY,
 };
-use super::moments::{Counts, STARTS, dot, longer};
+use super::counts::{Counts, STARTS, dot, longer};
 use super::survey::Survey;
 use crate::integrator::{Batch, IntegratorKind};
 use crate::path::{Job, MisHeuristic};
@@ -134,7 +134,12 @@ mod tests {
         let survey = survey_of(task, Effort::at_most(1024));
         let mut cost = |count| {
             settings.lvc.candidates = CandidateCount::new(count, 1);
-            let counts = Counts::new(&settings, settings.path.roulette, survey.light_vertices());
+            let counts = Counts::new(
+                &settings,
+                settings.path.roulette,
+                survey.light_vertices(),
+                256,
+            );
             survey.cost(&settings, &counts)
         };
         let [few, many] = [12, 24].map(&mut cost);
@@ -182,7 +187,10 @@ mod tests {
         let cost = |integrator, shadow_rays| {
             let mut settings = Settings::new(integrator);
             settings.shadow_rays = shadow_rays;
-            survey.cost(&settings, &Counts::new(&settings, PathRoulette::Off, 1.0))
+            survey.cost(
+                &settings,
+                &Counts::new(&settings, PathRoulette::Off, 1.0, 256),
+            )
         };
         let rules = [ShadowRays::All, ShadowRays::PerPair, ShadowRays::Budget(1)];
         let [all, pair, one] = rules.map(|rule| cost(IntegratorKind::Bdpt, rule));

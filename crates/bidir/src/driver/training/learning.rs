@@ -2,14 +2,15 @@
 //! vertices, which of them are visible, and where light subpaths begin.
 
 use super::constants::{LEARNING_SAMPLES, MOST_PARTS};
+use super::counts::Counts;
 use super::emission::{self, Connection, Evidence};
-use super::moments::Counts;
 use super::survey::Survey;
 use super::{Settings, Task, Training};
 use crate::contribution;
 use crate::film::FilmSettings;
 use crate::guide::{Cell, Cells, LightProposals, PairSums};
 use crate::integrator::{Batch, LightStart, ProposalKind, connectable};
+use crate::light::LightChoice;
 use crate::math::Vec3;
 use crate::path::{ConnectionPart, Job};
 use crate::select::Candidate;
@@ -26,14 +27,14 @@ struct Ends {
 
 /// A connection that could have made a path.
 #[derive(Clone, Copy)]
-struct Possible {
+pub(super) struct Possible {
     ends: Ends,
     /// The strategy that has this connection.
-    strategy: Strategy,
+    pub(super) strategy: Strategy,
     /// The number of the path's term.
-    term: u32,
+    pub(super) term: u32,
     /// Its part of the survey's D.
-    part: f32,
+    pub(super) part: f32,
 }
 
 /// Vertices and connections of samples.
@@ -122,17 +123,24 @@ impl Found {
         self.camera.extend(ends.map(|i| y + i as u32));
     }
 
-    /// Adds a connection that was traced.
-    pub(super) fn trace(&mut self, batch: &Batch, candidate: &Candidate, has_arrived: bool) {
+    /// Adds a connection that was traced, and returns its number. None: it has no places.
+    pub(super) fn trace(
+        &mut self,
+        batch: &Batch,
+        candidate: &Candidate,
+        has_arrived: bool,
+    ) -> Option<u32> {
         let z = candidate.vertices[0] as usize;
-        if !batch.light.vertices()[z].locus.is_infinite() {
-            let is_walked = z < batch.light.get(0).vertices.len();
-            let ends = Ends {
-                places: self.sample.of(candidate.vertices),
-                light: is_walked.then_some(candidate.term.light),
-            };
-            self.traced.push((ends, has_arrived));
+        if batch.light.vertices()[z].locus.is_infinite() {
+            return None;
         }
+        let is_walked = z < batch.light.get(0).vertices.len();
+        let ends = Ends {
+            places: self.sample.of(candidate.vertices),
+            light: is_walked.then_some(candidate.term.light),
+        };
+        self.traced.push((ends, has_arrived));
+        Some(self.traced.len() as u32 - 1)
     }
 
     /// Adds the connections, by their `parts`, that could have made the path of `made`, the term with number
@@ -166,8 +174,13 @@ impl Found {
         self.possible.extend(possible.filter(exists));
     }
 
+    /// The number of connections that were traced.
+    pub(super) fn traced(&self) -> u32 {
+        self.traced.len() as u32
+    }
+
     /// Cells that suit the vertices.
-    fn cells(&self) -> Cells {
+    pub(super) fn cells(&self) -> Cells {
         let light = self.light.iter().map(|&(place, _)| place);
         let all = light.chain(self.camera.iter().copied());
         let mut points: Vec<_> = all.map(|place| self.places[place as usize][0]).collect();
@@ -186,8 +199,18 @@ impl Survey {
         self.found.light.len() as f64 / self.samples()
     }
 
-    /// The knowledge of connections; squares are those where the numbers of samples are `counts`.
-    fn connections(&self, film: &FilmSettings, cells: &Cells, counts: &Counts) -> Vec<Connection> {
+    /// The connections that could have made paths.
+    pub(super) fn possible(&self) -> impl Iterator<Item = &Possible> {
+        self.found.possible.iter()
+    }
+
+    /// The knowledge of connections, first of those that were traced, then of those that could have made paths; squares are those where the numbers of samples are `counts`.
+    pub(super) fn connections(
+        &self,
+        film: &FilmSettings,
+        cells: &Cells,
+        counts: &Counts,
+    ) -> Vec<Connection> {
         let connection = |ends: Ends, evidence| Connection {
             light: ends.light,
             cells: ends.places.map(|place| self.found.cell(cells, place)),
@@ -216,23 +239,45 @@ impl Survey {
     }
 }
 
-impl Training {
+/// The knowledge of connections that a survey has.
+pub(super) struct Lessons {
+    pub(super) cells: Cells,
+    pub(super) sums: PairSums,
+    power: LightChoice,
+    light_start: Option<LightChoice>,
+    /// By the cell of camera vertices Σ_c √(κ_c Σ X²).
+    roots: Vec<f64>,
+    /// κ.
+    light_vertices: f64,
+}
+
+impl Lessons {
     /// Learns for the estimator of `settings`, where that learns and `survey` has enough samples.
-    pub(super) fn learn(&mut self, task: Task<'_>, settings: &Settings, survey: &Survey) {
-        let is_enough = survey.stats.samples >= LEARNING_SAMPLES && self.light_vertices > 0.0;
+    pub(super) fn of(
+        task: Task<'_>,
+        settings: &Settings,
+        survey: &Survey,
+        cells: &Cells,
+    ) -> Option<Self> {
+        let is_enough = survey.stats.samples >= LEARNING_SAMPLES && survey.light_vertices() > 0.0;
         if !settings.learns() || !is_enough {
-            return;
+            return None;
         }
-        let (power, cells) = (task.scene.light_choice(), survey.found.cells());
+        let (power, cells) = (task.scene.light_choice(), cells.clone());
         let film = task.view.film();
-        let counts = Counts::new(settings, settings.path.roulette, self.light_vertices);
+        let counts = Counts::new(
+            settings,
+            settings.path.roulette,
+            survey.light_vertices(),
+            film.crop.area(),
+        );
         let connections = survey.connections(film, &cells, &counts);
-        if settings.lvc.light_start == LightStart::Learned {
-            self.light_start = emission::learned(power, &connections, survey.samples());
-        }
-        let gain = |light| emission::gain(power, self.light_start.as_ref(), light);
+        let light_start = match settings.lvc.light_start {
+            LightStart::Learned => emission::learned(power, &connections, survey.samples()),
+            LightStart::Power => None,
+        };
+        let gain = |light| emission::gain(power, light_start.as_ref(), light);
         let mut sums = survey.pair_sums(&cells, gain);
-        self.light_vertices = sums.light_vertices.iter().sum();
         if settings.lvc.proposal == ProposalKind::Learned {
             for connection in &connections {
                 let pair = Cells::pair(connection.cells[0], connection.cells[1]);
@@ -240,12 +285,79 @@ impl Training {
                     Evidence::Traced(has_arrived) => sums.see(pair, has_arrived),
                     // Of a light that begins g times as many subpaths each contributes 1/g.
                     Evidence::Square(square) => {
-                        sums.add(pair, square / connection.light.map_or(1.0, &gain));
+                        sums.add(pair, square / connection.light.map_or(1.0, gain));
                     }
                 }
             }
-            self.proposals = Some(LightProposals::new(cells, &sums));
         }
+        let roots = sums.roots();
+        let light_vertices = sums.light_vertices.iter().sum();
+        Some(Self {
+            cells,
+            sums,
+            power: power.clone(),
+            light_start,
+            roots,
+            light_vertices,
+        })
+    }
+
+    /// κ where light subpaths begin as is learned.
+    pub(super) fn light_vertices(&self) -> f64 {
+        self.light_vertices
+    }
+
+    /// How many times as many light subpaths begin on a light.
+    pub(super) fn gain(&self, light: u32) -> f64 {
+        emission::gain(&self.power, self.light_start.as_ref(), light)
+    }
+
+    /// n κ / M of a connection of these cells.
+    pub(super) fn factor(&self, cells: [Cell; 2]) -> f64 {
+        self.factor_with(cells, [0.0; 2])
+    }
+
+    /// The same without what a connection taught, if `more` light vertices of each light subpath were in its cell.
+    pub(super) fn factor_without(&self, connection: &Connection, more: f64) -> f64 {
+        let Evidence::Square(square) = connection.evidence else {
+            return self.factor(connection.cells);
+        };
+        let square = square / connection.light.map_or(1.0, |light| self.gain(light));
+        self.factor_with(connection.cells, [square, more])
+    }
+
+    fn factor_with(&self, [light, camera]: [Cell; 2], changes: [f64; 2]) -> f64 {
+        let others = [self.light_vertices, self.roots[camera.index()]];
+        self.sums.count_factor(others, [light, camera], changes)
+    }
+
+    /// √V̂ of its cells without what a connection taught.
+    pub(super) fn root_visibility_without(&self, connection: &Connection) -> f32 {
+        let Evidence::Traced(has_arrived) = connection.evidence else {
+            return 1.0;
+        };
+        let pair = Cells::pair(connection.cells[0], connection.cells[1]);
+        self.sums.root_visibility_without(pair, has_arrived)
+    }
+}
+
+impl Training {
+    /// Learns for the estimator of `settings`, where that learns and `survey` has enough samples.
+    pub(super) fn learn(
+        &mut self,
+        task: Task<'_>,
+        settings: &Settings,
+        survey: &Survey,
+        cells: &Cells,
+    ) {
+        let Some(lessons) = Lessons::of(task, settings, survey, cells) else {
+            return;
+        };
+        self.light_vertices = lessons.light_vertices();
+        if settings.lvc.proposal == ProposalKind::Learned {
+            self.proposals = Some(LightProposals::new(lessons.cells, &lessons.sums));
+        }
+        self.light_start = lessons.light_start;
     }
 }
 
@@ -340,7 +452,7 @@ mod tests {
         };
         let survey = survey_of(task, Effort::WHOLE);
         let light_vertices = survey.light_vertices();
-        let counts = Counts::new(&settings, settings.path.roulette, light_vertices);
+        let counts = Counts::new(&settings, settings.path.roulette, light_vertices, 256);
         let own = survey.terms.iter().map(|term| {
             let candidates = match (term.strategy.s, term.strategy.t) {
                 (0 | 1, _) | (_, 1) => 0.0,

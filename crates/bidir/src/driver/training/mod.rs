@@ -5,12 +5,16 @@
 mod blocks;
 mod constants;
 mod cost;
+mod counts;
 mod effort;
 mod emission;
 mod extent;
+mod known;
 mod learning;
 mod moments;
 mod plan;
+mod quads;
+mod selection;
 mod survey;
 #[cfg(test)]
 mod tests;
@@ -28,7 +32,7 @@ use crate::scene::Scene;
 use crate::stats::RayCounts;
 use crate::view::View;
 use constants::MOST_CACHED;
-use moments::of_connections;
+use counts::of_connections;
 use survey::Survey;
 
 /// The results of a short render before the first pass: a pure function of scene, settings and its number of
@@ -81,10 +85,11 @@ pub(super) fn prepare(
         settings: &settings,
     };
     let survey = Survey::run(task, effort)?;
-    let plan = is_open.then(|| Plan::best(task, &survey));
+    let cells = survey.found.cells();
+    let plan = is_open.then(|| Plan::best(task, &survey, &cells));
     let mut decided = plan.map_or_else(|| settings.clone(), |plan| plan.apply(&settings));
     let mut training = Training::new(&survey);
-    training.learn(task, &decided, &survey);
+    training.learn(task, &decided, &survey, &cells);
     training.bound_cache(view.film(), &mut decided);
     training.plan = plan.map(|plan| Plan {
         samples_per_subpath: decided.lvc.samples_per_subpath,

@@ -5,57 +5,67 @@
 //!
 //! M_k = Σ v² D / D_k / (m² + ε) estimates Σ_blocks ∫ f² / D_k / (m² + ε) \[Grittmann22\],
 //!
-//! with m the mean of a pixel of the block and ε a part of the square of the image's. Covariances within a sample
-//! are left out.
-//!
-//! The variance of a strategy with N samples is its second moment less the square of its mean over N. Only the means of
-//! s = 0 and s = 1 are estimated, for each length of paths and each block: even light that the camera sees directly
-//! then has little variance.
+//! with m the mean of a pixel of the block and ε a part of the square of the image's. That is the variance of terms
+//! which vary alone; what those of one sample have in common is in [`quads`](super::quads).
 
-use super::Settings;
 use super::blocks::{BLOCKS, Blocks};
-use super::constants::{DARK, LEAST_ALBEDO, LEAST_SHARE, LEAST_VARIANCE};
-use super::survey::Survey;
+use super::constants::{DARK, LEAST_VARIANCE};
+use super::counts::{Counts, dot};
+use super::known::Known;
+use super::quads::{Part, Quad, QuadVariance, Reach};
+use super::selection::{self, Expected};
+use super::survey::{QUAD, Survey};
 use crate::contribution::Contribution;
 use crate::film::FilmSettings;
-use crate::integrator::{CandidateCount, IntegratorKind};
-use crate::path::{PathContext, PathRoulette, Shares};
+use crate::path::{PathContext, Shares};
+use crate::select::ShadowRays;
 use crate::strategy::Strategy;
 
-/// The first surfaces at which the roulette of a plan may differ from that of the survey.
-pub(super) const STARTS: usize = 3;
-
-/// Paths of fewer vertices have means of their strategies; those of longer ones are small. Unit: vertices.
-const LENGTHS: usize = 16;
-
-/// A contribution to the image of the survey.
+/// A contribution to the image of the survey, or a connection that did not arrive.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Term {
+    /// The number of its sample.
+    pub(super) sample: u32,
     /// The number of its pixel in the crop.
-    pixel: u32,
+    pub(super) pixel: u32,
     pub(super) strategy: Strategy,
-    /// v. Unit: luminance.
-    value: f32,
-    shares: Shares,
+    /// The light that its path begins on.
+    pub(super) light: u32,
+    /// v; 0 where it did not arrive. Unit: luminance.
+    pub(super) value: f32,
+    /// The score of a candidate, where nothing is learned. Unit: luminance.
+    pub(super) score: f32,
+    /// True of s = 1 where it draws a light point of its own.
+    pub(super) is_next_event: bool,
+    /// The number of its connection among those traced, if it is one that has places.
+    pub(super) edge: Option<u32>,
+    pub(super) shares: Shares,
 }
 
 impl Term {
-    /// Of a contribution that landed on a pixel, of which the filter takes a part.
+    /// Of a contribution of sample number `sample` that landed on a pixel, of which the filter takes a part.
     pub(super) fn new(
         context: &PathContext<'_>,
+        sample: u64,
         contribution: &Contribution,
         (pixel, part): (usize, f32),
         shares: Shares,
     ) -> Self {
         Self {
+            sample: sample as u32,
             pixel: pixel as u32,
             strategy: contribution.term.strategy,
+            light: contribution.term.light,
             value: context.luminance(contribution.value()) * part,
+            score: 0.0,
+            edge: None,
+            is_next_event: usize::from(contribution.term.strategy.s)
+                < context.job.settings.light_point.first_walked(),
             shares,
         }
     }
 
-    fn is_light_image(&self) -> bool {
+    pub(super) fn is_light_image(&self) -> bool {
         self.strategy.t == 1
     }
 
@@ -65,6 +75,29 @@ impl Term {
             f64::from(self.value) / film.light_paths() as f64
         } else {
             self.value.into()
+        }
+    }
+
+    /// Its kind, and how many terms of a plan it stands for, where the walk gets that far.
+    fn rate(&self, known: &Known, counts: &Counts) -> (Part, f64) {
+        let deeper = usize::from(self.strategy.t > 2);
+        match self.strategy.s {
+            0 => {
+                let is_seen = known.shares.vertices == 2;
+                (Part::Hit { is_seen }, 1.0)
+            }
+            _ if self.is_next_event => (Part::LightPoint, counts.next_events[deeper]),
+            _ => (Part::Connection, counts.connections[deeper] * known.rate),
+        }
+    }
+
+    /// How far its walk goes.
+    fn reach(&self, known: &Known, counts: &Counts) -> Reach {
+        let (s, t) = (usize::from(self.strategy.s), usize::from(self.strategy.t));
+        Reach {
+            t,
+            surfaces: counts.surfaces(&known.shares, s),
+            longer: counts.longer(&known.shares, s),
         }
     }
 
@@ -78,123 +111,29 @@ impl Term {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct RelativeTerm {
     block: usize,
-    /// Its part of the mean of its block.
-    part: f64,
+    value: f64,
+    score: f64,
+    /// s: what a square counts in the sum over blocks.
+    scale: f64,
     /// Its part of the second moment of the survey.
     square: f64,
 }
 
-/// The numbers of samples of each kind of strategy, relative to those of the survey. Pairs are of t = 2 and of
-/// t > 2.
-pub(super) struct Counts {
-    pub(super) next_events: [f64; 2],
-    pub(super) connections: [f64; 2],
-    pub(super) light_images: f64,
-    /// The first surface that may end walks.
-    pub(super) start: usize,
+/// The variance of a sample.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Variance {
+    /// Of pixels.
+    pub(super) pixels: f64,
+    /// Of the means of blocks of 16 x 16 pixels, times their pixels: more where neighbours share light subpaths.
+    pub(super) blocks: f64,
 }
 
-impl Counts {
-    /// The counts of the estimator of `settings`, if a light subpath has `light_vertices` vertices that can be
-    /// connected on average, and walks of the survey had the roulette `surveyed`.
-    pub(super) fn new(settings: &Settings, surveyed: PathRoulette, light_vertices: f64) -> Self {
-        let lvc = &settings.lvc;
-        let (next_events, connections, light_images) = match settings.integrator {
-            IntegratorKind::Path => ([1.0; 2], [0.0; 2], 0.0),
-            IntegratorKind::Light => ([0.0; 2], [0.0; 2], 1.0),
-            IntegratorKind::Bdpt => ([1.0; 2], [1.0; 2], 1.0),
-            IntegratorKind::Lvc | IntegratorKind::Auto => (
-                lvc.next_events.get().map(f64::from),
-                of_connections(lvc.candidates, light_vertices),
-                1.0 / f64::from(lvc.samples_per_subpath.get()),
-            ),
-        };
-        let start = match settings.path.roulette {
-            PathRoulette::Albedo { start } if settings.path.roulette != surveyed => start as usize,
-            _ => 0,
-        };
-        Self {
-            next_events,
-            connections,
-            light_images,
-            start: start.min(STARTS - 1),
-        }
+impl Variance {
+    /// What plans are compared by: the geometric mean of both, as noise of single pixels is what errors are measured by,
+    /// and noise of blocks is what is left after looking from afar, or a denoiser.
+    pub(super) fn mean(self) -> f64 {
+        (self.pixels * self.blocks).sqrt()
     }
-
-    /// The number of samples of a connection with a light walk.
-    pub(super) fn of_connection(&self, strategy: Strategy) -> f64 {
-        self.connections[usize::from(strategy.t > 2)]
-    }
-
-    /// D_k / D of a path.
-    fn share(&self, shares: &Shares) -> Share {
-        // Strategy j walks from the camera by surfaces 0 to n - 3 - j.
-        let walked = |j: usize| {
-            let surfaces = (usize::from(shares.vertices) - j).saturating_sub(2);
-            longer(shares.albedos)[self.start.min(surfaces)]
-        };
-        let pair = |parts: [f32; 2], counts| dot(parts.map(f64::from), counts);
-        let hits = f64::from(shares.hits) * walked(0);
-        let next_events = pair(shares.next_events, self.next_events) * walked(1);
-        let others = pair(shares.connections, self.connections)
-            + f64::from(shares.light_images) * self.light_images;
-        Share {
-            all: (hits + next_events + others).max(LEAST_SHARE),
-            hits,
-            next_events,
-        }
-    }
-}
-
-/// D_k / D of a path.
-struct Share {
-    all: f64,
-    /// The part of s = 0.
-    hits: f64,
-    /// The part of s = 1.
-    next_events: f64,
-}
-
-/// The mean of a block, which terms add to.
-#[derive(Clone, Copy, Default)]
-struct Mean {
-    sum: f64,
-    /// The sum of the squares of the terms.
-    squares: f64,
-}
-
-impl Mean {
-    fn add(&mut self, part: f64) {
-        self.sum += part;
-        self.squares += part * part;
-    }
-
-    /// The square of its expectation, by the products of different terms: the square of the sum counts the noise of few
-    /// terms as mean. With n samples of the block the expectation of this is about 1 - 1/n of the square.
-    fn square(&self) -> f64 {
-        self.sum * self.sum - self.squares
-    }
-}
-
-/// The numbers of samples of a connection with a light walk, M / κ, for t = 2 and t > 2. Where no light vertex can be
-/// connected they do not matter.
-pub(super) fn of_connections(candidates: CandidateCount, light_vertices: f64) -> [f64; 2] {
-    candidates.get().map(|count| match light_vertices {
-        0.0 => 1.0,
-        vertices => f64::from(count) / vertices,
-    })
-}
-
-/// The factors by which walks go on more often whose roulette begins at surface 0, 1 and 2, where the first two
-/// have these albedos.
-pub(super) fn longer(albedos: [f32; 2]) -> [f64; STARTS] {
-    let [a, b] = albedos.map(|albedo| f64::from(albedo.clamp(LEAST_ALBEDO, 1.0)));
-    [1.0, 1.0 / a, 1.0 / (a * b)]
-}
-
-/// a_0 b_0 + a_1 b_1.
-pub(super) fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
-    a[0] * b[0] + a[1] * b[1]
 }
 
 impl Survey {
@@ -216,7 +155,9 @@ impl Survey {
             };
             RelativeTerm {
                 block,
-                part: value * scale,
+                value,
+                score: f64::from(term.score) / norm,
+                scale,
                 square: value * value * scale / in_pass,
             }
         };
@@ -239,37 +180,144 @@ impl Survey {
         self.terms.iter().map(place).collect()
     }
 
-    /// M_k less the squares of means of strategies s = 0 and s = 1, by [`relative_terms`](Self::relative_terms).
-    pub(super) fn variance(&self, relative: &[RelativeTerm], counts: &Counts) -> f64 {
-        let (mut moment, mut means) = (0.0, vec![[[Mean::default(); 2]; BLOCKS]; LENGTHS]);
-        for (term, relative) in self.terms.iter().zip(relative) {
-            let share = counts.share(&term.shares);
-            moment += relative.square / share.all;
-            if let Some(means) = means.get_mut(usize::from(term.shares.vertices)) {
-                let [hits, next_events] = &mut means[relative.block];
-                hits.add(relative.part * share.hits / share.all);
-                next_events.add(relative.part * share.next_events / share.all);
+    /// The variance of a plan with `counts`, by [`relative_terms`](Self::relative_terms) and what is `known` of them.
+    pub(super) fn judge(
+        &self,
+        relative: &[RelativeTerm],
+        known: &[Known],
+        counts: &Counts,
+    ) -> Judgement {
+        let mut sums = Sums::default();
+        let quad_of = |term: &Term| u64::from(term.sample) / QUAD;
+        let mut begin = 0;
+        for terms in self.terms.chunk_by(|a, b| quad_of(a) == quad_of(b)) {
+            let range = begin..begin + terms.len();
+            begin = range.end;
+            let all = terms
+                .iter()
+                .zip(&relative[range.clone()])
+                .zip(&known[range]);
+            sums.add(
+                all.map(|((term, relative), known)| (term, relative, known)),
+                counts,
+            );
+        }
+        sums.judgement(counts)
+    }
+}
+
+/// The variance of plans that differ in their shadow rays alone.
+pub(super) struct Judgement {
+    /// M_k.
+    moment: f64,
+    /// The variance of a pixel, if all shadow rays are traced.
+    all: f64,
+    /// What the other pixels of a block add to that, as they share light subpaths.
+    common: f64,
+    /// The connections of the survey.
+    candidates: Vec<Expected>,
+}
+
+impl Judgement {
+    /// The variance with this rule.
+    pub(super) fn variance(&self, rule: ShadowRays) -> Variance {
+        let selection = match rule {
+            ShadowRays::Budget(rays) => selection::variance(&self.candidates, f64::from(rays)),
+            ShadowRays::PerPair => selection::variance(&self.candidates, 1.0),
+            _ => 0.0,
+        };
+        let pixels = (self.all + selection).max(LEAST_VARIANCE * self.moment);
+        Variance {
+            pixels,
+            blocks: pixels + self.common,
+        }
+    }
+}
+
+/// Sums over the terms of the survey.
+#[derive(Default)]
+struct Sums {
+    moment: f64,
+    /// Σ T², by single connections.
+    of_light: f64,
+    quads: QuadVariance,
+    candidates: Vec<Expected>,
+}
+
+impl Sums {
+    /// Adds the terms of one pixel.
+    fn add<'a>(
+        &mut self,
+        terms: impl Iterator<Item = (&'a Term, &'a RelativeTerm, &'a Known)>,
+        counts: &Counts,
+    ) {
+        let (mut quad, mut scale) = (Quad::default(), 0.0);
+        for (term, relative, known) in terms {
+            let share = counts.share(&known.shares);
+            let is_seen = known.shares.vertices == 2;
+            let alone = if is_seen {
+                share.light_images
+            } else {
+                share.all
+            };
+            let square = relative.square / (share.all * share.all);
+            self.moment += square * (alone + dot(known.excess, counts.connections));
+            self.of_light += square * dot(known.squares, counts.connections.map(|n| n * n));
+            if term.is_light_image() {
+                continue;
+            }
+            scale = relative.scale;
+            let value = relative.value / share.all;
+            let (part, rate) = term.rate(known, counts);
+            let (i, reach) = (
+                term.sample as usize % QUAD as usize,
+                term.reach(known, counts),
+            );
+            quad.add(i, part, reach, value * rate);
+            if relative.score > 0.0 && rate > 0.0 {
+                self.candidates.push(Expected {
+                    block: relative.block as u32,
+                    sample: term.sample,
+                    count: rate,
+                    score: relative.score / share.all * f64::from(known.root_visibility),
+                    value,
+                    scale,
+                });
             }
         }
-        let squares = means.iter().enumerate().map(|(vertices, means)| {
-            let light_points = counts.next_events[usize::from(vertices > 3)];
-            let square = |[hits, next_events]: &[Mean; 2]| {
-                hits.square() + next_events.square() / light_points
-            };
-            means.iter().map(square).sum::<f64>()
-        });
-        (moment - squares.sum::<f64>()).max(LEAST_VARIANCE * moment)
+        self.quads.add(&quad, counts, scale);
+    }
+
+    fn judgement(mut self, counts: &Counts) -> Judgement {
+        let quads = &self.quads;
+        let (mut all, mut common) = (self.moment + quads.alone, 0.0);
+        if let Some(draws) = &counts.draws {
+            let moment = self.of_light + quads.pairs - quads.mean_squares;
+            let of_light = moment.max(0.0) / draws.subpaths;
+            all += of_light;
+            common = of_light * quads.correlation() * draws.neighbours;
+        }
+        self.candidates.sort_by_key(|candidate| candidate.block);
+        Judgement {
+            moment: self.moment,
+            all,
+            common,
+            candidates: self.candidates,
+        }
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::driver::training::known::Judge;
     use crate::driver::training::{
-        Effort, Task,
-        tests::{WHOLE, lamp, room, survey_of, view},
+        Effort, Settings, Task,
+        tests::{WHOLE, lamp, room, survey_of, view, view_of},
     };
     use crate::film::PixelRect;
+    use crate::integrator::{CandidateCount, IntegratorKind};
+    use crate::path::PathRoulette;
 
     impl Term {
         /// True where connections with light walks can make the path.
@@ -278,45 +326,63 @@ mod tests {
         }
     }
 
-    /// Variance and cost of path tracing whose roulette begins at a surface, by a survey of these strategies.
+    /// The variance of the estimator of `settings`, all of whose shadow rays are traced, and its cost.
+    fn judged(task: Task<'_>, settings: &Settings) -> [f64; 2] {
+        let survey = survey_of(task, Effort::WHOLE);
+        let terms = survey.relative_terms(task.view.film()).expect("a lamp");
+        let judge = Judge::new(task, &survey, &survey.found.cells());
+        let variance = judge.judge(settings, &terms).variance(ShadowRays::All);
+        [
+            variance.pixels,
+            survey.cost(settings, &judge.counts(settings)),
+        ]
+    }
+
+    /// Variance and cost of path tracing whose roulette begins at a surface, by surveys of these strategies.
     fn of_path(strategies: &str, surveyed: u32, start: u32) -> [f64; 2] {
-        let (scene, view) = (room(), view(WHOLE));
+        let whole = PixelRect {
+            min: [0; 2],
+            max: [64; 2],
+        };
+        let (scene, view) = (room(), view_of(64, whole));
         let mut settings = Settings::new(IntegratorKind::Bdpt);
         settings.path.strategies = strategies.parse().expect("a list of strategies");
         let [surveyed, roulette] = [surveyed, start].map(|start| PathRoulette::Albedo { start });
         settings.path.roulette = surveyed;
-        let task = Task {
-            scene: &scene,
-            view: &view,
-            settings: &settings,
-        };
-        let survey = survey_of(task, Effort::WHOLE);
         let mut path = Settings::new(IntegratorKind::Path);
         path.path.roulette = roulette;
-        let counts = Counts::new(&path, surveyed, survey.light_vertices());
-        let terms = survey.relative_terms(view.film()).expect("a lamp");
-        let variance = survey.variance(&terms, &counts);
-        [variance, survey.cost(&path, &counts)]
+        let of_seeds = (0..4).map(|seed| {
+            settings.seed = seed;
+            let task = Task {
+                scene: &scene,
+                view: &view,
+                settings: &settings,
+            };
+            judged(task, &path)
+        });
+        of_seeds.fold([0.0; 2], |sum, of| [sum[0] + of[0], sum[1] + of[1]])
     }
 
-    /// Its own strategies give the same without other numbers of samples, and with the roulette that it has.
+    /// Its own strategies give the same without other numbers of samples, and with the roulette that it has, but for the
+    /// noise of means: a survey divides by its own, of 64 samples of each block here. With 16 they differ by four times as
+    /// much.
     #[test]
     fn all_strategies_tell_variance_and_cost_of_path_tracing() {
         for start in 0..3 {
             let [variance, cost] = of_path("all", 0, start);
             let [own_variance, own_cost] = of_path("s0,s1", start, start);
             let difference = (variance / own_variance - 1.0).abs();
-            assert!(difference < 0.04, "{start}: {variance} for {own_variance}");
+            assert!(difference < 0.2, "{start}: {variance} for {own_variance}");
             let difference = (cost / own_cost - 1.0).abs();
             assert!(difference < 0.02, "{start}: {cost} for {own_cost}");
         }
     }
 
+    /// What they do not divide is the variance of the camera subpath.
     #[test]
     fn light_points_divide_the_variance_of_direct_light() {
-        for (max_depth, light_points) in
-            [(1, CandidateCount::new(8, 1)), (5, CandidateCount::of(8))]
-        {
+        let of_first: fn(u16) -> CandidateCount = |count| CandidateCount::new(count, 1);
+        for (max_depth, of) in [(1, of_first), (5, CandidateCount::of)] {
             let (scene, view) = (room(), view(WHOLE));
             let mut settings = Settings::new(IntegratorKind::Lvc);
             settings.path.strategies = "s1".parse().expect("a strategy");
@@ -326,15 +392,15 @@ mod tests {
                 view: &view,
                 settings: &settings.clone(),
             };
-            let survey = survey_of(task, Effort::WHOLE);
-            let terms = survey.relative_terms(view.film()).expect("a lamp");
-            let [one, many] = [CandidateCount::of(1), light_points].map(|count| {
-                settings.lvc.next_events = count;
-                survey.variance(&terms, &Counts::new(&settings, settings.path.roulette, 1.0))
+            let [one, many, all] = [1, 8, 4096].map(|count| {
+                settings.lvc.next_events = of(count);
+                judged(task, &settings)[0]
             });
+            assert!(0.0 < all && all < many, "{max_depth}: {many}, {all}");
+            let ratio = (one - all) / (many - all);
             assert!(
-                (one / many - 8.0).abs() < 1e-3,
-                "{max_depth}: {one}, {many}"
+                (ratio - 8.0).abs() < 0.03,
+                "{max_depth}: {one}, {many}, {all}"
             );
         }
     }
@@ -354,62 +420,8 @@ mod tests {
         };
         let survey = survey_of(task, Effort::WHOLE);
         let terms = survey.relative_terms(view.film()).expect("a lamp");
-        let counts = Counts::new(&settings, settings.path.roulette, 1.0);
         let moment: f64 = terms.iter().map(|term| term.square).sum();
-        let part = survey.variance(&terms, &counts) / moment;
+        let part = judged(task, &settings)[0] / moment;
         assert!(part < 0.05, "{part}");
-    }
-
-    const SHARES: Shares = Shares {
-        hits: 0.05,
-        next_events: [0.0, 0.25],
-        connections: [0.1, 0.2],
-        light_images: 0.4,
-        albedos: [0.5, 0.25],
-        vertices: 5,
-    };
-
-    #[test]
-    fn a_plan_takes_of_a_path_what_its_numbers_of_samples_are() {
-        let share = |integrator| {
-            let settings = Settings::new(integrator);
-            let roulette = PathRoulette::Albedo { start: 0 };
-            Counts::new(&settings, roulette, 4.0).share(&SHARES).all
-        };
-        let (path, bdpt) = (0.05 / 0.5 + 0.25 / 0.5, 1.0);
-        let lvc = 0.05 + 0.25 + 0.1 * 12.0 / 4.0 + 0.2 / 4.0 + 0.4 / 2.0;
-        for (integrator, expected) in [
-            (IntegratorKind::Path, path),
-            (IntegratorKind::Bdpt, bdpt),
-            (IntegratorKind::Lvc, lvc),
-        ] {
-            let found = share(integrator);
-            assert!((found - expected).abs() < 1e-6, "{integrator:?}: {found}");
-        }
-    }
-
-    #[test]
-    fn walks_go_on_at_the_first_surfaces_of_a_path_that_has_them() {
-        let settings = |start| {
-            let mut settings = Settings::new(IntegratorKind::Path);
-            settings.path.roulette = PathRoulette::Albedo { start };
-            Counts::new(&settings, PathRoulette::Albedo { start: 0 }, 4.0)
-        };
-        // The surfaces that the walk of a hit scatters at, and that of next-event estimation: n - 2 and n - 3.
-        for (start, vertices, expected) in [
-            (2, 2, 0.05 + 0.25),
-            (2, 3, 0.05 / 0.5 + 0.25),
-            (2, 4, 0.05 / 0.125 + 0.25 / 0.5),
-            (2, 5, 0.3 / 0.125),
-            (9, 5, 0.3 / 0.125),
-            (1, 5, 0.3 / 0.5),
-            (0, 5, 0.3),
-        ] {
-            let found = settings(start).share(&Shares { vertices, ..SHARES }).all;
-            assert!(
-                (found - expected).abs() < 1e-6,
-                "{start}, {vertices}: {found}"
-            );
-        }
     }
 }

@@ -1,11 +1,12 @@
 //! The plans of `auto`, and the choice among them: the least product of variance and cost, both by what the
 //! survey found (docs/derivations/choosing-a-plan.md).
 
-use super::constants::{BDPT_ALLOWANCE, LIGHTS_ALLOWANCE, MANY_ALLOWANCE, PATH_ALLOWANCE};
-use super::moments::Counts;
+use super::known::Judge;
+use super::moments::Judgement;
 use super::survey::Survey;
 use super::{Settings, Task};
 use crate::analysis::{BlindSpot, blind_spots};
+use crate::guide::Cells;
 use crate::integrator::{CandidateCount, IntegratorKind, SamplesPerSubpath};
 use crate::path::{LightPointChoice, PathRoulette};
 use crate::select::ShadowRays;
@@ -55,52 +56,71 @@ pub(super) const LVC: Plan = Plan {
     ..BDPT
 };
 
-/// `lvc` with twice the candidates, which cost least between diffuse vertices, and this number of light points for the
-/// first vertex, which lower the noise of light that arrives directly.
-const fn lvc_of_many(light_points: u16) -> Plan {
+/// `lvc` with these numbers of candidates and light points of the first vertex, and of rays.
+const fn lvc_of(candidates: u16, light_points: u16, rays: u32) -> Plan {
     Plan {
-        candidates: CandidateCount::new(24, 1),
+        candidates: CandidateCount::new(candidates, 1),
         next_events: CandidateCount::new(light_points, 1),
+        shadow_rays: ShadowRays::Budget(rays),
         ..LVC
     }
 }
 
-/// The plans, with the allowances that their products of variance and cost are divided by.
-const PLANS: [(Plan, f64); 6] = [
-    (PATH, PATH_ALLOWANCE),
-    (BDPT, BDPT_ALLOWANCE),
-    (LVC, 1.0),
-    (lvc_of_many(2), MANY_ALLOWANCE),
-    (lvc_of_many(4), MANY_ALLOWANCE),
-    (lvc_of_many(8), LIGHTS_ALLOWANCE),
+/// What others of its kind learn is much the same.
+pub(super) const TYPICAL: Plan = lvc_of(24, 2, 6);
+
+/// The plans.
+const PLANS: [Plan; 14] = [
+    PATH,
+    BDPT,
+    LVC,
+    lvc_of(24, 2, 6),
+    lvc_of(24, 2, 9),
+    lvc_of(24, 2, 12),
+    lvc_of(24, 4, 6),
+    lvc_of(24, 4, 9),
+    lvc_of(24, 8, 6),
+    lvc_of(24, 8, 12),
+    lvc_of(36, 2, 12),
+    lvc_of(36, 4, 12),
+    lvc_of(48, 2, 18),
+    lvc_of(48, 4, 18),
 ];
 
 impl Plan {
     /// The plan with the least product of variance and cost. If the survey found no light: `lvc`, which
     /// makes most paths, or `path` if there are no lights.
-    pub(super) fn best(task: Task<'_>, survey: &Survey) -> Self {
+    pub(super) fn best(task: Task<'_>, survey: &Survey, cells: &Cells) -> Self {
         let settings = task.settings;
         let Some(terms) = survey.relative_terms(task.view.film()) else {
             let has_lights = !task.scene.lights().is_empty();
             return if has_lights { LVC } else { PATH }.keeping(settings);
         };
+        let judge = Judge::new(task, survey, cells);
         let (mut best, mut least) = (LVC.keeping(settings), f64::INFINITY);
-        for (plan, allowance) in PLANS.map(|(plan, allowance)| (plan.keeping(settings), allowance))
-        {
+        let mut judged: Option<(Self, Judgement)> = None;
+        for plan in PLANS.map(|plan| plan.keeping(settings)) {
             let applied = plan.apply(settings);
-            let (roulette, vertices) = (settings.path.roulette, survey.light_vertices());
-            let counts = Counts::new(&applied, roulette, vertices);
-            let product =
-                survey.variance(&terms, &counts) * survey.cost(&applied, &counts) / allowance;
+            // Plans that differ in their shadow rays alone follow each other.
+            let draws = Self {
+                shadow_rays: ShadowRays::All,
+                ..plan
+            };
+            let (_, judgement) = judged
+                .take_if(|(judged, _)| *judged == draws)
+                .unwrap_or_else(|| (draws, judge.judge(&applied, &terms)));
+            let variance = judgement.variance(plan.shadow_rays).mean();
+            let product = variance * survey.cost(&applied, &judge.counts(&applied));
             if product < least && plan.is_possible(task) {
                 (best, least) = (plan, product);
             }
+            judged = Some((draws, judgement));
         }
         best
     }
 
     /// The same but for the settings that are not left open.
-    fn keeping(mut self, settings: &Settings) -> Self {
+    pub(super) fn keeping(mut self, settings: &Settings) -> Self {
         if !settings.open.roulette {
             self.roulette = settings.path.roulette;
         }

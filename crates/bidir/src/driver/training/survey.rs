@@ -20,6 +20,9 @@ use accel::Stop;
 use rayon::prelude::*;
 use std::ops::Range;
 
+/// The samples of a pixel: of two camera subpaths with two light subpaths each.
+pub(super) const QUAD: u64 = 4;
+
 /// The results of the samples.
 #[derive(Default)]
 pub(super) struct Survey {
@@ -61,15 +64,20 @@ impl Survey {
     }
 
     fn add(&mut self, more: Self) {
+        let traced = self.found.traced();
+        let terms = more.terms.iter().map(|term| Term {
+            edge: term.edge.map(|edge| edge + traced),
+            ..*term
+        });
         self.found.add(more.found, self.terms.len() as u32);
-        self.terms.extend(more.terms);
+        self.terms.extend(terms);
         self.luminance += more.luminance;
         self.work += more.work;
         self.stats += &more.stats;
     }
 
-    /// Adds what was made of the one sample of `batch`.
-    fn keep(&mut self, job: &Job<'_>, batch: &Batch) {
+    /// Adds what was made of sample number `number`, the one of `batch`.
+    fn keep(&mut self, job: &Job<'_>, number: u64, batch: &Batch) {
         let sample = &batch.samples[0];
         let (context, film) = (sample.context(job), job.view.film());
         let [x, y] = sample.pixel.map(i64::from);
@@ -77,15 +85,22 @@ impl Survey {
         let (mut densities, mut parts) = (PathDensities::default(), Vec::new());
         self.found.begin(job, batch);
         let mut keep = |entry: &Entry, candidate: Option<&Candidate>| {
+            let edge = candidate
+                .and_then(|candidate| self.found.trace(batch, candidate, entry.is_added()));
             let landed = match entry.link {
                 Link::Walk | Link::Connection(_) => own,
                 Link::LightImage(_, place) => film.pick_pixel(place),
             };
             let shares = batch.shares(&context, entry, candidate, &mut densities, &mut parts)?;
-            let term = Term::new(&context, &entry.contribution, landed?, shares);
+            let mut term = Term::new(&context, number, &entry.contribution, landed?, shares);
+            term.edge = edge;
+            term.score = candidate.map_or(0.0, |candidate| candidate.score);
             self.luminance += term.of_mean_pixel(film);
-            let (made, number) = (&entry.contribution.term, self.terms.len() as u32);
-            self.found.path(made, candidate, &parts, number);
+            if entry.is_added() {
+                let made = &entry.contribution.term;
+                self.found
+                    .path(made, candidate, &parts, self.terms.len() as u32);
+            }
             self.terms.push(term);
             Some(())
         };
@@ -95,13 +110,9 @@ impl Survey {
             keep(entry, None);
         }
         for (candidate, entry) in batch.connections() {
-            if let Some(added) = entry.filter(|entry| entry.is_added()) {
-                keep(added, Some(candidate));
+            if let Some(entry) = entry {
+                keep(entry, Some(candidate));
             }
-        }
-        for (candidate, entry) in batch.connections() {
-            let has_arrived = entry.is_some_and(Entry::is_added);
-            self.found.trace(batch, candidate, has_arrived);
         }
         self.work.add(job, batch);
     }
@@ -135,7 +146,7 @@ impl<'a> Surveyor<'a> {
     /// asked to stop.
     fn round(&self, numbers: Range<u64>, is_late: IsLate<'_>) -> Option<Survey> {
         let count = numbers.end - numbers.start;
-        let size = (count / GROUPS).max(1);
+        let size = (count / GROUPS).max(QUAD);
         let groups = (0..count / size).into_par_iter();
         let found = groups.map_init(Batch::default, |batch, group| {
             if is_late() {
@@ -160,18 +171,24 @@ impl<'a> Surveyor<'a> {
         Some(all)
     }
 
+    /// Takes one of the four samples of a pixel.
     fn sample(&self, number: u64, batch: &mut Batch, survey: &mut Survey) {
+        let quad = number / QUAD;
+        let [walk, of_light] = [number / 2 % 2, number % 2].map(|i| 2 * quad + i);
         let sampler = Sampler::new(self.settings.sampler, self.settings.seed);
-        let camera = sampler.stream(Domain::TrainingCamera, number, 0);
-        let light = sampler.stream(Domain::TrainingLight, 0, number);
-        let pixel = spread::point(&self.view.film().crop, number);
+        let camera = sampler.stream(Domain::TrainingCamera, walk, 0);
+        let light = sampler.stream(Domain::TrainingLight, 0, of_light);
+        let pixel = spread::point(&self.view.film().crop, quad);
         let job = Job {
             stop: self.stop,
             ..Job::of_own_subpaths(self.scene, self.view, &self.settings.path)
         };
-        batch.fill([Sample::new(self.scene, 0, pixel, camera, light)]);
+        batch.fill([Sample {
+            points: sampler.stream(Domain::TrainingCamera, number, 1),
+            ..Sample::new(self.scene, 0, pixel, camera, light)
+        }]);
         self.method.run(&job, batch);
-        survey.keep(&job, batch);
+        survey.keep(&job, number, batch);
     }
 }
 

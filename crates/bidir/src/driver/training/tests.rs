@@ -2,12 +2,14 @@ use super::*;
 use crate::camera::{Camera, Perspective, PerspectiveSettings};
 use crate::driver::{Resources, Session, SessionError, Stop};
 use crate::film::{FilmSettings, Filter, FilterKind, PixelRect};
-use crate::integrator::SamplesPerSubpath;
+use crate::integrator::{CandidateCount, SamplesPerSubpath};
 use crate::light::EmissionSides;
 use crate::material::Material;
 use crate::math::{Affine3A, Vec2, Vec3};
 use crate::scene::{Emission, SceneBuilder};
+use crate::select::ShadowRays;
 use crate::shape::{Orientation, Shape, Sphere};
+use crate::spectrum::luminance;
 use crate::texture::ColorTexture;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
@@ -18,14 +20,19 @@ pub(super) const WHOLE: PixelRect = PixelRect {
 
 /// A camera that looks along z, for a film of 16 x 16 of which a crop is rendered.
 pub(super) fn view(crop: PixelRect) -> View {
+    view_of(16, crop)
+}
+
+/// The same for a square film of `size` x `size`.
+pub(super) fn view_of(size: u32, crop: PixelRect) -> View {
     let filter = Filter::new(FilterKind::Triangle, Vec2::splat(1.0));
     let film = FilmSettings {
         crop,
-        ..FilmSettings::new([16; 2], filter)
+        ..FilmSettings::new([size; 2], filter)
     };
     let camera = Perspective::new(&PerspectiveSettings {
         world_from_camera: Affine3A::IDENTITY,
-        resolution: Vec2::splat(16.0),
+        resolution: Vec2::splat(size as f32),
         screen: [Vec2::new(-1.0, 1.0), Vec2::new(1.0, -1.0)],
         lens_radius: 0.1,
         focal_distance: 2.0,
@@ -174,7 +181,7 @@ fn rendered(integrator: IntegratorKind, effort: Effort<'_>) -> (Vec<[u32; 3]>, u
 fn training_that_ends_late_is_training_with_as_many_samples() {
     let asked = AtomicU64::new(0);
     for integrator in [IntegratorKind::Lvc, IntegratorKind::Auto] {
-        for (questions, expected) in [(0, 16), (70, 64), (1 << 20, 1 << 12)] {
+        for (questions, expected) in [(0, 16), (20, 64), (1 << 20, 1 << 12)] {
             asked.store(0, Ordering::Relaxed);
             let effort = Effort {
                 samples: u64::MAX,
@@ -187,6 +194,72 @@ fn training_that_ends_late_is_training_with_as_many_samples() {
         }
         let limited = [31, 16, 0].map(|samples| rendered(integrator, Effort::at_most(samples)).1);
         assert_eq!(limited, [16; 3]);
+    }
+}
+
+/// The variance of the luminance of a pass between passes, of each pixel relative to the square of its mean as plans are
+/// judged.
+fn rendered_variance(scene: &Scene, settings: &Settings) -> f64 {
+    let passes = 400;
+    let view = view(WHOLE);
+    let mut session = Session::new(scene, &view, settings.clone(), &Resources::default())
+        .expect("the film is small");
+    let (mut sums, mut squares, mut before) = ([0.0; 256], [0.0; 256], [0.0; 256]);
+    for pass in 1..=passes {
+        session.step(&());
+        let pixels = session.film().develop().pixels;
+        for (i, pixel) in pixels.iter().enumerate() {
+            let sum = f64::from(luminance(*pixel)) * f64::from(pass);
+            let value = sum - before[i];
+            before[i] = sum;
+            sums[i] += value;
+            squares[i] += value * value;
+        }
+    }
+    let count = f64::from(passes);
+    let mean = sums.iter().sum::<f64>() / count / 256.0;
+    let relative = |i: usize| {
+        let of_pixel = sums[i] / count;
+        let variance = (squares[i] - count * of_pixel * of_pixel) / (count - 1.0);
+        variance / (of_pixel * of_pixel + 0.01 * mean * mean)
+    };
+    (0..256).map(relative).sum()
+}
+
+/// What the survey predicts is what renders have, with no constant that is fitted.
+#[test]
+fn predicted_variances_are_those_of_renders() {
+    let (scene, view) = (room(), view(WHOLE));
+    let auto = Settings::new(IntegratorKind::Auto);
+    let task = Task {
+        scene: &scene,
+        view: &view,
+        settings: &auto,
+    };
+    let survey = survey_of(task, Effort::WHOLE);
+    let terms = survey.relative_terms(view.film()).expect("a lamp");
+    let judge = known::Judge::new(task, &survey, &survey.found.cells());
+    for (integrator, candidates, light_points, rays) in [
+        (IntegratorKind::Path, 1, 1, ShadowRays::All),
+        (IntegratorKind::Bdpt, 1, 1, ShadowRays::All),
+        (IntegratorKind::Lvc, 12, 2, ShadowRays::Budget(6)),
+        (IntegratorKind::Lvc, 24, 2, ShadowRays::Budget(3)),
+        (IntegratorKind::Lvc, 24, 8, ShadowRays::All),
+    ] {
+        let mut settings = Settings::new(integrator);
+        settings.path.roulette = auto.path.roulette;
+        settings.lvc.candidates = CandidateCount::new(candidates, 1);
+        settings.lvc.next_events = CandidateCount::new(light_points, 1);
+        settings.shadow_rays = rays;
+        let predicted = judge.judge(&settings, &terms).variance(rays).pixels;
+        let ratio = predicted / rendered_variance(&scene, &settings);
+        let name = format!("{integrator:?}, {candidates}, {light_points}, {rays}");
+        // Groups of 64 samples have 32 light subpaths: what those have in common is the least certain.
+        let expected = match integrator {
+            IntegratorKind::Lvc => 0.75..1.33,
+            _ => 0.85..1.18,
+        };
+        assert!(expected.contains(&ratio), "{name}: {ratio}");
     }
 }
 

@@ -94,9 +94,9 @@ fn next_event(
     i: usize,
 ) -> Option<(Term, [Locus; 2], ShadowPassage)> {
     let at = |purpose| Dimension::at(i, purpose);
-    let u_light = || sample.camera.get_1d(at(Purpose::NextEventLight));
-    let u = sample.camera.get_2d(at(Purpose::NextEventPosition));
-    let u_depth = || sample.camera.get_1d(at(Purpose::NextEventDepth));
+    let u_light = || sample.points.get_1d(at(Purpose::NextEventLight));
+    let u = sample.points.get_2d(at(Purpose::NextEventPosition));
+    let u_depth = || sample.points.get_1d(at(Purpose::NextEventDepth));
     let (light, x0) = sample_next_event(context, vertex, u_light, u, u_depth)?;
     let mut ends = [x0.at.locus, vertex.locus];
     if context.job.scene.has_media() {

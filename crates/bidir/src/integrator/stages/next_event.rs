@@ -57,9 +57,9 @@ fn add_point(
 ) -> Option<(LightEnd, f32)> {
     let at = |purpose| Dimension::at(t - 1, purpose);
     let part = |u: f32| ((f32::from(k) + u) / f32::from(count)).min(ONE_MINUS_EPSILON);
-    let u_light = || part(sample.camera.get_1d(at(Purpose::NextEventLight)));
-    let u = sample.camera.get_2d(at(Purpose::NextEventPosition));
-    let u_depth = || kronecker_number(sample.camera.get_1d(at(Purpose::NextEventDepth)), k);
+    let u_light = || part(sample.points.get_1d(at(Purpose::NextEventLight)));
+    let u = sample.points.get_2d(at(Purpose::NextEventPosition));
+    let u_depth = || kronecker_number(sample.points.get_1d(at(Purpose::NextEventDepth)), k);
     let point = kronecker_point(u, k);
     let (number, drawn) = sample_next_event(context, y, u_light, point, u_depth)?;
     let mut x0 = Vertex::light(context, number, &drawn.at);

@@ -8,7 +8,7 @@ fn open() -> Settings {
 
 #[test]
 fn plans_are_applied_where_nothing_is_named() {
-    for (plan, _) in PLANS {
+    for plan in PLANS {
         assert_eq!(plan.keeping(&open()), plan);
         let applied = plan.apply(&open());
         assert_eq!(applied.integrator, plan.integrator);
@@ -28,7 +28,7 @@ fn settings_that_are_named_stay() {
         ..Request::default()
     };
     let settings = request.apply(&open());
-    for (plan, _) in PLANS {
+    for plan in PLANS {
         let applied = plan.keeping(&settings).apply(&settings);
         assert_eq!(applied.path.roulette, PathRoulette::Off);
         assert_eq!(applied.shadow_rays, ShadowRays::PerPair);

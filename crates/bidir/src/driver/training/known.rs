@@ -1,0 +1,147 @@
+//! What is learned of connections changes the numbers of their samples, and which are traced. A term is judged by what
+//! the others teach: its own square and visibility are left out of the sums, as they are not known to the samples of the
+//! film.
+
+use super::counts::Counts;
+use super::learning::Lessons;
+use super::moments::{Judgement, RelativeTerm, Term};
+use super::plan::TYPICAL;
+use super::survey::Survey;
+use super::{Settings, Task};
+use crate::film::FilmSettings;
+use crate::guide::Cells;
+use crate::path::Shares;
+
+/// What is known of a term.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Known {
+    /// The shares of its path, with the numbers of samples that are learned.
+    pub(super) shares: Shares,
+    /// Σ n_j² p_j / D of connections with light walks, of t = 2 and of t > 2, where n_j has what is learned alone.
+    pub(super) squares: [f64; 2],
+    /// Σ n_j p_j (e - 1) / D, where a connection has e times the second moment, as light vertices of its cell are few.
+    pub(super) excess: [f64; 2],
+    /// How many times as many samples its own connection has.
+    pub(super) rate: f64,
+    /// √V̂.
+    pub(super) root_visibility: f32,
+}
+
+impl Known {
+    /// Where nothing is learned.
+    pub(super) fn nothing(term: &Term) -> Self {
+        Self {
+            shares: term.shares,
+            squares: term.shares.connections.map(f64::from),
+            excess: [0.0; 2],
+            rate: 1.0,
+            root_visibility: 1.0,
+        }
+    }
+}
+
+/// Judges plans for a survey.
+pub(super) struct Judge<'a> {
+    task: Task<'a>,
+    survey: &'a Survey,
+    nothing: Vec<Known>,
+    /// What `lvc` learns. None: nothing.
+    learned: Option<Vec<Known>>,
+    /// κ.
+    light_vertices: f64,
+}
+
+impl<'a> Judge<'a> {
+    /// The lessons of all plans are those of a typical one.
+    pub(super) fn new(task: Task<'a>, survey: &'a Survey, cells: &Cells) -> Self {
+        let typical = TYPICAL.keeping(task.settings).apply(task.settings);
+        let lessons = Lessons::of(task, &typical, survey, cells);
+        let mut judge = Self {
+            task,
+            survey,
+            nothing: survey.terms.iter().map(Known::nothing).collect(),
+            learned: None,
+            light_vertices: survey.light_vertices(),
+        };
+        if let Some(lessons) = lessons {
+            let counts = judge.counts(&typical);
+            judge.learned = Some(survey.known(task.view.film(), &lessons, &counts));
+            judge.light_vertices = lessons.light_vertices();
+        }
+        judge
+    }
+
+    /// The counts of the estimator of `settings`.
+    pub(super) fn counts(&self, settings: &Settings) -> Counts {
+        let surveyed = self.task.settings.path.roulette;
+        let pixels = self.task.view.film().crop.area();
+        Counts::new(settings, surveyed, self.light_vertices, pixels)
+    }
+
+    /// The variance of the estimator of `settings`.
+    pub(super) fn judge(&self, settings: &Settings, terms: &[RelativeTerm]) -> Judgement {
+        let learned = self.learned.as_ref().filter(|_| settings.learns());
+        let known = learned.unwrap_or(&self.nothing);
+        self.survey.judge(terms, known, &self.counts(settings))
+    }
+}
+
+impl Survey {
+    /// What `lessons` teach of each term, by numbers of samples as in `counts`.
+    pub(super) fn known(
+        &self,
+        film: &FilmSettings,
+        lessons: &Lessons,
+        counts: &Counts,
+    ) -> Vec<Known> {
+        let mut known: Vec<_> = self.terms.iter().map(Known::nothing).collect();
+        // For each term the parts of its connections, times powers of what is learned, of t = 2 and of t > 2.
+        let mut parts = vec![[[0.0; 4]; 2]; self.terms.len()];
+        // A light vertex is drawn beside those of the other light subpaths: one more than all have on average.
+        let one = counts
+            .draws
+            .as_ref()
+            .map_or(0.0, |draws| 1.0 / draws.subpaths);
+        let connections = self.connections(film, &lessons.cells, counts);
+        let (traced, possible) = connections.split_at(self.found.traced() as usize);
+        for (possible, connection) in self.possible().zip(possible) {
+            let [factor, crowded] = [0.0, one].map(|more| lessons.factor_without(connection, more));
+            let of_term = &mut parts[possible.term as usize][usize::from(possible.strategy.t > 2)];
+            let part = f64::from(possible.part);
+            let excess = factor * (factor / crowded - 1.0);
+            for (sum, of) in of_term
+                .iter_mut()
+                .zip([1.0, factor, factor * factor, excess])
+            {
+                *sum += part * of;
+            }
+            if possible.strategy == self.terms[possible.term as usize].strategy {
+                known[possible.term as usize].rate = factor;
+            }
+        }
+        for ((known, term), parts) in known.iter_mut().zip(&self.terms).zip(&parts) {
+            let connection = term.edge.map(|edge| &traced[edge as usize]);
+            if let Some(connection) = connection {
+                known.root_visibility = lessons.root_visibility_without(connection);
+            }
+            let has_none = parts.iter().all(|[part, ..]| *part == 0.0);
+            if let Some(connection) = connection.filter(|_| has_none && !term.is_next_event) {
+                known.rate = lessons.factor(connection.cells);
+            }
+            let gain = lessons.gain(term.light);
+            for (deeper, &[uniform, learned, squares, excess]) in parts.iter().enumerate() {
+                let [factor, square, excess] = match uniform {
+                    0.0 => [known.rate, known.rate * known.rate, 0.0],
+                    _ => [learned, squares, excess].map(|sum| sum / uniform),
+                };
+                let part = f64::from(known.shares.connections[deeper]);
+                known.excess[deeper] = part * excess * gain;
+                known.shares.connections[deeper] *= (factor * gain) as f32;
+                known.squares[deeper] *= square * gain;
+            }
+            known.rate *= gain;
+            known.shares.light_images *= gain as f32;
+        }
+        known
+    }
+}

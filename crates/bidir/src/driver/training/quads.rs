@@ -1,0 +1,234 @@
+//! Terms of one sample vary together: with the camera subpath W that they share, and with the light subpath. The survey
+//! takes four samples of a pixel, of two camera subpaths W and W', each with two light subpaths A and B and with its own
+//! light points, so that products of samples estimate products of expectations. With S the sum of the values that plan k
+//! adds on average where the survey finds a term,
+//!
+//! Var_W E[S | W] = E[½ (S_WA - S_W'A) (S_WB - S_W'B)].
+//!
+//! Where the plan's walks go on ρ times as often, S counts each term ρ times, and a product of two terms of one walk counts
+//! as often as that walk reaches both: as the larger ρ.
+//!
+//! Given W, draws are independent: a kind of term that the plan draws N times at a camera vertex has 1/N of the square
+//! of E[S_kind | W] less than its second moment, and the square is that of S_kind,WA S_kind,WB.
+//! Connections T with one of N light subpaths that G samples share vary with it, by Var_A E[T | W] / N in a pixel, and
+//! neighbours have in common ½ (T_WA - T_WB) (T_W'A - T_W'B) / N.
+
+use super::counts::{Counts, STARTS};
+
+/// Camera vertices behind this many others are one. Unit: vertices.
+const DEPTHS: usize = 8;
+
+/// A kind of term.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Part {
+    /// s = 0; of a light that the camera sees directly or not.
+    Hit { is_seen: bool },
+    /// s = 1.
+    LightPoint,
+    /// A connection with a light walk.
+    Connection,
+}
+
+/// How far a walk goes.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Reach {
+    /// The camera vertices.
+    pub(super) t: usize,
+    /// The surfaces that may end it in the survey alone.
+    pub(super) surfaces: usize,
+    /// ρ.
+    pub(super) longer: f64,
+}
+
+/// The values of a sample.
+#[derive(Clone, Copy, Debug, Default)]
+struct Sums {
+    /// By the surfaces that may end the walk in the survey alone.
+    reached: [f64; STARTS],
+    /// ρ, likewise; 0 if no term has as many.
+    longer: [f64; STARTS],
+    light_points: [f64; DEPTHS],
+    connections: [f64; DEPTHS],
+    /// Σ of the squares of hits of lights that are not seen directly.
+    hit_squares: f64,
+    connection_squares: f64,
+}
+
+impl Sums {
+    /// S.
+    fn all(&self) -> f64 {
+        (self.reached.iter().zip(self.longer))
+            .fold(0.0, |sum, (value, longer)| sum + value * longer)
+    }
+
+    /// The products of terms of this sample with terms of another one of the same walk.
+    fn of_walk(&self, other: &Self) -> f64 {
+        let longer = |i: usize| self.longer[i].max(other.longer[i]);
+        let pairs = (0..STARTS).flat_map(|i| (0..STARTS).map(move |j| (i, j)));
+        pairs
+            .map(|(i, j)| self.reached[i] * other.reached[j] * longer(i.max(j)))
+            .sum()
+    }
+
+    /// T.
+    fn connected(&self) -> f64 {
+        self.connections.iter().sum()
+    }
+
+    /// The products of different connections.
+    fn pairs(&self) -> f64 {
+        self.connected() * self.connected() - self.connection_squares
+    }
+}
+
+/// The values of four samples: WA, WB, W'A, W'B.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Quad([Sums; 4]);
+
+impl Quad {
+    /// Adds what a term of sample number `i` of the four is on average, where the walk gets that far.
+    pub(super) fn add(&mut self, i: usize, part: Part, reach: Reach, value: f64) {
+        let (sums, depth) = (&mut self.0[i], (reach.t - 2).min(DEPTHS - 1));
+        sums.reached[reach.surfaces] += value;
+        sums.longer[reach.surfaces] = reach.longer;
+        match part {
+            Part::Hit { is_seen: true } => {}
+            Part::Hit { is_seen: false } => sums.hit_squares += value * value * reach.longer,
+            Part::LightPoint => sums.light_points[depth] += value * reach.longer.sqrt(),
+            Part::Connection => {
+                sums.connections[depth] += value;
+                sums.connection_squares += value * value;
+            }
+        }
+    }
+
+    /// The variance of the camera subpath, less the squares of what draws have on average, and less the second moments of
+    /// hits, which are among those of all terms.
+    fn alone(&self, counts: &Counts) -> f64 {
+        let [wa, wb, va, vb] = &self.0;
+        let walks = wa.of_walk(wb) + va.of_walk(vb) - wa.all() * vb.all() - wb.all() * va.all();
+        let hits: f64 = self.0.iter().map(|sums| sums.hit_squares).sum();
+        let drawn = [[wa, wb], [va, vb]].map(|[a, b]| {
+            let product = |of: fn(&Sums) -> &[f64; DEPTHS], count: [f64; 2]| {
+                let pairs = of(a).iter().zip(of(b)).enumerate();
+                let products = pairs.map(|(depth, (a, b))| a * b / count[usize::from(depth > 0)]);
+                products.sum::<f64>()
+            };
+            let connections = match &counts.draws {
+                Some(draws) => product(|sums| &sums.connections, draws.candidates),
+                // Those of one light subpath vary together.
+                None => a.connected() * b.connected() - (a.pairs() + b.pairs()) / 2.0,
+            };
+            2.0 * (product(|sums| &sums.light_points, counts.next_events) + connections)
+        });
+        2.0 * walks - hits - drawn[0] - drawn[1]
+    }
+}
+
+/// Sums over pixels.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct QuadVariance {
+    /// What the terms of a sample have in common.
+    pub(super) alone: f64,
+    /// Σ over pairs of connections of one light subpath.
+    pub(super) pairs: f64,
+    /// Σ E[T | W]².
+    pub(super) mean_squares: f64,
+    /// Σ Var_A E[T | W].
+    pub(super) spread: f64,
+    /// Of that, what two camera subpaths have in common.
+    common: f64,
+}
+
+impl QuadVariance {
+    /// Adds four samples, of which the square of each counts `scale`.
+    pub(super) fn add(&mut self, quad: &Quad, counts: &Counts, scale: f64) {
+        self.alone += quad.alone(counts) * scale;
+        self.pairs += quad.0.iter().map(Sums::pairs).sum::<f64>() * scale;
+        let [wa, wb, va, vb] = quad.0.each_ref().map(Sums::connected);
+        self.mean_squares += 2.0 * (wa * wb + va * vb) * scale;
+        let [w, v] = [wa - wb, va - vb];
+        self.spread += (w * w + v * v) * scale;
+        self.common += 2.0 * w * v * scale;
+    }
+
+    /// The part of the variance of T that two camera subpaths of a pixel have in common.
+    pub(super) fn correlation(&self) -> f64 {
+        if self.spread > 0.0 {
+            (self.common / self.spread).clamp(0.0, 1.0)
+        } else {
+            0.0
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::driver::Settings;
+    use crate::integrator::{CandidateCount, IntegratorKind};
+    use crate::path::PathRoulette;
+
+    /// Standard normal numbers.
+    fn normals() -> impl FnMut() -> f64 {
+        let mut state = 0x1234_5678_9abc_def1_u64;
+        let mut uniform = move || {
+            state ^= state << 13;
+            state ^= state >> 7;
+            state ^= state << 17;
+            (state >> 11) as f64 / (1u64 << 53) as f64
+        };
+        move || (0..12).map(|_| uniform()).sum::<f64>() - 6.0
+    }
+
+    /// A camera subpath has a hit of the value 1 + W, light points 2 + W + X and connections 3 + W + Y + Z, with standard
+    /// normal W, X and Z of their own and Y of the light subpath. With their second moments the variance is known.
+    #[test]
+    fn products_of_samples_tell_what_terms_have_in_common() {
+        for (integrator, expected) in [
+            // Three W; X / 2; (Y + Z) / 3, with 3 + W + Y + Z drawn thrice.
+            (IntegratorKind::Lvc, 9.0 + 1.0 / 2.0 + 2.0 / 3.0),
+            // Three W, X, Y and Z.
+            (IntegratorKind::Bdpt, 9.0 + 3.0),
+        ] {
+            let mut settings = Settings::new(integrator);
+            settings.lvc.candidates = CandidateCount::of(3);
+            settings.lvc.next_events = CandidateCount::of(2);
+            let counts = Counts::new(&settings, PathRoulette::Off, 1.0, 1 << 22);
+            let [points, draws] = match integrator {
+                IntegratorKind::Lvc => [2.0, 3.0],
+                _ => [1.0; 2],
+            };
+            let (mut next, mut sums, mut moment) = (normals(), QuadVariance::default(), 0.0);
+            let quads = 60_000;
+            for _ in 0..quads {
+                let (walks, lights) = ([next(), next()], [next(), next()]);
+                let mut quad = Quad::default();
+                for i in 0..4 {
+                    let (w, y) = (walks[i / 2], lights[i % 2]);
+                    let hit = 1.0 + w;
+                    let (x, z) = (2.0 + w + next(), 3.0 + w + y + next());
+                    let reach = |t| Reach {
+                        t,
+                        surfaces: 0,
+                        longer: 1.0,
+                    };
+                    quad.add(i, Part::Hit { is_seen: false }, reach(3), hit);
+                    quad.add(i, Part::LightPoint, reach(2), x);
+                    quad.add(i, Part::Connection, reach(2), z);
+                    moment += hit * hit + x * x / points + z * z / draws;
+                }
+                sums.add(&quad, &counts, 1.0);
+            }
+            let found = (moment + sums.alone) / (4.0 * f64::from(quads));
+            assert!(
+                (found / expected - 1.0).abs() < 0.02,
+                "{found} for {expected}"
+            );
+            // The light subpath has Y alone in common, and two camera subpaths share that but not Z.
+            assert!((sums.correlation() - 0.5).abs() < 0.02);
+            let squares = sums.mean_squares / (4.0 * f64::from(quads));
+            assert!((squares / 10.0 - 1.0).abs() < 0.02, "{squares}");
+        }
+    }
+}
