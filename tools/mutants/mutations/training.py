@@ -48,16 +48,23 @@ TRAINING = [
     (
         "the mean of several light points counted as that of one",
         "crates/bidir/src/driver/training/quads.rs",
-        "a * b / count[usize::from(depth > 0)]",
-        "a * b / count[usize::from(depth > 0)].min(1.0)",
+        "a * b / counts[usize::from(depth > 0)]",
+        "a * b / counts[usize::from(depth > 0)].min(1.0)",
         unit("products_of_samples_tell"),
     ),
     (
         "products of the first vertex with the light points of later ones",
         "crates/bidir/src/driver/training/quads.rs",
-        "count[usize::from(depth > 0)]",
-        "count[usize::from(depth + 1 > 0)]",
-        unit("light_points_divide_the_variance"),
+        "counts[usize::from(depth > 0)]",
+        "counts[usize::from(depth + 1 > 0)]",
+        unit("products_of_samples_tell"),
+    ),
+    (
+        "light points drawn from all lights each",
+        "crates/bidir/src/driver/training/quads.rs",
+        "product * (count - 1.0)",
+        "product",
+        unit("products_of_samples_tell"),
     ),
     (
         "camera subpaths that do not vary",
@@ -76,8 +83,8 @@ TRAINING = [
     (
         "hits of lights counted twice",
         "crates/bidir/src/driver/training/quads.rs",
-        "2.0 * walks - hits - drawn[0]",
-        "2.0 * walks - 0.0 * hits - drawn[0]",
+        "parts / count) - hits - drawn[0]",
+        "parts / count) - 0.0 * hits - drawn[0]",
         unit("products_of_samples_tell"),
     ),
     (

@@ -28,11 +28,16 @@ pub(crate) fn open(name: &str) -> Loaded {
 }
 
 pub(crate) fn open_part(name: &str, crop: Option<Crop>) -> Loaded {
+    open_at(name, RESOLUTION, crop)
+}
+
+/// A scene of the torture suite with a film of this resolution, of which a crop is rendered.
+pub(crate) fn open_at(name: &str, resolution: [u32; 2], crop: Option<Crop>) -> Loaded {
     let file = Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("../../scenes/torture")
         .join(name);
     let options = LoadOptions {
-        resolution: Some(RESOLUTION),
+        resolution: Some(resolution),
         crop,
         ..LoadOptions::default()
     };

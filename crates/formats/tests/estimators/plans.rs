@@ -1,7 +1,7 @@
 //! The plans that `auto` chooses in clear cases: at 80 x 60, the best plan of another estimator takes half as long
 //! again or more.
 
-use crate::case::open;
+use crate::case::open_at;
 use bidir::driver::{Plan, Resources, Session, Settings};
 use bidir::integrator::{CandidateCount, IntegratorKind};
 use bidir::select::ShadowRays;
@@ -48,6 +48,11 @@ fn light_points_depend_on_the_light() {
             "{name}: {plan}"
         );
     }
+}
+
+/// A scene with a film whose groups share light subpaths as those of larger ones do.
+fn open(name: &str) -> Loaded {
+    open_at(name, [80, 60], None)
 }
 
 /// The plan of `auto` in this scene.

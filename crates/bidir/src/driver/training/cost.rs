@@ -2,7 +2,8 @@
 
 use super::Settings;
 use super::constants::{
-    CANDIDATE, CONNECTED_CAMERA_RAY, CONNECTION_RAY, DIFFUSE_CANDIDATE, LIGHT_IMAGE, LIGHT_RAY,
+    CANDIDATE, CONNECTED_CAMERA_RAY, CONNECTION_RAY, DIFFUSE_CANDIDATE, LIGHT_IMAGE, LIGHT_POINT,
+    LIGHT_RAY,
 };
 use super::counts::{Counts, STARTS, dot, longer};
 use super::survey::Survey;
@@ -79,8 +80,8 @@ impl Survey {
     /// The cost of a sample by `settings`, with `counts` of these. Unit: rays of path tracing's walks.
     pub(super) fn cost(&self, settings: &Settings, counts: &Counts) -> f64 {
         let work = &self.work;
-        let candidates = dot(work.next_events[counts.start], counts.next_events)
-            + dot(work.connections, counts.connections);
+        let light_points = dot(work.next_events[counts.start], counts.next_events);
+        let connections = dot(work.connections, counts.connections);
         let diffuse = match settings.path.mis {
             MisHeuristic::Balance => dot(work.diffuse, counts.connections),
             _ => 0.0,
@@ -100,8 +101,9 @@ impl Survey {
             + LIGHT_IMAGE * self.stats.rays.light_image as f64;
         let all = camera_ray * work.camera_rays[counts.start]
             + counts.light_images * of_light
-            + CONNECTION_RAY * candidates.min(most)
-            + CANDIDATE * (candidates - diffuse)
+            + CONNECTION_RAY * (light_points + connections).min(most)
+            + LIGHT_POINT * light_points
+            + CANDIDATE * (connections - diffuse)
             + DIFFUSE_CANDIDATE * diffuse;
         all / self.samples()
     }

@@ -9,7 +9,9 @@
 //! as often as that walk reaches both: as the larger ρ.
 //!
 //! Given W, draws are independent: a kind of term that the plan draws N times at a camera vertex has 1/N of the square
-//! of E[S_kind | W] less than its second moment, and the square is that of S_kind,WA S_kind,WB.
+//! of E[S_kind | W] less than its second moment, and the square is that of S_kind,WA S_kind,WB. Light points of the first
+//! camera vertex are drawn from N equal parts of the lights, one from each: they have 1/N of the variance between the
+//! means of parts less.
 //! Connections T with one of N light subpaths that G samples share vary with it, by Var_A E[T | W] / N in a pixel, and
 //! neighbours have in common ½ (T_WA - T_WB) (T_W'A - T_W'B) / N.
 
@@ -40,6 +42,14 @@ pub(super) struct Reach {
     pub(super) longer: f64,
 }
 
+/// The products by depth, over the numbers of draws at the first depth and at later ones.
+fn products(a: &[f64; DEPTHS], b: &[f64; DEPTHS], counts: [f64; 2]) -> f64 {
+    let pairs = a.iter().zip(b).enumerate();
+    pairs
+        .map(|(depth, (a, b))| a * b / counts[usize::from(depth > 0)])
+        .sum()
+}
+
 /// The values of a sample.
 #[derive(Clone, Copy, Debug, Default)]
 struct Sums {
@@ -48,6 +58,8 @@ struct Sums {
     /// ρ, likewise; 0 if no term has as many.
     longer: [f64; STARTS],
     light_points: [f64; DEPTHS],
+    /// The random number that chose the light of the first of them.
+    light_number: f32,
     connections: [f64; DEPTHS],
     /// Σ of the squares of hits of lights that are not seen directly.
     hit_squares: f64,
@@ -70,6 +82,20 @@ impl Sums {
             .sum()
     }
 
+    /// The variance between the means of `count` parts of the lights, Σ m² / N - m̄², of the first light point: the products
+    /// of points in one part, which a Nth of all pairs are. Subtracting a value near both, that of another walk, changes
+    /// its noise alone.
+    fn of_parts(&self, other: &Self, near: [&Self; 2], count: f64) -> f64 {
+        let part = |sums: &Self| (f64::from(sums.light_number) * count) as u32;
+        let near = (near[0].light_points[0] + near[1].light_points[0]) / 2.0;
+        let product = (self.light_points[0] - near) * (other.light_points[0] - near);
+        if part(self) == part(other) {
+            product * (count - 1.0)
+        } else {
+            -product
+        }
+    }
+
     /// T.
     fn connected(&self) -> f64 {
         self.connections.iter().sum()
@@ -82,10 +108,18 @@ impl Sums {
 }
 
 /// The values of four samples: WA, WB, W'A, W'B.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Quad([Sums; 4]);
 
 impl Quad {
+    /// Four samples without terms, whose first light points chose their lights by these random numbers.
+    pub(super) fn new(light_numbers: [f32; 4]) -> Self {
+        Self(light_numbers.map(|light_number| Sums {
+            light_number,
+            ..Sums::default()
+        }))
+    }
+
     /// Adds what a term of sample number `i` of the four is on average, where the walk gets that far.
     pub(super) fn add(&mut self, i: usize, part: Part, reach: Reach, value: f64) {
         let (sums, depth) = (&mut self.0[i], (reach.t - 2).min(DEPTHS - 1));
@@ -109,19 +143,17 @@ impl Quad {
         let walks = wa.of_walk(wb) + va.of_walk(vb) - wa.all() * vb.all() - wb.all() * va.all();
         let hits: f64 = self.0.iter().map(|sums| sums.hit_squares).sum();
         let drawn = [[wa, wb], [va, vb]].map(|[a, b]| {
-            let product = |of: fn(&Sums) -> &[f64; DEPTHS], count: [f64; 2]| {
-                let pairs = of(a).iter().zip(of(b)).enumerate();
-                let products = pairs.map(|(depth, (a, b))| a * b / count[usize::from(depth > 0)]);
-                products.sum::<f64>()
-            };
+            let light_points = products(&a.light_points, &b.light_points, counts.next_events);
             let connections = match &counts.draws {
-                Some(draws) => product(|sums| &sums.connections, draws.candidates),
+                Some(draws) => products(&a.connections, &b.connections, draws.candidates),
                 // Those of one light subpath vary together.
                 None => a.connected() * b.connected() - (a.pairs() + b.pairs()) / 2.0,
             };
-            2.0 * (product(|sums| &sums.light_points, counts.next_events) + connections)
+            2.0 * (light_points + connections)
         });
-        2.0 * walks - hits - drawn[0] - drawn[1]
+        let [count, _] = counts.next_events;
+        let parts = wa.of_parts(wb, [va, vb], count) + va.of_parts(vb, [wa, wb], count);
+        2.0 * (walks - parts / count) - hits - drawn[0] - drawn[1]
     }
 }
 
@@ -168,6 +200,8 @@ mod tests {
     use crate::driver::Settings;
     use crate::integrator::{CandidateCount, IntegratorKind};
     use crate::path::PathRoulette;
+    use crate::sampler::{Dimension, Purpose};
+    use crate::testing::samples;
 
     /// Standard normal numbers.
     fn normals() -> impl FnMut() -> f64 {
@@ -181,33 +215,38 @@ mod tests {
         move || (0..12).map(|_| uniform()).sum::<f64>() - 6.0
     }
 
-    /// A camera subpath has a hit of the value 1 + W, light points 2 + W + X and connections 3 + W + Y + Z, with standard
-    /// normal W, X and Z of their own and Y of the light subpath. With their second moments the variance is known.
+    /// A camera subpath has a hit of the value 1 + W, light points 2 + W + X ± 1 and connections 3 + W + Y + Z, with standard
+    /// normal W, X and Z of their own and Y of the light subpath; the sign is that of one half of the lights. With their
+    /// second moments the variance is known.
     #[test]
     fn products_of_samples_tell_what_terms_have_in_common() {
         for (integrator, expected) in [
-            // Three W; X / 2; (Y + Z) / 3, with 3 + W + Y + Z drawn thrice.
+            // Three W; X / 2, with a point of each half; (Y + Z) / 3, with 3 + W + Y + Z drawn thrice.
             (IntegratorKind::Lvc, 9.0 + 1.0 / 2.0 + 2.0 / 3.0),
-            // Three W, X, Y and Z.
-            (IntegratorKind::Bdpt, 9.0 + 3.0),
+            // Three W, X, the sign, Y and Z.
+            (IntegratorKind::Bdpt, 9.0 + 4.0),
         ] {
             let mut settings = Settings::new(integrator);
-            settings.lvc.candidates = CandidateCount::of(3);
-            settings.lvc.next_events = CandidateCount::of(2);
+            settings.lvc.candidates = CandidateCount::new(3, 1);
+            settings.lvc.next_events = CandidateCount::new(2, 1);
             let counts = Counts::new(&settings, PathRoulette::Off, 1.0, 1 << 22);
             let [points, draws] = match integrator {
                 IntegratorKind::Lvc => [2.0, 3.0],
                 _ => [1.0; 2],
             };
             let (mut next, mut sums, mut moment) = (normals(), QuadVariance::default(), 0.0);
-            let quads = 60_000;
+            let quads = 60_000_u32;
+            let mut parts = samples("light points", u64::from(4 * quads))
+                .map(|sample| sample.get_1d(Dimension::at(0, Purpose::NextEventLight)));
             for _ in 0..quads {
                 let (walks, lights) = ([next(), next()], [next(), next()]);
-                let mut quad = Quad::default();
-                for i in 0..4 {
+                let numbers = [(); 4].map(|()| parts.next().unwrap_or_default());
+                let mut quad = Quad::new(numbers);
+                for (i, number) in numbers.into_iter().enumerate() {
                     let (w, y) = (walks[i / 2], lights[i % 2]);
                     let hit = 1.0 + w;
-                    let (x, z) = (2.0 + w + next(), 3.0 + w + y + next());
+                    let sign = if number < 0.5 { 1.0 } else { -1.0 };
+                    let (x, z) = (2.0 + w + next() + sign, 3.0 + w + y + next());
                     let reach = |t| Reach {
                         t,
                         surfaces: 0,

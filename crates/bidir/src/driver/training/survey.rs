@@ -11,7 +11,7 @@ use super::moments::Term;
 use super::{Settings, Task};
 use crate::integrator::{Batch, Entry, Link, Method, Sample};
 use crate::path::{Job, MisHeuristic, PathDensities};
-use crate::sampler::{Domain, Sampler};
+use crate::sampler::{Dimension, Domain, Purpose, Sampler};
 use crate::scene::Scene;
 use crate::select::{Candidate, ShadowRays};
 use crate::stats::Stats;
@@ -31,6 +31,8 @@ pub(super) struct Survey {
     /// The contributions to the image.
     pub(super) terms: Vec<Term>,
     pub(super) work: Work,
+    /// Of each sample, the random number that chooses the light of its first light point.
+    pub(super) light_numbers: Vec<f32>,
     /// Vertices and connections, to learn from.
     pub(super) found: Found,
     pub(super) stats: Stats,
@@ -71,6 +73,7 @@ impl Survey {
         });
         self.found.add(more.found, self.terms.len() as u32);
         self.terms.extend(terms);
+        self.light_numbers.extend(more.light_numbers);
         self.luminance += more.luminance;
         self.work += more.work;
         self.stats += &more.stats;
@@ -115,6 +118,8 @@ impl Survey {
             }
         }
         self.work.add(job, batch);
+        let first = Dimension::at(1, Purpose::NextEventLight);
+        self.light_numbers.push(sample.points.get_1d(first));
     }
 }
 
