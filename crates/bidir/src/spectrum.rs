@@ -5,6 +5,10 @@
 //! weights and selection never ask. Only three edges convert, and each takes the sample's
 //! [`Wavelengths`]: emission, texture look-up and film development.
 
+mod four;
+
+pub(crate) use four::FourSpectra;
+
 use glam::Vec4;
 use std::ops::{Add, AddAssign, Div, Index, Mul, MulAssign, Sub};
 
@@ -142,10 +146,13 @@ impl Div<f32> for Spectrum {
 /// A colour in linear Rec. 709 primaries: the colours of scene descriptions and of developed films.
 pub type Rgb = [f32; 3];
 
-/// The luminance Y of a linear Rec. 709 colour.
+/// The luminance Y of a linear Rec. 709 colour, or of several at once.
 #[inline]
-pub fn luminance(rgb: Rgb) -> f32 {
-    0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2]
+pub fn luminance<T: Add<Output = T>>([r, g, b]: [T; 3]) -> T
+where
+    f32: Mul<T, Output = T>,
+{
+    0.2126 * r + 0.7152 * g + 0.0722 * b
 }
 
 /// The wavelengths of one sample, drawn once and handed to every edge that converts colour.

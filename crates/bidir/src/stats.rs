@@ -100,6 +100,15 @@ impl Stats {
         self.candidates += u64::from(strategy.s >= 1 && strategy.t >= 2);
     }
 
+    /// Counts the contributions of connections in the same way, of s ≥ 1 and t ≥ 2 all of them.
+    #[inline]
+    pub fn count_connections(&mut self, strategies: impl ExactSizeIterator<Item = Strategy>) {
+        self.candidates += strategies.len() as u64;
+        for strategy in strategies {
+            self.strategies.of(strategy).candidates += 1;
+        }
+    }
+
     /// Counts a shadow ray of `strategy`.
     #[inline]
     pub fn count_shadow_ray(&mut self, strategy: Strategy) {

@@ -1,6 +1,6 @@
 """Faults in connections of diffuse vertices: with each other, with light points and with lens points."""
 
-from .tests import RUNNING, analytic
+from .tests import RUNNING, analytic, unit
 
 DIFFUSE = "crates/bidir/src/path/diffuse.rs"
 CONNECT = "crates/bidir/src/integrator/stages/connect.rs"
@@ -16,18 +16,15 @@ DIFFUSE_ENDS = [
     (
         "weights of diffuse vertices from the lane beside them",
         DIFFUSE,
-        "weights: weights.to_array(),",
-        "weights: {\n"
-        "                let [a, b, c, d] = weights.to_array();\n"
-        "                [b, c, d, a]\n"
-        "            },",
+        "            weights,\n",
+        "            weights: glam::Vec4Swizzles::yzwx(weights),\n",
         RUNNING,
     ),
     (
         "connections of diffuse vertices that face away from each other",
         DIFFUSE,
-        "factors: Vec4::select(a & b & c & d, factors, Vec4::ZERO).to_array(),",
-        "factors: factors.to_array(),",
+        "Vec4::select(a & b & c & d, factors, Vec4::ZERO)",
+        "factors",
         RUNNING,
     ),
     (
@@ -47,9 +44,30 @@ DIFFUSE_ENDS = [
     (
         "light vertices lost in the last lane",
         CONNECT,
-        "four.iter().enumerate()",
-        "four.iter().enumerate().take(3)",
+        "offered += is_offered >> lane & 1;",
+        "offered += is_offered >> lane & usize::from(lane < 3);",
         analytic("a_closed_sphere"),
+    ),
+    (
+        "light vertices of a cache without their shares",
+        CONNECT,
+        "connections.contributions * shares",
+        "connections.contributions",
+        analytic("a_closed_sphere"),
+    ),
+    (
+        "scores of four connections by light with its sign",
+        "crates/bidir/src/spectrum/four.rs",
+        "self.0.map(Vec4::abs)",
+        "self.0",
+        unit("four_are_as_each_alone"),
+    ),
+    (
+        "four spectra that are black where one lane is",
+        "crates/bidir/src/spectrum/four.rs",
+        "(a & b) & (c & d)",
+        "(a | b) | (c | d)",
+        unit("four_are_as_each_alone"),
     ),
     (
         "connections of diffuse vertices behind a shading normal",

@@ -196,8 +196,8 @@ PATHS = [
     (
         "vertices of a cell proposed by the count of all",
         "crates/bidir/src/integrator/cache.rs",
-        "[all, self.cells.of(cell).count]",
-        "[all, all]",
+        "inverse_prob(units, [all, count])",
+        "inverse_prob(units, [all, all])",
         unit("cache::tests"),
     ),
     (
@@ -294,7 +294,7 @@ PATHS = [
     (
         "the vertices of a cell drawn by the numbers of all units",
         "crates/bidir/src/guide/proposals.rs",
-        "Part(number - begin, numbers_of(self.units(light)))",
+        "Part(number - begin, numbers_of(units))",
         "Part(number - begin, numbers_of(UNIFORM_UNITS))",
         unit("numbers_of_a_cell_lead_to_all_parts_of_it"),
     ),

@@ -9,7 +9,7 @@ mod cells;
 mod proposals;
 
 pub use cells::{Cell, Cells};
-pub(crate) use proposals::{CellDraw, Part, ProposalRow};
+pub(crate) use proposals::{CellDraw, Part, ProposalRow, inverse_prob};
 pub use proposals::{LightProposals, PairSums};
 
 use crate::light::LightChoice;

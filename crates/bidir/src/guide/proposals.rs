@@ -159,8 +159,8 @@ impl PairSums {
 pub(crate) enum CellDraw {
     /// None: all light vertices, at this part of them.
     All(Part),
-    /// One, at this part of its light vertices.
-    One(Cell, Part),
+    /// One, with its units, at this part of its light vertices.
+    One(Cell, u16, Part),
 }
 
 /// A part of a whole: how many of so many numbers come before.
@@ -250,20 +250,13 @@ impl ProposalRow {
         }
         let light = Cells::cell(cell.into());
         let begin = (u32::from(self.last[usize::from(cell)]) + 1) << UNIT_BITS;
-        CellDraw::One(light, Part(number - begin, numbers_of(self.units(light))))
-    }
-
-    /// 1 / P(z | y) for a light vertex in the cell `light`, where `[K, K_c]` = `counts`.
-    #[inline]
-    pub(crate) fn inverse_prob(&self, light: Cell, counts: [u32; 2]) -> f32 {
-        let [all, of_cell] = counts.map(|count| count as f32);
-        let units = f32::from(UNIFORM_UNITS) * of_cell + f32::from(self.units(light)) * all;
-        UNITS as f32 * all * of_cell / units
+        let units = self.units(light);
+        CellDraw::One(light, units, Part(number - begin, numbers_of(units)))
     }
 
     /// (1 - ε) Γ(c | r) of the cell c = `light`, in units.
     #[inline]
-    fn units(&self, light: Cell) -> u16 {
+    pub(crate) fn units(&self, light: Cell) -> u16 {
         let cell = light.index();
         self.last[cell + 1] - self.last[cell]
     }
@@ -273,6 +266,14 @@ impl ProposalRow {
     pub(crate) fn root_visibility(&self, light: Cell) -> f32 {
         f32::from(self.root_visibility[light.index()]) * (1.0 / f32::from(VISIBILITY_UNITS))
     }
+}
+
+/// 1 / P(z | y) for a light vertex in a cell c with `units` of (1 - ε) Γ(c | r), where `[K, K_c]` = `counts`.
+#[inline]
+pub(crate) fn inverse_prob(units: u16, counts: [u32; 2]) -> f32 {
+    let [all, of_cell] = counts.map(|count| count as f32);
+    let sum = f32::from(UNIFORM_UNITS) * of_cell + f32::from(units) * all;
+    UNITS as f32 * all * of_cell / sum
 }
 
 /// How many of 2^32 numbers lead to so many units.
@@ -379,7 +380,7 @@ mod tests {
         for cell in 0..Cells::COUNT {
             let (z, counts) = (Cells::cell(cell), [all, kappa(cell)].map(|k| 2 * k as u32));
             let row = proposals.row(y);
-            let drawn = 2.0 * all / f64::from(row.inverse_prob(z, counts));
+            let drawn = 2.0 * all / f64::from(inverse_prob(row.units(z), counts));
             let counted = proposals.count_factor(z, row);
             assert!(
                 (drawn - counted).abs() < 1e-6 * counted,
@@ -409,7 +410,7 @@ mod tests {
                 let number = unit << UNIT_BITS | unit;
                 match row.draw(number) {
                     CellDraw::All(_) => uniform += 1,
-                    CellDraw::One(cell, _) => of_cell[cell.index()] += 1,
+                    CellDraw::One(cell, ..) => of_cell[cell.index()] += 1,
                 }
             }
             assert_eq!(uniform, u32::from(UNIFORM_UNITS));
@@ -440,7 +441,7 @@ mod tests {
             for i in (0..count).filter(|_| numbers > 0) {
                 let ends = [i * numbers / 1000, (i + 1) * numbers / 1000].map(|part| begin + part);
                 for number in [ends[0] + 1, ends[1] - 1] {
-                    let (CellDraw::All(part) | CellDraw::One(_, part)) = row.draw(number as u32);
+                    let (CellDraw::All(part) | CellDraw::One(_, _, part)) = row.draw(number as u32);
                     assert_eq!(part.pick(count as u32), i as usize);
                 }
             }

@@ -90,6 +90,28 @@ impl LightEnd {
             share: 1.0,
         }
     }
+
+    /// The term of its connection with camera vertex number `t`.
+    #[inline(always)]
+    pub(super) fn term(&self, t: usize, contribution: Spectrum, weight: f32) -> Term {
+        Term {
+            strategy: Strategy::new(self.place.s.into(), t),
+            light: self.place.light,
+            contribution,
+            weight,
+        }
+    }
+
+    /// The candidate that is such a `term`, with number `y` of all camera vertices.
+    #[inline(always)]
+    pub(super) fn candidate(&self, term: Term, score: f32, y: u32) -> Candidate {
+        Candidate {
+            term,
+            score: Candidate::score(score),
+            vertices: [self.place.z, y],
+            light_vertex: self.number,
+        }
+    }
 }
 
 /// A light point of next-event estimation.

@@ -1,7 +1,7 @@
 //! The light vertex cache: which vertices of a group's light subpaths can be connected, and draws of them.
 
 use super::curve::Curve;
-use crate::guide::{Cell, CellDraw, Cells, LightProposals, Part, ProposalRow};
+use crate::guide::{Cell, CellDraw, Cells, LightProposals, Part, ProposalRow, inverse_prob};
 use crate::math::Vec3;
 use crate::path::{LightPointChoice, RunningSums, Subpath, Subpaths, Vertex};
 
@@ -201,28 +201,26 @@ impl LightCache {
     #[inline]
     fn draw_learned(&self, row: &ProposalRow, number: u32) -> Option<(&Place, Draw)> {
         let all = self.entries.len() as u32;
-        let (entry, cell) = match row.draw(number) {
+        let (entry, units, count) = match row.draw(number) {
             CellDraw::All(part) => {
                 let entry = part.pick(all);
-                (entry, self.entries.get(entry)?.cell)
+                let cell = self.entries.get(entry)?.cell;
+                (entry, row.units(cell), self.cells.of(cell).count)
             }
-            CellDraw::One(cell, part) => {
+            CellDraw::One(cell, units, part) => {
                 let Entries { first, count } = self.cells.of(cell);
                 if count == 0 {
                     return None;
                 }
-                (first as usize + part.pick(count), cell)
+                (first as usize + part.pick(count), units, count)
             }
         };
         let place = &self.entries.get(entry)?.place;
-        let inverse_prob = row.inverse_prob(cell, [all, self.cells.of(cell).count]);
-        Some((
-            place,
-            Draw {
-                entry,
-                inverse_prob,
-            },
-        ))
+        let draw = Draw {
+            entry,
+            inverse_prob: inverse_prob(units, [all, count]),
+        };
+        Some((place, draw))
     }
 }
 

@@ -33,6 +33,13 @@ impl<T: Copy + Default> List<T> {
         self.memory[self.len] = value;
         self.len += step;
     }
+
+    /// Has `write` write up to `count` values behind the end, and keeps as many of the first as it returns.
+    #[inline(always)]
+    pub fn write_some(&mut self, count: usize, write: impl FnOnce(&mut [T]) -> usize) {
+        self.make_room(count);
+        self.len += write(&mut self.memory[self.len..][..count]);
+    }
 }
 
 impl<T> Deref for List<T> {
@@ -67,6 +74,11 @@ mod tests {
                 list.write(value, step);
             }
             assert_eq!(*list, [1, 3]);
+            list.write_some(2, |room| {
+                room.copy_from_slice(&[5, 6]);
+                1
+            });
+            assert_eq!(*list, [1, 3, 5]);
         }
     }
 }

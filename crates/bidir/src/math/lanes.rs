@@ -28,9 +28,18 @@ pub(crate) fn dot_each(v: Vec3, of: &Vec3x4) -> Vec4 {
 #[inline]
 pub(crate) fn gather([a, b, c, d]: [(Vec3, f32); 4]) -> (Vec3x4, Vec4) {
     let row = |(v, number): (Vec3, f32)| v.extend(number);
-    let columns = Mat4::from_cols(row(a), row(b), row(c), row(d)).transpose();
-    (
-        [columns.x_axis, columns.y_axis, columns.z_axis],
+    let [x, y, z, numbers] = transpose([row(a), row(b), row(c), row(d)]);
+    ([x, y, z], numbers)
+}
+
+/// Rows in place of columns.
+#[inline]
+pub(crate) fn transpose([a, b, c, d]: [Vec4; 4]) -> [Vec4; 4] {
+    let columns = Mat4::from_cols(a, b, c, d).transpose();
+    [
+        columns.x_axis,
+        columns.y_axis,
+        columns.z_axis,
         columns.w_axis,
-    )
+    ]
 }

@@ -22,7 +22,7 @@
 //! r_0 / e is absent for a light that no ray can hit; an end at infinity has neither d² nor a cosine.
 //!
 //! Where the camera's direction turns the shading normal (`visible`), a camera vertex is none of these, and connections
-//! of a light vertex are [general](DiffuseConnections::is_turned).
+//! of a light vertex are [general](DiffuseConnections::get).
 //!
 //! [`JoinedPath`](super::JoinedPath) and [`PathSums`](super::PathSums) are the specification, for every kind of
 //! vertex; the two agree but for rounding. No lane depends on the other lanes.
@@ -35,7 +35,7 @@ use crate::bsdf::{Bsdf, TransportMode};
 use crate::guide::Cell;
 use crate::math::lanes::{Vec3x4, dot, dot_each, gather, offset};
 use crate::math::{INV_PI, Vec3};
-use crate::spectrum::Spectrum;
+use crate::spectrum::{FourSpectra, Spectrum};
 use glam::Vec4;
 
 /// A diffuse vertex of a walk, with all that its connections with other ones need: a line of memory.
@@ -207,7 +207,7 @@ impl DiffuseEnd {
     /// The connections of the camera vertex `self` with four light vertices, before visibility, where the strategy of
     /// each takes so many samples.
     #[inline]
-    pub fn connect<'a>(&'a self, z: [&'a Self; 4], counts: [f32; 4]) -> DiffuseConnections<'a> {
+    pub fn connect(&self, z: [&Self; 4], counts: [f32; 4]) -> DiffuseConnections {
         let (y, lanes, counts) = (self, DiffuseLanes::of(z), Vec4::from(counts));
         let across = offset(y.point, &lanes.point);
         let inverse2 = inverse(dot(&across, &across));
@@ -223,38 +223,30 @@ impl DiffuseEnd {
         let r_z = y.density * s_y * (g_z * inverse2);
         let r_y = lanes.density * s_z * (g_y * inverse2);
         let weights = counts / (counts + (r_z * lanes.others + r_y * y.others));
+        let factors = Vec4::select(a & b & c & d, factors, Vec4::ZERO);
         DiffuseConnections {
-            y,
-            z,
-            factors: Vec4::select(a & b & c & d, factors, Vec4::ZERO).to_array(),
-            weights: weights.to_array(),
+            contributions: FourSpectra::of(z.map(|z| z.flux)) * y.flux * factors,
+            weights,
             turned: turned.bitmask(),
         }
     }
 }
 
 /// Connections of a diffuse camera vertex with four diffuse light vertices, before visibility.
-pub struct DiffuseConnections<'a> {
-    y: &'a DiffuseEnd,
-    z: [&'a DiffuseEnd; 4],
-    /// (n_g·w)_z (n_s·-w)_y / d²; 0 where either end scatters nothing to the other.
-    factors: [f32; 4],
-    weights: [f32; 4],
-    turned: u32,
+pub struct DiffuseConnections {
+    /// C, which may be zero: where either end scatters nothing to the other, it is.
+    pub(crate) contributions: FourSpectra,
+    pub(crate) weights: Vec4,
+    /// A bit for each connection that has to be found as that of any two vertices: it sees another shading normal at z.
+    pub(crate) turned: u32,
 }
 
-impl DiffuseConnections<'_> {
-    /// True where the connection has to be found as that of any two vertices: it sees another shading normal at z.
+impl DiffuseConnections {
+    /// C and the weight of number `lane`. None: it has to be found as that of any two vertices.
     #[inline]
-    pub fn is_turned(&self, lane: usize) -> bool {
-        self.turned >> lane & 1 == 1
-    }
-
-    /// C, which may be zero, and the weight of number `lane`, which [is not turned](Self::is_turned).
-    #[inline]
-    pub fn get(&self, lane: usize) -> (Spectrum, f32) {
-        let contribution = self.z[lane].flux * self.y.flux * self.factors[lane];
-        (contribution, self.weights[lane])
+    pub fn get(&self, lane: usize) -> Option<(Spectrum, f32)> {
+        let is_turned = self.turned >> lane & 1 == 1;
+        (!is_turned).then(|| (self.contributions.each()[lane], self.weights[lane]))
     }
 }
 

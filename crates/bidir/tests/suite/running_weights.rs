@@ -125,11 +125,9 @@ impl Comparison {
         });
         let counts = from_fn(|lane| count as f32 * if lane == own { 1.0 } else { 3.0 });
         let connections = y.connect(ends, counts);
-        if connections.is_turned(own) {
-            return;
+        if let Some(found) = connections.get(own) {
+            self.check_diffuse(context, &path, Some(found).filter(|(c, _)| !c.is_black()));
         }
-        let found = connections.get(own);
-        self.check_diffuse(context, &path, Some(found).filter(|(c, _)| !c.is_black()));
     }
 
     /// C and the weight of a connection of a diffuse vertex against the general form.

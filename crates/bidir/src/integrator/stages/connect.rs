@@ -2,16 +2,17 @@
 
 use super::super::batch::{LightEnd, drop_term};
 use super::super::{Batch, List, Sample};
-use crate::contribution::{Term, is_summable};
+use crate::contribution::is_summable;
 use crate::guide::CellGuide;
+use crate::math::fixed::LARGEST_CONTRIBUTION;
 use crate::path::{
-    DiffuseEnd, EndSums, Job, JoinedPath, PathContext, PathSums, RunningSums, Subpath, Subpaths,
-    Weights,
+    DiffuseConnections, DiffuseEnd, EndSums, Job, JoinedPath, PathContext, PathSums, RunningSums,
+    Subpath, Subpaths, Weights,
 };
 use crate::select::Candidate;
 use crate::spectrum::Spectrum;
 use crate::stats::{Stage, Stats};
-use crate::strategy::Strategy;
+use glam::Vec4;
 use std::array::from_fn;
 
 /// Evaluates the connections of all camera vertices.
@@ -84,7 +85,7 @@ impl Connector<'_> {
     /// Connects camera vertex number `t` with vertices of light subpaths: diffuse ones four at a time, if it is
     /// diffuse itself.
     fn offer_all(&mut self, t: usize, ends: &[LightEnd]) {
-        self.candidates.make_room(ends.len().next_multiple_of(4));
+        self.candidates.make_room(ends.len());
         let Some(y) = self.camera_sums.diffuse(self.camera.first + t - 1) else {
             for end in ends {
                 self.offer_general(t, end, None);
@@ -125,20 +126,68 @@ impl Connector<'_> {
         let z = [z(0), z(1), z(2), z(3)];
         let count = |lane: usize| self.context.count_from(t, of_camera, z[lane].cell()) as f32;
         let connections = y.connect(z, [count(0), count(1), count(2), count(3)]);
+        let root_visibility = z.map(|z| of_camera.root_visibility(z.cell()));
+        let is_plain = |end: &LightEnd| end.place.is_diffuse || end.place.s == 0;
+        if four.iter().all(is_plain) && connections.turned == 0 {
+            self.offer_diffuse(t, four, &connections, root_visibility);
+        } else {
+            self.offer_each(t, four, &connections, root_visibility);
+        }
+    }
+
+    /// Offers connections with four diffuse vertices, or with none, as [`offer_each`](Self::offer_each) does.
+    #[inline(always)]
+    fn offer_diffuse(
+        &mut self,
+        t: usize,
+        four: &[LightEnd; 4],
+        connections: &DiffuseConnections,
+        root_visibility: [f32; 4],
+    ) {
+        let shares = Vec4::from_array(four.each_ref().map(|end| end.share));
+        let contributions = connections.contributions * shares;
+        let values = contributions * connections.weights;
+        let is_zero = connections.contributions.are_black();
+        let is_offered = values.are_within(LARGEST_CONTRIBUTION) & !values.are_black();
+        if !(is_zero | is_offered).all() {
+            return self.offer_each(t, four, connections, root_visibility);
+        }
+        let luminances = values.abs_luminances(self.context.job.scene.color());
+        let scores = luminances * Vec4::from_array(root_visibility);
+        let (contributions, weights) = (contributions.each(), connections.weights.to_array());
+        let y = (self.camera.first + t - 1) as u32;
+        // Half of all connections may be zero, at random: no branch tells them apart.
+        let is_offered = is_offered.bitmask() as usize;
+        self.candidates.write_some(four.len(), |room| {
+            let mut offered = 0;
+            for (lane, end) in four.iter().enumerate() {
+                let term = end.term(t, contributions[lane], weights[lane]);
+                room[offered] = end.candidate(term, scores[lane], y);
+                offered += is_offered >> lane & 1;
+            }
+            offered
+        });
+    }
+
+    /// Offers connections with four vertices one by one, whatever these are.
+    #[inline(never)]
+    fn offer_each(
+        &mut self,
+        t: usize,
+        four: &[LightEnd; 4],
+        connections: &DiffuseConnections,
+        root_visibility: [f32; 4],
+    ) {
         for (lane, end) in four.iter().enumerate() {
-            if end.place.is_diffuse {
-                let (contribution, weight) = connections.get(lane);
+            let connection = connections.get(lane).filter(|_| end.place.is_diffuse);
+            if let Some((contribution, weight)) = connection {
                 let connection = Connection {
                     contribution,
                     transmittance: Spectrum::ONE,
                     weight,
-                    root_visibility: of_camera.root_visibility(z[lane].cell()),
+                    root_visibility: root_visibility[lane],
                 };
-                if connections.is_turned(lane) {
-                    self.offer_general(t, end, None);
-                } else {
-                    self.offer(t, end, connection);
-                }
+                self.offer(t, end, connection);
             } else if end.place.s > 0 {
                 self.offer_general(t, end, None);
             }
@@ -215,27 +264,19 @@ impl Connector<'_> {
 
     /// Offers a connection for selection, unless it is zero. It is compared by its luminance times the √V̂ of its shadow
     /// ray.
-    #[inline(always)]
+    #[inline]
     fn offer(&mut self, t: usize, end: &LightEnd, connection: Connection) {
-        let mut term = Term {
-            strategy: Strategy::new(end.place.s.into(), t),
-            light: end.place.light,
-            contribution: connection.contribution * end.share,
-            weight: connection.weight,
-        };
+        if connection.contribution.is_black() {
+            return;
+        }
+        let mut term = end.term(t, connection.contribution * end.share, connection.weight);
         let value = term.value();
         let luminance = self.context.luminance(value.map(f32::abs));
         term.contribution *= connection.transmittance;
-        let candidate = Candidate {
-            term,
-            score: Candidate::score(luminance * connection.root_visibility),
-            vertices: [end.place.z, (self.camera.first + t - 1) as u32],
-            light_vertex: end.number,
-        };
-        // Half of all connections may be zero, at random: no branch tells them apart.
-        let is_zero = connection.contribution.is_black();
-        if is_zero | (is_summable(value) & !value.is_black()) {
-            self.candidates.write(candidate, usize::from(!is_zero));
+        let y = (self.camera.first + t - 1) as u32;
+        let candidate = end.candidate(term, luminance * connection.root_visibility, y);
+        if is_summable(value) & !value.is_black() {
+            self.candidates.write(candidate, 1);
         } else {
             self.set_aside(candidate);
         }
@@ -252,9 +293,9 @@ impl Connector<'_> {
     /// Counts all that was found.
     fn count(self) {
         let [offered, others] = self.first;
-        let all = self.candidates[offered..]
-            .iter()
-            .chain(&self.unoffered[others..]);
-        all.for_each(|candidate| self.stats.count_candidate(candidate.term.strategy));
+        for found in [&self.candidates[offered..], &self.unoffered[others..]] {
+            let strategies = found.iter().map(|candidate| candidate.term.strategy);
+            self.stats.count_connections(strategies);
+        }
     }
 }

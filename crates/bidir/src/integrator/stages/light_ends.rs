@@ -74,21 +74,23 @@ pub(in super::super) fn draw_cached(job: &Job<'_>, batch: &mut Batch, counts: Ca
             if !y.is_delta() {
                 let u = (sample.camera).get_bits(Dimension::at(t - 1, Purpose::CachedVertex));
                 let (row, count) = (job.guide.of_camera(y.cell).row(), counts.at(t));
-                light_ends.make_room(count.into());
-                cache.draw_all(row, (count, u), |entry, place, share| {
-                    let s = usize::from(place.s);
-                    if place.is_diffuse {
-                        light_sums.load_ahead(place.z as usize);
-                    } else {
-                        light.load_ahead(place.z as usize);
-                    }
-                    let end = LightEnd {
-                        place: *place,
-                        number: entry as u32 + 1,
-                        share,
-                    };
-                    let takes = s <= longest && (takes_all || context.takes(s, t));
-                    light_ends.write(end, usize::from(takes));
+                light_ends.write_some(count.into(), |room| {
+                    let mut taken = 0;
+                    cache.draw_all(row, (count, u), |entry, place, share| {
+                        let s = usize::from(place.s);
+                        if place.is_diffuse {
+                            light_sums.load_ahead(place.z as usize);
+                        } else {
+                            light.load_ahead(place.z as usize);
+                        }
+                        room[taken] = LightEnd {
+                            place: *place,
+                            number: entry as u32 + 1,
+                            share,
+                        };
+                        taken += usize::from(s <= longest && (takes_all || context.takes(s, t)));
+                    });
+                    taken
                 });
             }
             light_ends_end.push(light_ends.len());

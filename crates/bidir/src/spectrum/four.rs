@@ -1,0 +1,104 @@
+//! Four spectra at once: a lane of light of each in a register.
+
+use super::{ColorModel, Spectrum, luminance};
+use crate::math::lanes::transpose;
+use glam::{BVec4A, Vec4};
+use std::ops::Mul;
+
+/// Four spectra. All of it is what [`Spectrum`] does with each of them, in the same bits.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct FourSpectra([Vec4; 4]);
+
+impl FourSpectra {
+    /// These four.
+    #[inline]
+    pub(crate) fn of(spectra: [Spectrum; 4]) -> Self {
+        Self(transpose(spectra.map(Spectrum::lanes)))
+    }
+
+    /// The four one by one.
+    #[inline]
+    pub(crate) fn each(self) -> [Spectrum; 4] {
+        transpose(self.0).map(|lanes| Spectrum(lanes.to_array()))
+    }
+
+    /// True of each that is exactly zero.
+    #[inline]
+    pub(crate) fn are_black(self) -> BVec4A {
+        self.all(|lanes| lanes.cmpeq(Vec4::ZERO))
+    }
+
+    /// True of each that has no lane that is larger than `limit`, or NaN.
+    #[inline]
+    pub(crate) fn are_within(self, limit: f32) -> BVec4A {
+        self.all(|lanes| lanes.abs().cmple(Vec4::splat(limit)))
+    }
+
+    /// True of each of which `is` holds in every lane.
+    #[inline]
+    fn all(self, is: impl Fn(Vec4) -> BVec4A) -> BVec4A {
+        let [a, b, c, d] = self.0.map(is);
+        (a & b) & (c & d)
+    }
+
+    /// The luminances of the four, without signs.
+    #[inline]
+    pub(crate) fn abs_luminances(self, color: ColorModel) -> Vec4 {
+        match color {
+            ColorModel::Rgb => {
+                let [r, g, b, _] = self.0.map(Vec4::abs);
+                luminance([r, g, b])
+            }
+        }
+    }
+}
+
+/// Each times the same spectrum.
+impl Mul<Spectrum> for FourSpectra {
+    type Output = Self;
+    #[inline]
+    fn mul(self, Spectrum([a, b, c, d]): Spectrum) -> Self {
+        let [of_a, of_b, of_c, of_d] = self.0;
+        Self([of_a * a, of_b * b, of_c * c, of_d * d])
+    }
+}
+
+/// Each times a number of its own.
+impl Mul<Vec4> for FourSpectra {
+    type Output = Self;
+    #[inline]
+    fn mul(self, scales: Vec4) -> Self {
+        Self(self.0.map(|lanes| lanes * scales))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::spectrum::Wavelengths;
+
+    #[test]
+    fn four_are_as_each_alone() {
+        let spectra = [
+            Spectrum([0.1, -0.2, 0.3, 0.0]),
+            Spectrum([0.0, 0.0, -0.0, 0.0]),
+            Spectrum([7e20, 1e-20, 2.0, 0.0]),
+            Spectrum([f32::NAN, 0.0, 0.0, 0.0]),
+        ];
+        let (by, scales) = (Spectrum([0.3, 0.7, 0.9, 1.0]), [3.0, 0.5, 1e20, 1.0]);
+        let four = FourSpectra::of(spectra) * by * Vec4::from_array(scales);
+        let color = ColorModel::Rgb;
+        let luminances = four.abs_luminances(color);
+        for i in 0..4 {
+            let alone = spectra[i] * by * scales[i];
+            assert_eq!(
+                four.each()[i].0.map(f32::to_bits),
+                alone.0.map(f32::to_bits)
+            );
+            assert_eq!(four.are_black().test(i), alone.is_black());
+            assert_eq!(four.are_within(1e20).test(i), alone.is_within(1e20));
+            let luminance = color.luminance(alone.map(f32::abs), &Wavelengths::default());
+            assert_eq!(luminances[i].to_bits(), luminance.to_bits());
+        }
+    }
+}
