@@ -115,15 +115,18 @@ impl Surface {
     }
 
     /// Sets weights to 0 that are not finite, negative, or of joints beyond the `count` that there are. Returns
-    /// the number of such weights.
+    /// the number of such weights, and of vertices that are left without any.
     pub(super) fn repair_weights(&mut self, count: usize) -> Repairs {
         let mut repairs = Repairs::default();
-        for (joint, weight) in self.joints.iter_mut().flatten() {
-            let is_weight = weight.is_finite() && *weight >= 0.0;
-            if *weight != 0.0 && !(is_weight && (*joint as usize) < count) {
-                *weight = 0.0;
-                repairs.weights += 1;
+        for vertex in &mut self.joints {
+            for (joint, weight) in &mut *vertex {
+                let is_weight = weight.is_finite() && *weight >= 0.0;
+                if *weight != 0.0 && !(is_weight && (*joint as usize) < count) {
+                    *weight = 0.0;
+                    repairs.weights += 1;
+                }
             }
+            repairs.loose += usize::from(vertex.iter().all(|&(_, weight)| weight == 0.0));
         }
         repairs
     }
