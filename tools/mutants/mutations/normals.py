@@ -29,9 +29,16 @@ NORMALS = [
     (
         "shading normals that face away from the viewer",
         VISIBLE,
-        "Lobes::Diffuse if along >= least => return None,",
-        "Lobes::Diffuse if along >= -1.0 => return None,",
+        "            if along >= least {\n",
+        "            if along >= -1.0 {\n",
         relief("relief_is_not_black"),
+    ),
+    (
+        "plastic that mirrors light below the horizon",
+        VISIBLE,
+        "least + 0.5 * gloss * (cos - least)",
+        "least + 0.0 * gloss * (cos - least)",
+        relief("plastic_keeps_its_light"),
     ),
     (
         "a coat lit by the cosine of its base",
