@@ -9,7 +9,8 @@ use super::document::{Context, Document};
 use super::json::Primitive;
 use super::place::{GltfFault, Place};
 use crate::repair::{self, Repairs};
-use bidir::math::Vec2;
+use bidir::math::{Affine2, Vec2};
+use bidir::texture::Mapping;
 
 /// A primitive in the space of its mesh, with default morph weights applied.
 #[derive(Clone, Debug, Default)]
@@ -42,6 +43,44 @@ impl UvMap {
         set: 0,
         rows: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
     };
+
+    fn affine(&self) -> Affine2 {
+        let [[a, b, c], [d, e, f]] = self.rows;
+        Affine2::from_cols(Vec2::new(a, d), Vec2::new(b, e), Vec2::new(c, f))
+    }
+
+    /// Returns the same set of texture coordinates as the file has them.
+    pub(super) fn untransformed(&self) -> Self {
+        Self {
+            set: self.set,
+            ..Self::IDENTITY
+        }
+    }
+
+    /// Returns true for a map that leads to all texture coordinates, as far as numbers can tell.
+    pub(super) fn is_regular(&self) -> bool {
+        self.affine().matrix2.determinant().is_normal()
+    }
+
+    /// Returns the map from the parameters of a mesh that contain `baked`, which is regular or the same, to what the
+    /// textures of bidir are on, whose v points up.
+    pub(super) fn beyond(&self, baked: &Self) -> Mapping {
+        if self == baked {
+            return Mapping::IDENTITY;
+        }
+        let flip = Affine2::from_cols(Vec2::X, -Vec2::Y, Vec2::Y);
+        let map = if baked.rows == Self::IDENTITY.rows {
+            flip * self.affine() * flip
+        } else {
+            flip * self.affine() * baked.affine().inverse() * flip
+        };
+        let [x, y] = [map.matrix2.x_axis, map.matrix2.y_axis];
+        if x.y == 0.0 && y.x == 0.0 {
+            let (scale, offset) = (Vec2::new(x.x, y.y), map.translation);
+            return Mapping::Parameters { scale, offset };
+        }
+        Mapping::Affine(map)
+    }
 
     /// Returns the parameters of the built mesh, whose v points up, while that of the file points down.
     fn apply(&self, [u, v]: [f32; 2]) -> Vec2 {

@@ -257,6 +257,45 @@ fn all_layers_are_mirrored_by_whatever_mirrors() {
     }
 }
 
+/// Textures of colours and numbers turn as their transforms say; the grain and the relief stay.
+#[test]
+fn transforms_of_other_textures_leave_frames_alone() {
+    let texels = [normal(0.2, 0.3, 1.0), [1.0; 3]];
+    let grain = json!({ "anisotropyStrength": 0.9, "anisotropyRotation": 0.6 });
+    let turned = |with_relief: bool, place: &[&str], transform: Option<&Value>| {
+        let mut material = json!({
+            "pbrMetallicRoughness": { "roughnessFactor": 0.5 },
+            "extensions": { "KHR_materials_anisotropy": grain },
+        });
+        if with_relief {
+            material["normalTexture"] = json!({ "index": 0 });
+        }
+        if let Some(transform) = transform {
+            let extension = json!({ "KHR_texture_transform": transform });
+            let slot = place.iter().fold(&mut material, |at, &key| &mut at[key]);
+            *slot = json!({ "index": 1, "extensions": extension });
+        }
+        plate(&material, UVS, &texels).load().unwrap()
+    };
+    let color = ["pbrMetallicRoughness", "baseColorTexture"];
+    let metal = ["pbrMetallicRoughness", "metallicRoughnessTexture"];
+    let sheen = ["extensions", "KHR_materials_sheen", "sheenColorTexture"];
+    for with_relief in [false, true] {
+        let plain = turned(with_relief, &color, None);
+        for (place, transform) in [
+            (&color[..], json!({ "rotation": 1.5707964 })),
+            (&color, json!({ "rotation": 0.7, "scale": [2, 3] })),
+            (&color, json!({ "scale": [-1, 1] })),
+            (&metal, json!({ "scale": [1, -1], "offset": [0.5, 0.5] })),
+            (&metal, json!({ "rotation": 3.0, "scale": [0, 0] })),
+            (&sheen, json!({ "scale": [-4, 4], "rotation": -0.4 })),
+        ] {
+            let other = turned(with_relief, place, Some(&transform));
+            check_alike(&transform.to_string(), [&plain, &other], Vec3::ONE);
+        }
+    }
+}
+
 /// Smith's Λ: (√(1 + α² tan²θ) - 1) / 2 in the axes of the slopes [Walter07].
 fn lambda(w: Vec3, [x, y]: [f32; 2]) -> f32 {
     let tan2 = (w.x * w.x * x * x + w.y * w.y * y * y) / (w.z * w.z);
