@@ -21,6 +21,8 @@ pub struct Repairs {
     pub colors: usize,
     /// Weights of joints that are not finite, negative, or of joints that do not exist: 0.
     pub weights: usize,
+    /// Vertices of a skin whose weights are all 0: they follow its first joint.
+    pub loose: usize,
 }
 
 impl Repairs {
@@ -51,6 +53,10 @@ impl Repairs {
             (
                 self.weights,
                 "weights of joints are not finite, negative, or of joints that do not exist, and count as 0",
+            ),
+            (
+                self.loose,
+                "vertices have no weight of a joint and follow the first",
             ),
         ];
         let repaired = all.into_iter().filter(|(count, _)| *count > 0);

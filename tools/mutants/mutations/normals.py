@@ -29,9 +29,23 @@ NORMALS = [
     (
         "shading normals that face away from the viewer",
         VISIBLE,
-        "Lobes::Diffuse if along >= least => return None,",
-        "Lobes::Diffuse if along >= -1.0 => return None,",
+        "            if along >= least {\n",
+        "            if along >= -1.0 {\n",
         relief("relief_is_not_black"),
+    ),
+    (
+        "plastic that mirrors light below the horizon",
+        VISIBLE,
+        "least + 0.5 * gloss * (cos - least)",
+        "least + 0.0 * gloss * (cos - least)",
+        relief("plastic_keeps_its_light"),
+    ),
+    (
+        "a grain that turns with the texture of the colour",
+        "crates/formats/src/gltf/material.rs",
+        "if let Some(map) = map_of_tangents(described) {",
+        "if let Some(map) = map_of_tangents(described).filter(|map| map.set > 9) {",
+        formats("transforms_of_other_textures"),
     ),
     (
         "a coat lit by the cosine of its base",

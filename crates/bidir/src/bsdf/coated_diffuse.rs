@@ -87,6 +87,11 @@ impl CoatedDiffuse {
         self.base.is_black() && self.thrown.is_black()
     }
 
+    /// That of the interface.
+    pub(super) fn gloss(&self) -> f32 {
+        self.coat.ggx.gloss()
+    }
+
     #[inline]
     pub(super) fn albedo(&self, wo: Vec3) -> Spectrum {
         let Seen { reflected, through } = self.coat.interface(wo);

@@ -126,6 +126,12 @@ impl Ggx {
         ((sqr(self.alpha_x) + sqr(self.alpha_y)) / 2.0).sqrt()
     }
 
+    /// How near to a mirror it is: 1 for a mirror, 0 for slopes of 1 and above.
+    #[inline]
+    pub fn gloss(self) -> f32 {
+        1.0 - self.mean_alpha().min(1.0)
+    }
+
     /// These slopes, each with the variance `scale`² α² of another surface's added.
     #[inline]
     #[must_use]

@@ -149,10 +149,10 @@ impl BsdfSample {
 }
 
 /// How a surface scatters, as far as it decides which normals can be seen.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Lobes {
-    /// Also diffusely.
-    Diffuse,
+    /// Also diffusely, under facets of this gloss: 1 of a mirror, 0 of the roughest, and without facets.
+    Diffuse(f32),
     /// By facets alone, around mirrored or refracted directions.
     Glossy,
 }
@@ -258,9 +258,8 @@ impl Bsdf {
     /// How it scatters, without a coat that has a normal of its own.
     pub fn lobes(&self) -> Lobes {
         match self {
-            Self::Diffuse(_) | Self::DiffuseTransmission(_) | Self::CoatedDiffuse(_) => {
-                Lobes::Diffuse
-            }
+            Self::Diffuse(_) | Self::DiffuseTransmission(_) => Lobes::Diffuse(0.0),
+            Self::CoatedDiffuse(bsdf) => Lobes::Diffuse(bsdf.gloss()),
             Self::Conductor(_)
             | Self::Dielectric(_)
             | Self::ThinDielectric(_)

@@ -12,7 +12,7 @@ pub mod warp;
 
 pub use distribution::{Distribution1d, Distribution2d, Distribution3d};
 pub use frame::Frame;
-pub use glam::{Affine3A, DAffine3, DVec3, Mat3, Vec2, Vec3, Vec3A};
+pub use glam::{Affine2, Affine3A, DAffine3, DVec3, Mat3, Vec2, Vec3, Vec3A};
 pub use octahedral::{direction_to_square, square_to_direction};
 
 /// π.

@@ -3,9 +3,12 @@
 //! With o the direction from a vertex towards the camera's end of its path, N and S the geometric and the shading
 //! normal on the side of o, and κ = min(¾ o·N, 0.15), a layer scatters by the normal S',
 //!
-//! - S where that is near enough: where o·S ≥ κ if it scatters diffusely, and elsewhere where r·N ≥ κ, with
+//! - S where that is near enough: where o·S ≥ κ_d if it scatters diffusely, and elsewhere where r·N ≥ κ, with
 //!   r = 2 (o·S) S - o the mirrored direction;
-//! - else the nearest to S that has o·S' = κ, or the one that mirrors o to r, lifted until r·N = κ.
+//! - else the nearest to S that has o·S' = κ_d, or the one that mirrors o to r, lifted until r·N = κ.
+//!
+//! κ_d = κ + g (o·N - κ) / 2 with the gloss g of facets over what is diffuse: the smoother they are, the nearer to the
+//! horizon r may come at most, and the less of it they mirror.
 //!
 //! S' depends on the path alone, and so does its value, whichever end a walk came from. Walks from a light do not know
 //! o, and draw by S (docs/derivations/mis-weights.md#shading-normals).
@@ -27,6 +30,13 @@ pub(super) fn least_cosine(cos: f32) -> f32 {
     (LEAST_PART * cos).min(MOST_LEAST)
 }
 
+/// κ_d: the least cosine between o and S' of a diffuse layer under facets of this gloss.
+#[inline]
+fn least_diffuse_cosine(cos: f32, gloss: f32) -> f32 {
+    let least = least_cosine(cos);
+    least + 0.5 * gloss * (cos - least)
+}
+
 /// S' of a layer with `lobes` for the unit direction `o`, on the side of `n_s`; o·N > 0. None: it is `n_s`.
 fn turned(n_s: Vec3, n_g: Vec3, o: Vec3, lobes: Lobes) -> Option<Vec3> {
     let side = 1f32.copysign(n_g.dot(o));
@@ -35,8 +45,13 @@ fn turned(n_s: Vec3, n_g: Vec3, o: Vec3, lobes: Lobes) -> Option<Vec3> {
     let least = least_cosine(cos);
     let within = |height: f32| (1.0 - height * height).max(0.0).sqrt();
     let normal = match lobes {
-        Lobes::Diffuse if along >= least => return None,
-        Lobes::Diffuse => o * least + (n_s - o * along).normalize_or_zero() * within(least),
+        Lobes::Diffuse(gloss) => {
+            let least = least_diffuse_cosine(cos, gloss);
+            if along >= least {
+                return None;
+            }
+            o * least + (n_s - o * along).normalize_or_zero() * within(least)
+        }
         Lobes::Glossy => {
             let mirrored = n_s * (2.0 * along.max(0.0)) - o;
             let height = mirrored.dot(n_g);
@@ -112,7 +127,7 @@ impl Vertex {
     #[inline]
     pub(super) fn is_seen_plainly(&self, bsdf: &Bsdf, o: &Side) -> bool {
         let (along, cos) = (o.local.z * 1f32.copysign(o.cos_g), o.cos_g.abs());
-        // What mirrors above the surface is seen by diffuse layers, too.
+        // What mirrors above the surface is seen by diffuse layers, too: then o·S ≥ (o·N + κ) / 2 ≥ κ_d.
         let height = 2.0 * along * self.frame.z.dot(self.locus.n_g) - cos;
         let is_near = cos > 0.0 && height >= least_cosine(cos);
         (is_near || self.is_near_enough(bsdf, o.world)) && bsdf.coat_normal().is_none()
@@ -242,6 +257,13 @@ mod tests {
     use super::*;
     use crate::math::sin_cos;
 
+    const LOBES: [Lobes; 4] = [
+        Lobes::Diffuse(0.0),
+        Lobes::Diffuse(0.5),
+        Lobes::Diffuse(1.0),
+        Lobes::Glossy,
+    ];
+
     /// Unit directions and normals, each pair on one side: the first is the geometric normal's.
     fn cases() -> impl Iterator<Item = [Vec3; 2]> {
         let at = |i: u16, z: f32| {
@@ -250,7 +272,12 @@ mod tests {
         };
         (0..40).flat_map(move |i| {
             let o = at(i, 0.01 + 0.98 * (f32::from(i) * 0.618).fract());
-            (0..40).map(move |j| [o, at(3 * j + 1, 0.2 + 0.8 * (f32::from(j) * 0.414).fract())])
+            (0..40).map(move |j| {
+                [
+                    o,
+                    at(3 * j + 1, 0.05 + 0.95 * (f32::from(j) * 0.414).fract()),
+                ]
+            })
         })
     }
 
@@ -258,14 +285,14 @@ mod tests {
     #[test]
     fn turned_normals_are_seen() {
         let n_g = Vec3::Z;
-        let mut turns = [0; 2];
+        let mut turns = [0; 4];
         for [o, n_s] in cases() {
-            for (i, lobes) in [Lobes::Diffuse, Lobes::Glossy].into_iter().enumerate() {
+            for (i, lobes) in LOBES.into_iter().enumerate() {
                 let n = turned(n_s, n_g, o, lobes).unwrap_or(n_s);
-                let least = least_cosine(o.z);
-                let seen = match lobes {
-                    Lobes::Diffuse => n.dot(o),
-                    Lobes::Glossy => (n * (2.0 * n.dot(o)) - o).z,
+                let mirrored = n * (2.0 * n.dot(o)) - o;
+                let (seen, least) = match lobes {
+                    Lobes::Diffuse(gloss) => (n.dot(o), least_diffuse_cosine(o.z, gloss)),
+                    Lobes::Glossy => (mirrored.z, least_cosine(o.z)),
                 };
                 assert!((n.length() - 1.0).abs() < 1e-4 && n.z > 0.0 && n.dot(o) > 0.0);
                 assert!(
@@ -278,6 +305,10 @@ mod tests {
                     !is_turned || seen < least + 1e-3,
                     "{seen}: {o}, {n_s}, {lobes:?}"
                 );
+                // Where all see what is mirrored above the surface, none turns.
+                let along = n_s.dot(o);
+                let height = 2.0 * along * n_s.z - o.z;
+                assert!(!is_turned || height < least_cosine(o.z));
                 // Seen from below, and with all on the other side, it is the same.
                 let below = turned(-n_s, -n_g, o, lobes).unwrap_or(-n_s);
                 assert!(below.distance(-n) < 1e-5);
@@ -292,7 +323,7 @@ mod tests {
     fn turned_normals_are_continuous() {
         for [o, n_s] in cases() {
             let near = (o + Vec3::new(1e-4, -1e-4, 5e-5)).normalize();
-            for lobes in [Lobes::Diffuse, Lobes::Glossy] {
+            for lobes in LOBES {
                 let [a, b] = [o, near].map(|o| turned(n_s, Vec3::Z, o, lobes).unwrap_or(n_s));
                 assert!(a.distance(b) < 0.02, "{a}, {b}: {o}, {n_s}, {lobes:?}");
             }

@@ -4,7 +4,7 @@
 //! the world. Points of shared objects are mapped where they stand in the world.
 
 use super::{Footprint, Needs, TexturePoint};
-use crate::math::{Affine3A, PI, Vec2, Vec3, sqr};
+use crate::math::{Affine2, Affine3A, PI, Vec2, Vec3, sqr};
 
 /// The space of a texture.
 #[derive(Clone, Copy, Debug)]
@@ -60,6 +60,8 @@ pub enum Mapping {
         /// Offsets of s and t.
         offset: Vec2,
     },
+    /// An affine map of (u, v), which may turn them.
+    Affine(Affine2),
     /// s = θ/π from +z, t = φ/2π from +x toward +y, as seen from the origin of texture space.
     Spherical(TextureSpace),
     /// s = ½ + φ/2π with φ in (-π, π], t = z.
@@ -95,7 +97,7 @@ impl Mapping {
 
     pub(super) fn needs(&self) -> Needs {
         match self {
-            Self::Parameters { .. } => Needs::NOTHING,
+            Self::Parameters { .. } | Self::Affine(_) => Needs::NOTHING,
             Self::Spherical(_) | Self::Cylindrical(_) | Self::Planar { .. } => Needs::SURFACE,
         }
     }
@@ -105,6 +107,7 @@ impl Mapping {
     pub fn st(&self, at: &TexturePoint) -> Vec2 {
         match self {
             Self::Parameters { scale, offset } => at.uv * *scale + *offset,
+            Self::Affine(map) => map.transform_point2(at.uv),
             Self::Spherical(space) => {
                 let p = space.point(at);
                 let rho = (sqr(p.x) + sqr(p.y)).sqrt();
@@ -132,6 +135,10 @@ impl Mapping {
         let along = |gradient: Vec3| gradient - at.normal * at.normal.dot(gradient);
         match self {
             Self::Parameters { scale, .. } => [gradient_u * scale.x, gradient_v * scale.y],
+            Self::Affine(map) => {
+                let [of_u, of_v] = [map.matrix2.x_axis, map.matrix2.y_axis];
+                [0, 1].map(|axis| gradient_u * of_u[axis] + gradient_v * of_v[axis])
+            }
             Self::Spherical(space) => {
                 let p = space.point(at);
                 let (rho2, r2) = (sqr(p.x) + sqr(p.y), p.length_squared());

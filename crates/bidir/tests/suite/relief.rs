@@ -5,12 +5,15 @@
 //! whichever end a path was walked.
 
 use crate::common::statistics::{Replicates, WHOLE, check_agree, replicates};
-use crate::common::{self, Shot};
+use crate::common::{self, Shot, ShotBuilder};
 use crate::common::{add_walls, builder, diffuse, emission, metal, quad, sphere};
 use bidir::bsdf::TransportMode;
 use bidir::driver::Settings;
 use bidir::integrator::IntegratorKind;
-use bidir::material::{Bitangent, Material, Mixture, NormalMap, Relief};
+use bidir::light::{InfiniteLight, Light};
+use bidir::material::{
+    Bitangent, Material, Mixture, NormalMap, PrincipledMaterial, Relief, ScaledFloat,
+};
 
 use bidir::math::{Affine3A, PI, Vec2, Vec3};
 use bidir::path::{Job, PathContext, PathSettings, Scattering, Vertex};
@@ -258,4 +261,55 @@ fn relief_is_not_black_at_grazing_angles() {
 fn a_white_surface_keeps_all_light() {
     let kept = furnace(diffuse([1.0; 3]), Vec3::new(0.9, 0.2, 0.1).normalize());
     assert!((kept - 1.0).abs() < 2e-3, "{kept}");
+}
+
+/// The light of a furnace that a plate under a slant shows to a camera that looks `degrees` off its normal.
+fn shown(material: &Material, degrees: f32) -> f64 {
+    let (sin, cos) = libm::sincosf(degrees.to_radians());
+    let camera = common::narrow_camera(Vec3::new(0.0, 0.0, -1.8), 4, 1e-3);
+    let mut builder = ShotBuilder::new(camera, 4);
+    builder.light(Light::Infinite(InfiniteLight::constant([1.0; 3])));
+    let material = builder.material(material.clone());
+    let (across, away) = (Vec3::Y, Vec3::new(cos, 0.0, sin));
+    let mut plate = quad(-across - away, across * 2.0, away * 2.0);
+    plate.uvs = vec![Vec2::ZERO, Vec2::Y, Vec2::ONE, Vec2::X];
+    builder.shape(Shape::Mesh(plate), material, None);
+    let scene = builder.build().expect("the plate is valid");
+    render(&scene, IntegratorKind::Path, 96).mean()
+}
+
+/// What is diffuse under facets, smooth or rough, shows most of the light that it shows without relief, from wherever it
+/// is seen: what the facets mirror does not get lost below the horizon.
+#[test]
+fn plastic_keeps_its_light_under_relief() {
+    let plastic = |roughness: f32| {
+        Material::Principled(Arc::new(PrincipledMaterial {
+            metallic: ScaledFloat::constant(0.0),
+            roughness: ScaledFloat::constant(roughness),
+            ..PrincipledMaterial::default()
+        }))
+    };
+    let materials = [
+        plastic(0.0),
+        plastic(0.3),
+        plastic(0.6),
+        plastic(1.0),
+        common::varnish(0.0),
+        common::varnish(0.2),
+    ];
+    for material in materials {
+        for degrees in [40.0, 60.0, 80.0] {
+            let flat = shown(&material, degrees);
+            for away in [0.35, 0.9] {
+                let relief = Relief::NormalMap(common::slant(away, 0.1));
+                let kept = shown(&material.clone().embossed(relief), degrees) / flat;
+                // Slopes that face the viewer lose the light below their horizons: at 40°, 0.13 of it.
+                assert!(
+                    kept > 0.8 && kept * flat < 1.02,
+                    "{}, {degrees}, {away}: {kept} of {flat}",
+                    material.kind()
+                );
+            }
+        }
+    }
 }

@@ -156,9 +156,12 @@ fn infos(described: &Described) -> Vec<&TextureInfo> {
     all.into_iter().flatten().collect()
 }
 
-/// Returns the map from texture coordinates to the parameters of meshes: the one that all textures share,
-/// else the coordinate set of the first texture.
+/// Returns the map from texture coordinates to the parameters of meshes: the one that tangents follow, else the one
+/// that all textures share, else the coordinate set of the first texture.
 fn baked(described: &Described) -> UvMap {
+    if let Some(map) = map_of_tangents(described) {
+        return map;
+    }
     let mut maps = infos(described).into_iter().map(uv_map);
     let Some(first) = maps.next() else {
         return UvMap::IDENTITY;
@@ -166,9 +169,28 @@ fn baked(described: &Described) -> UvMap {
     if maps.all(|map| map == first) {
         first
     } else {
-        UvMap {
-            set: first.set,
-            ..UvMap::IDENTITY
-        }
+        first.untransformed()
     }
+}
+
+/// Returns the map of the texture coordinates that tangents follow: those of what turns in their frame, or those of the
+/// file where that is the same everywhere. None: nothing does, or on other coordinates than the first texture.
+fn map_of_tangents(described: &Described) -> Option<UvMap> {
+    let first = uv_map(infos(described).first()?);
+    let extensions = &described.extensions;
+    let anisotropy = extensions.anisotropy.as_ref();
+    let coat = extensions.clearcoat.as_ref();
+    let in_frames = [
+        described.normal_texture.as_ref(),
+        coat.and_then(|coat| coat.clearcoat_normal_texture.as_ref()),
+        anisotropy.and_then(|anisotropy| anisotropy.anisotropy_texture.as_ref()),
+    ];
+    let own = in_frames.into_iter().flatten().map(uv_map).next();
+    let plain = anisotropy.map(|_| first.untransformed());
+    let map = own.filter(|map| map.set == first.set).or(plain)?;
+    Some(if map.is_regular() {
+        map
+    } else {
+        map.untransformed()
+    })
 }

@@ -9,7 +9,8 @@ use super::document::{Context, Document};
 use super::json::Primitive;
 use super::place::{GltfFault, Place};
 use crate::repair::{self, Repairs};
-use bidir::math::Vec2;
+use bidir::math::{Affine2, Vec2};
+use bidir::texture::Mapping;
 
 /// A primitive in the space of its mesh, with default morph weights applied.
 #[derive(Clone, Debug, Default)]
@@ -42,6 +43,44 @@ impl UvMap {
         set: 0,
         rows: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
     };
+
+    fn affine(&self) -> Affine2 {
+        let [[a, b, c], [d, e, f]] = self.rows;
+        Affine2::from_cols(Vec2::new(a, d), Vec2::new(b, e), Vec2::new(c, f))
+    }
+
+    /// Returns the same set of texture coordinates as the file has them.
+    pub(super) fn untransformed(&self) -> Self {
+        Self {
+            set: self.set,
+            ..Self::IDENTITY
+        }
+    }
+
+    /// Returns true for a map that leads to all texture coordinates, as far as numbers can tell.
+    pub(super) fn is_regular(&self) -> bool {
+        self.affine().matrix2.determinant().is_normal()
+    }
+
+    /// Returns the map from the parameters of a mesh that contain `baked`, which is regular or the same, to what the
+    /// textures of bidir are on, whose v points up.
+    pub(super) fn beyond(&self, baked: &Self) -> Mapping {
+        if self == baked {
+            return Mapping::IDENTITY;
+        }
+        let flip = Affine2::from_cols(Vec2::X, -Vec2::Y, Vec2::Y);
+        let map = if baked.rows == Self::IDENTITY.rows {
+            flip * self.affine() * flip
+        } else {
+            flip * self.affine() * baked.affine().inverse() * flip
+        };
+        let [x, y] = [map.matrix2.x_axis, map.matrix2.y_axis];
+        if x.y == 0.0 && y.x == 0.0 {
+            let (scale, offset) = (Vec2::new(x.x, y.y), map.translation);
+            return Mapping::Parameters { scale, offset };
+        }
+        Mapping::Affine(map)
+    }
 
     /// Returns the parameters of the built mesh, whose v points up, while that of the file points down.
     fn apply(&self, [u, v]: [f32; 2]) -> Vec2 {
@@ -115,15 +154,18 @@ impl Surface {
     }
 
     /// Sets weights to 0 that are not finite, negative, or of joints beyond the `count` that there are. Returns
-    /// the number of such weights.
+    /// the number of such weights, and of vertices that are left without any.
     pub(super) fn repair_weights(&mut self, count: usize) -> Repairs {
         let mut repairs = Repairs::default();
-        for (joint, weight) in self.joints.iter_mut().flatten() {
-            let is_weight = weight.is_finite() && *weight >= 0.0;
-            if *weight != 0.0 && !(is_weight && (*joint as usize) < count) {
-                *weight = 0.0;
-                repairs.weights += 1;
+        for vertex in &mut self.joints {
+            for (joint, weight) in &mut *vertex {
+                let is_weight = weight.is_finite() && *weight >= 0.0;
+                if *weight != 0.0 && !(is_weight && (*joint as usize) < count) {
+                    *weight = 0.0;
+                    repairs.weights += 1;
+                }
             }
+            repairs.loose += usize::from(vertex.iter().all(|&(_, weight)| weight == 0.0));
         }
         repairs
     }

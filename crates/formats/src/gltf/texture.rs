@@ -9,9 +9,9 @@ use crate::error::ErrorKind;
 use crate::image::{self, Encoding, Format, ImageData};
 use crate::import::Content;
 use crate::text::printable;
-use bidir::math::{Vec2, sin_cos};
+use bidir::math::sin_cos;
 use bidir::texture::{
-    self, Beyond, ColorTexture, FloatTexture, Image, ImageFilter, ImageMap, Mapping, Wrap,
+    self, Beyond, ColorTexture, FloatTexture, Image, ImageFilter, ImageMap, Wrap,
 };
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -267,17 +267,16 @@ fn map<const N: usize>(
         beyond(sampler.wrap_t, place)?,
     ]);
     let requested = uv_map(lookup.info);
-    let (scale, offset) = if requested == lookup.baked {
-        (Vec2::ONE, Vec2::ZERO)
-    } else {
-        remaining(context, &requested, lookup)?
-    };
+    if requested.set != lookup.baked.set {
+        let what = "a material with textures of several sets of coordinates";
+        context.unsupported(place.clone(), what, "one set is used for all")?;
+    }
     Ok(ImageMap {
         image,
         wrap,
         filter,
         change: texture::Change::Scale(1.0),
-        mapping: Mapping::Parameters { scale, offset },
+        mapping: requested.beyond(&lookup.baked),
     })
 }
 
@@ -289,23 +288,4 @@ fn beyond(wrap: Option<u32>, place: &Place) -> Result<Beyond, GltfFault> {
         10497 => Ok(Beyond::Repeat),
         other => Err(place.scene(format!("{other} is not a wrap mode"))),
     }
-}
-
-/// Returns scale and offset of a texture whose map differs from that of the mesh.
-fn remaining(
-    context: &mut Context<'_>,
-    requested: &UvMap,
-    lookup: Lookup<'_>,
-) -> Result<(Vec2, Vec2), GltfFault> {
-    if requested.set != lookup.baked.set {
-        let what = "a material with textures of several sets of coordinates";
-        context.unsupported(lookup.place.clone(), what, "one set is used for all")?;
-    }
-    let [[su, across, ou], [down, sv, ov]] = requested.rows;
-    if across.abs().max(down.abs()) > 1e-6 {
-        let what = "a material whose textures are rotated by different angles";
-        context.unsupported(lookup.place.clone(), what, "its textures are not rotated")?;
-    }
-    // The v of the mesh points up, that of the file down.
-    Ok((Vec2::new(su, sv), Vec2::new(ou, 1.0 - sv - ov)))
 }

@@ -101,8 +101,9 @@ impl Header {
                 place: Some((line_number, 1)),
                 ..broken
             };
-            let line = std::str::from_utf8(line).map_err(|_| Broken::new("the header is not text"));
-            let words: Vec<&str> = line.map_err(at_line)?.split_ascii_whitespace().collect();
+            // Comments and names may be in any encoding.
+            let line = String::from_utf8_lossy(line);
+            let words: Vec<&str> = line.split_ascii_whitespace().collect();
             match (line_number, words.as_slice()) {
                 (1, ["ply"]) => {}
                 (1, _) => return Err(Broken::new(NOT_PLY)),

@@ -63,6 +63,26 @@ fn both_byte_orders_give_the_same_mesh_whatever_the_order_of_elements() {
     assert_eq!(little.triangles, [[0, 1, 2], [0, 2, 3], [2, 1, 0]]);
 }
 
+/// Lines that say nothing about the mesh may have any bytes.
+#[test]
+fn comments_of_headers_are_no_text() {
+    let plain = parse(QUAD.as_bytes()).unwrap();
+    for line in [
+        &b"comment caf\xe9"[..],
+        b"comment \xff\xfe\x80",
+        b"comment end_header",
+        b"obj_info Gr\xf6\xdfe",
+        b"comment \xe4\xb8",
+        b"\t comment\t\xa0",
+    ] {
+        let [before, after] =
+            ["comment c", "\nelement vertex"].map(|part| QUAD.find(part).unwrap());
+        let quad = QUAD.as_bytes();
+        let bytes = [&quad[..before], line, &quad[after..]].concat();
+        assert_eq!(parse(&bytes).unwrap(), plain, "{line:?}");
+    }
+}
+
 #[track_caller]
 fn check_broken(from: &str, to: &str, expected: &str) {
     assert!(QUAD.contains(from));

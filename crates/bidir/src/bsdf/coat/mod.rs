@@ -41,7 +41,7 @@ pub(super) struct Coat<const R: usize, const L: usize> {
     depth: Spectrum,
     /// Index of refraction of the layer, divided by that outside.
     eta: f32,
-    ggx: Ggx,
+    pub(super) ggx: Ggx,
     /// g: the cosine that a grazing direction meets facets at.
     grazing: f32,
     /// q: the factor by which facets shadow the transmitted light.

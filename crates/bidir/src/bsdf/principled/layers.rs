@@ -31,7 +31,8 @@ impl Principled {
         if is_glossy {
             Lobes::Glossy
         } else {
-            Lobes::Diffuse
+            let facets = (self.f90 + self.glass).min(1.0);
+            Lobes::Diffuse(facets * self.ggx.gloss())
         }
     }
 

@@ -392,3 +392,32 @@ fn weights_of_joints_are_repaired_with_a_warning() {
     let is_told = |it: &String| it.contains("3 weights of joints");
     assert!(loaded.warnings.iter().any(is_told), "{:?}", loaded.warnings);
 }
+
+/// Vertices whose weights are all 0, or none of a joint that is there.
+#[test]
+fn vertices_without_weights_follow_the_first_joint() {
+    let (zero, nan, one) = ([0.0; 4], [f32::NAN; 4], [1.0, 0.0, 0.0, 0.0]);
+    for (rows, loose) in [
+        ([zero, one, one], 1),
+        ([zero; 3], 3),
+        ([nan, one, zero], 2),
+        ([[-1.0; 4]; 3], 3),
+        ([[0.0, 1.0, 0.0, 0.0], one, one], 1),
+        ([one; 3], 0),
+    ] {
+        let mut draft = Draft::triangle();
+        let joints = draft.accessor(&[0, 9, 0, 0].repeat(3), (U8, "VEC4", 3));
+        let weights = draft.accessor(&floats(&rows.concat()), (F32, "VEC4", 3));
+        draft.primitive()["attributes"] =
+            json!({ "POSITION": 0, "JOINTS_0": joints, "WEIGHTS_0": weights });
+        draft.json["skins"] = json!([{ "joints": [1] }]);
+        draft.json["nodes"] = json!([{ "mesh": 0, "skin": 0 }, { "translation": [0, 0, 1] }]);
+        draft.json["scenes"][0]["nodes"] = json!([0, 1]);
+        let loaded = draft.load().unwrap();
+        let expected = [[0.0, 0.0, 1.0], [1.0, 0.0, 1.0], [0.0, 1.0, 1.0]];
+        check_points(&mesh(&loaded, 0).positions, &expected);
+        let told = format!("{loose} vertices have no weight");
+        let is_told = loaded.warnings.iter().any(|it| it.contains(&told));
+        assert_eq!(is_told, loose > 0, "{:?}", loaded.warnings);
+    }
+}

@@ -142,9 +142,39 @@ fn textures_of_a_material_may_have_different_places() {
     // Green is roughness, blue metal; the texel is red.
     let material = principled(&loaded);
     assert!(material.roughness.eval(&at) <= 0.0 && material.metallic.eval(&at) <= 0.0);
+    // The worked example of the extension, beside a texture that is not turned.
+    let quarter = std::f64::consts::FRAC_PI_2;
     let info = &mut draft.json["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"];
-    info["extensions"]["KHR_texture_transform"]["rotation"] = json!(1.0);
-    assert_eq!(draft.error().kind(), ErrorKind::Unsupported);
+    info["extensions"]["KHR_texture_transform"] =
+        json!({ "offset": [0, 1], "rotation": quarter, "scale": [0.5, 0.5] });
+    let turned = draft.load().unwrap();
+    for uv in [[0.1, 0.1], [0.9, 0.1], [0.9, 0.9]] {
+        check_color(&turned, uv, BLUE);
+    }
+}
+
+/// Tangents follow the map of the anisotropy's texture; the colour stays where it is.
+#[test]
+fn textures_have_the_places_of_their_own_maps() {
+    let quarter = std::f64::consts::FRAC_PI_2;
+    let turned = json!({ "offset": [0, 1], "rotation": quarter, "scale": [0.5, 0.5] });
+    for other in [
+        json!({ "rotation": 0.7 }),
+        json!({ "scale": [2, -3], "offset": [0.25, 0.5] }),
+        json!({ "rotation": -2.0, "scale": [0.5, 4] }),
+        json!({ "scale": [-1, 1] }),
+        json!({ "scale": [0, 1], "rotation": 0.3 }),
+        turned.clone(),
+    ] {
+        let mut draft = with_transform(&turned);
+        let texture = json!({ "index": 0, "extensions": { "KHR_texture_transform": other } });
+        draft.json["materials"][0]["extensions"]["KHR_materials_anisotropy"] =
+            json!({ "anisotropyStrength": 1, "anisotropyTexture": texture });
+        let loaded = draft.load().unwrap();
+        for uv in [[0.1, 0.1], [0.9, 0.1], [0.8, 0.9]] {
+            check_color(&loaded, uv, BLUE);
+        }
+    }
 }
 
 #[test]

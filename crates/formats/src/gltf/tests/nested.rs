@@ -160,6 +160,64 @@ fn three_volumes_nest() {
     check(&draft, left(1.0, 0.625) * libm::powf(0.1, 0.375));
 }
 
+/// The scales of the nodes of both, and where the camera is.
+#[test]
+fn volumes_nest_under_any_map_and_from_any_place() {
+    for (outer_scale, inner_scale, camera, expected) in [
+        ([-1.0, 1.0, 1.0], [1.0, -1.0, 1.0], 9.0, left(1.0, 1.0)),
+        ([-1.0, -1.0, -1.0], [1.0, 1.0, -1.0], 9.0, left(1.0, 1.0)),
+        ([1.0, 1.0, 3.0], [1.0, 1.0, 1.0], 9.0, left(5.0, 1.0)),
+        ([2.0, 1.0, 1.0], [0.5, 0.7, -1.5], 9.0, left(0.5, 1.5)),
+        ([1.0, 1.0, 1.0], [1.0, 1.0, 1.0], 0.75, left(0.75, 1.0)),
+        ([1.0, 1.0, -1.0], [1.0, 1.0, 1.0], 0.25, left(0.5, 0.75)),
+        ([1.0, 1.0, 1.0], [-1.0, 1.0, 1.0], -0.75, left(0.25, 0.0)),
+    ] {
+        for turned in [false, true] {
+            let within = if turned {
+                inner().inside_out()
+            } else {
+                inner()
+            };
+            let mut draft = bench(&two(), &[&[outer()], &[within]]);
+            draft.json["nodes"][0]["scale"] = json!(outer_scale);
+            draft.json["nodes"][1]["scale"] = json!(inner_scale);
+            draft.json["nodes"][3]["translation"][2] = json!(camera);
+            check(&draft, expected);
+        }
+    }
+}
+
+#[test]
+fn volumes_may_lie_beside_each_other_and_alternate() {
+    let shells = (0..6u8).map(|k| {
+        let half = 1.0 - 0.15 * f32::from(k);
+        solid(usize::from(k % 2), [-half, half], half)
+    });
+    for (parts, expected) in [
+        (
+            vec![solid(0, [-1.0, -0.1], 1.0), solid(1, [0.1, 1.0], 1.0)],
+            left(0.9, 0.9),
+        ),
+        (
+            vec![
+                outer(),
+                solid(1, [-0.8, -0.2], 0.5),
+                solid(1, [0.2, 0.8], 0.5),
+            ],
+            left(0.8, 1.2),
+        ),
+        (vec![outer(), solid(1, [0.5, 1.5], 0.5)], left(1.5, 1.0)),
+        (
+            vec![solid(0, [-1.0, 0.0], 1.0), solid(1, [0.0, 1.0], 1.0)],
+            left(1.0, 1.0),
+        ),
+        (shells.collect(), left(0.9, 1.1)),
+    ] {
+        let meshes: Vec<&[Solid]> = parts.iter().map(std::slice::from_ref).collect();
+        check(&bench(&two(), &meshes), expected);
+    }
+}
+
 #[test]
 fn of_volumes_that_overlap_the_smaller_fills_both() {
     let across = solid(1, [0.5, 1.5], 0.5);

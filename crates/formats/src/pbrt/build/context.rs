@@ -83,9 +83,9 @@ impl Context<'_> {
             let message = format!("{}: {message}", path.display());
             Fault::scene(span, message)
         };
-        let text =
-            std::str::from_utf8(&bytes).map_err(|_| refuse("the file is not text".into()))?;
-        Spectrum::parse(text).map_err(|error| refuse(error.to_string()))
+        // Comments may be in any encoding.
+        let text = String::from_utf8_lossy(&bytes);
+        Spectrum::parse(&text).map_err(|error| refuse(error.to_string()))
     }
 
     /// Reads the bytes of a NanoVDB file, which `span` names.
