@@ -3,7 +3,7 @@
 //!
 //! Σ C² v (1 - π) / π - (Σ C v (1 - π))² / Σ π (1 - π),    π = min(1, C √V̂ / δ),    Σ π = K,
 //!
-//! which is that of a draw of a fixed number of rays [Hajek64].
+//! which is that of a draw of a fixed number of rays \[Hajek64\].
 
 /// Candidates of a plan, as one of the survey has them.
 #[derive(Clone, Copy, Debug)]
