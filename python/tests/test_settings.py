@@ -96,7 +96,7 @@ def test_rules_reach_the_render(cornell: bidir.Scene, rule: bidir.Selector) -> N
 
 
 def test_auto_chooses_an_integrator(cornell: bidir.Scene) -> None:
-    assert bidir.Session(cornell, bidir.Auto()).settings["integrator"] in {"path", "lvc"}
+    assert bidir.Session(cornell, bidir.Auto()).settings["integrator"] in {"path", "bdpt", "lvc"}
 
 
 @pytest.mark.parametrize(
