@@ -88,7 +88,7 @@ impl Counts {
 
 /// How connections are drawn from the light subpaths of a group.
 pub(super) struct Draws {
-    /// Those of each camera vertex, of t = 2 and t > 2.
+    /// The candidates of each camera vertex, for t = 2 and for t > 2.
     pub(super) candidates: [f64; 2],
     /// The light subpaths of a group.
     pub(super) subpaths: f64,

@@ -1,6 +1,6 @@
-//! What is learned of connections changes the numbers of their samples, and which are traced. A term is judged by what
-//! the others teach: its own square and visibility are left out of the sums, as they are not known to the samples of the
-//! film.
+//! Learned proposals change how many samples a connection has, and which connections are traced. The survey judges a term
+//! by what the other terms teach: samples of the film do not know the term's own square and visibility, so the sums leave
+//! them out.
 
 use super::counts::Counts;
 use super::learning::Lessons;
@@ -12,7 +12,7 @@ use crate::film::FilmSettings;
 use crate::guide::Cells;
 use crate::path::Shares;
 
-/// What is known of a term.
+/// The learned numbers of samples of a term's connections, and their visibility.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Known {
     /// The shares of its path, with the numbers of samples that are learned.

@@ -129,8 +129,8 @@ pub(super) struct Variance {
 }
 
 impl Variance {
-    /// What plans are compared by: the geometric mean of both, as noise of single pixels is what errors are measured by,
-    /// and noise of blocks is what is left after looking from afar, or a denoiser.
+    /// Returns the geometric mean of both, by which plans are compared: errors are measured by the noise of pixels, and a
+    /// viewer from afar, or a denoiser, leaves the noise of blocks.
     pub(super) fn mean(self) -> f64 {
         (self.pixels * self.blocks).sqrt()
     }
@@ -219,7 +219,7 @@ pub(super) struct Judgement {
     moment: f64,
     /// The variance of a pixel, if all shadow rays are traced.
     all: f64,
-    /// What the other pixels of a block add to that, as they share light subpaths.
+    /// The variance that the other pixels of a block add, because they share light subpaths.
     common: f64,
     /// The connections of the survey.
     candidates: Vec<Expected>,
