@@ -55,6 +55,12 @@ impl Spectrum {
         self.0[0].max(self.0[1]).max(self.0[2].max(self.0[3]))
     }
 
+    /// The smallest lane.
+    #[inline]
+    pub fn min_lane(self) -> f32 {
+        self.lanes().min_element()
+    }
+
     /// True where every lane is exactly zero.
     #[inline]
     pub fn is_black(self) -> bool {

@@ -74,6 +74,13 @@ MEDIA = [
         media("nested_media"),
     ),
     (
+        "the weight of a guess kept past boundaries",
+        PASSAGE,
+        "is_guessed: passage.crossings.is_empty()\n",
+        "is_guessed: true\n",
+        unit("scene::passage"),
+    ),
+    (
         "media that are foreseen, and let all light through",
         "crates/bidir/src/integrator/stages/connect.rs",
         "term.contribution *= connection.transmittance;",
@@ -90,7 +97,7 @@ MEDIA = [
     (
         "grids foreseen like media that are even",
         "crates/bidir/src/scene/builder.rs",
-        "foresees_media: is_opaque && self.media.iter().all(is_even),",
+        "foresees_media: is_opaque && self.media.iter().all(Medium::is_even),",
         "foresees_media: is_opaque,",
         media("smoke_that_absorbs_nothing"),
     ),

@@ -230,6 +230,11 @@ impl Medium {
         }
     }
 
+    /// True where it is the same everywhere.
+    pub fn is_even(&self) -> bool {
+        self.bounds().is_none()
+    }
+
     /// True where paths have vertices: where light scatters or begins. A medium that only absorbs stops no walk: its
     /// light is weighted by T.
     #[inline]

@@ -60,6 +60,16 @@ impl Side {
         }
     }
 
+    /// A direction where there are no normals.
+    #[inline]
+    fn in_space(world: Vec3) -> Self {
+        Self {
+            world,
+            local: Vec3::ZERO,
+            cos_g: 0.0,
+        }
+    }
+
     /// True where both normals see it on the same side.
     #[inline]
     fn agrees(&self) -> bool {
@@ -220,11 +230,15 @@ impl Vertex {
     /// The vertex of a walk of `mode` that came along -`wo` and goes on along `wi`.
     #[inline]
     pub fn turn(&self, wo: Vec3, wi: Vec3, mode: TransportMode) -> Turn<'_> {
+        let side = |w| match self.scattering {
+            Scattering::Surface(_) => Side::new(self, w),
+            Scattering::Medium(_) | Scattering::Camera | Scattering::Light => Side::in_space(w),
+        };
         Turn {
             vertex: self,
             mode,
-            wo: Side::new(self, wo),
-            wi: Side::new(self, wi),
+            wo: side(wo),
+            wi: side(wi),
             value: Cell::new(None),
         }
     }

@@ -388,10 +388,9 @@ impl SceneBuilder {
         let is_opaque = self.coverages.is_empty()
             && volumes.is_empty()
             && !self.surfaces.iter().any(is_boundary);
-        let is_even = |medium: &Medium| medium.bounds().is_none();
         let mut scene = Scene {
             is_opaque,
-            foresees_media: is_opaque && self.media.iter().all(is_even),
+            foresees_media: is_opaque && self.media.iter().all(Medium::is_even),
             volumes,
             glows: glow::lights_of(&self.media, &self.lights),
             media: self.media,

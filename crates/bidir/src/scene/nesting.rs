@@ -12,7 +12,7 @@
 //! Volumes whose boxes touch no other's need none of this: their surfaces are there, with air around them.
 
 use super::object::{Objects, Placed};
-use super::passage::{Crossing, Crossings, Passage};
+use super::passage::{Crossing, Crossings};
 use super::{Chances, PrimitiveRef, Scene, Surface};
 use crate::math::Vec3;
 use crate::medium::{MediumId, MediumSides};
@@ -363,11 +363,6 @@ impl Scene {
         let inside = self.volumes.get(volume? as usize)?.volume.medium;
         let outside = self.medium_at(point);
         Some(MediumSides { outside, inside })
-    }
-
-    /// The passage from `start` to the end of the world.
-    pub(super) fn passage_from(&self, ray: &Ray, start: MediumId) -> Passage {
-        Passage::new(start, self.boundaries(ray), f32::INFINITY)
     }
 }
 

@@ -13,6 +13,9 @@ use accel::{Hit, Ray, Stop};
 use smallvec::SmallVec;
 use std::cell::RefCell;
 
+/// The least transmittance that is guessed: an unknown boundary may lie between.
+const LEAST_GUESS: f32 = 1e-3;
+
 /// The place that a ray of a walk comes to.
 #[derive(Clone, Copy, Debug)]
 pub enum Interaction {
@@ -42,6 +45,14 @@ pub struct Transmittance {
     pub drawn: Spectrum,
 }
 
+impl Transmittance {
+    /// True where no guess takes more for it.
+    #[inline]
+    fn is_guessable(&self) -> bool {
+        self.drawn.min_lane().min(self.all.min_lane()) >= LEAST_GUESS
+    }
+}
+
 /// τ of the same.
 #[derive(Clone, Copy, Debug)]
 struct Depth {
@@ -59,6 +70,8 @@ pub struct Edge {
     pub to_b: f32,
     /// The same for a drawn from b.
     pub to_a: f32,
+    /// True where a [guess](Scene::guessed_edge) finds the same.
+    pub is_guessed: bool,
 }
 
 /// A boundary of media that a ray crosses.
@@ -79,9 +92,9 @@ pub(super) type Crossings = SmallVec<[Crossing; 8]>;
 
 /// The boundaries that a ray crosses, in order.
 #[derive(Debug)]
-pub(super) struct Passage {
+pub(super) struct Passage<'a> {
     start: MediumId,
-    crossings: Crossings,
+    crossings: &'a [Crossing],
 }
 
 /// A part of a ray in one medium.
@@ -158,15 +171,20 @@ impl Depth {
     }
 }
 
-impl Passage {
-    /// The passage of a ray that begins in `start` and ends at `end`.
-    pub(super) fn new(
-        start: MediumId,
-        crossings: impl IntoIterator<Item = Crossing>,
-        end: f32,
-    ) -> Self {
-        let crossings = crossings.into_iter().filter(|crossing| crossing.t < end);
-        let mut crossings: Crossings = crossings.collect();
+impl<'a> Passage<'a> {
+    /// The passage of a ray that begins in `start` and ends at `end`. Sorts the crossings, and leaves out those behind
+    /// its end.
+    #[inline]
+    pub(super) fn new(start: MediumId, crossings: &'a mut Crossings, end: f32) -> Self {
+        if !crossings.is_empty() {
+            Self::order(crossings, end);
+        }
+        Self { start, crossings }
+    }
+
+    #[inline(never)]
+    fn order(crossings: &mut Crossings, end: f32) {
+        crossings.retain(|crossing| crossing.t < end);
         // Where two shapes touch, the one is left before the other is entered. Hits arrive in any order.
         let order = |a: &Crossing, b: &Crossing| {
             let by_side = b.leaves.cmp(&a.leaves);
@@ -174,7 +192,6 @@ impl Passage {
             by_place.then(a.surface.cmp(&b.surface))
         };
         crossings.sort_unstable_by(order);
-        Self { start, crossings }
     }
 
     /// The parts up to `end`.
@@ -285,7 +302,7 @@ impl Scene {
         let mut crossings = Crossings::new();
         let (hit, interface) = self.first(ray, chances, &mut crossings);
         let end = hit.map_or(f32::INFINITY, |hit| hit.t);
-        let passage = Passage::new(medium, crossings, end);
+        let passage = Passage::new(medium, &mut crossings, end);
         let lanes = |rgb| self.color.unbounded(rgb, wavelengths);
         let mut drawn = None;
         let mut depth = Depth::ZERO;
@@ -381,7 +398,7 @@ impl Scene {
         if visible <= 0.0 || stop.is_asked() {
             return None;
         }
-        let edge = self.edge_across(&ray, crossings, [a, b], wavelengths);
+        let edge = self.edge_across(&ray, &mut crossings, [a, b], wavelengths);
         let arrives = edge.transmittance * visible;
         (!arrives.is_black()).then_some(Edge {
             transmittance: arrives,
@@ -398,7 +415,7 @@ impl Scene {
         wavelengths: &Wavelengths,
     ) -> Option<Edge> {
         let ray = super::visibility::shadow_ray(a, b);
-        let edge = self.edge_across(&ray, [], [a, b], wavelengths);
+        let edge = self.edge_across(&ray, &mut Crossings::new(), [a, b], wavelengths);
         (!edge.transmittance.is_black()).then_some(edge)
     }
 
@@ -407,26 +424,33 @@ impl Scene {
     fn edge_across(
         &self,
         ray: &Ray,
-        crossings: impl IntoIterator<Item = Crossing>,
+        crossings: &mut Crossings,
         [a, b]: [&Locus; 2],
         wavelengths: &Wavelengths,
     ) -> Edge {
-        let start = if a.is_infinite() { b } else { a };
+        let (start, end) = if a.is_infinite() { (b, a) } else { (a, b) };
         let unit = ray.direction.length();
         let passage = Passage::new(start.medium_toward(ray.direction), crossings, ray.t_max);
         let depths = passage
             .spans(ray.t_max)
             .map(|span| self.depth(span.medium, &span.of(ray, unit), Detail::Full, wavelengths));
         let depth = depths.fold(Depth::ZERO, Depth::and);
-        self.edge_of(depth.transmittance(), [a, b], wavelengths)
+        let transmittance = depth.transmittance();
+        let is_even = self.medium(passage.start).is_none_or(Medium::is_even);
+        let is_one = end.medium_toward(-ray.direction) == passage.start;
+        Edge {
+            is_guessed: passage.crossings.is_empty()
+                && is_even
+                && is_one
+                && transmittance.is_guessable(),
+            ..self.edge_of(transmittance, [a, b], wavelengths)
+        }
     }
 
     /// A guess at the media between two ends from those next to them: the thinner of both, all the way. Something
     /// always arrives.
     #[inline(never)]
     pub(crate) fn guessed_edge(&self, a: &Locus, b: &Locus, wavelengths: &Wavelengths) -> Edge {
-        /// An unknown boundary may lie between.
-        const LEAST: f32 = 1e-3;
         let ray = super::visibility::shadow_ray(a, b);
         let stretch = Stretch {
             ray: &ray,
@@ -446,7 +470,7 @@ impl Scene {
             near.min(through(media[1]))
         };
         let Transmittance { all, drawn } = depth.transmittance();
-        let [all, drawn] = [all, drawn].map(|t| t.map(|lane| lane.max(LEAST)));
+        let [all, drawn] = [all, drawn].map(|t| t.map(|lane| lane.max(LEAST_GUESS)));
         self.edge_of(Transmittance { all, drawn }, [a, b], wavelengths)
     }
 
@@ -473,6 +497,7 @@ impl Scene {
             transmittance: all,
             to_b: density(b),
             to_a: density(a),
+            is_guessed: false,
         }
     }
 
@@ -496,7 +521,8 @@ impl Scene {
         by_most(|direction| {
             let ray = Ray::new(point, direction);
             if self.nests() {
-                return self.passage_from(&ray, self.around).first();
+                let crossings = &mut self.boundaries(&ray);
+                return Passage::new(self.around, crossings, f32::INFINITY).first();
             }
             let hit = self.bvh.closest(&ray, is_boundary);
             let crossing = hit.and_then(|hit| self.crossing(&ray, &hit));
@@ -508,7 +534,7 @@ impl Scene {
     pub(super) fn medium_beyond(&self, point: Vec3, medium: MediumId) -> MediumId {
         by_most(|direction| {
             let ray = Ray::new(point, direction);
-            self.passage_from(&ray, medium).last()
+            Passage::new(medium, &mut self.boundaries(&ray), f32::INFINITY).last()
         })
     }
 

@@ -40,6 +40,7 @@ pub(crate) fn edge(context: &PathContext<'_>, a: &Vertex, b: &Vertex) -> Option<
         transmittance: Spectrum::splat(1.0),
         to_b: 1.0,
         to_a: 1.0,
+        is_guessed: false,
     })
 }
 

@@ -2,7 +2,8 @@
 //! them out, each is traced before its term is weighed.
 //!
 //! A candidate has the weight of a guess, by which it is chosen. Its probability depends on guesses alone, and the
-//! estimate remains unbiased with the weight that the ray leads to (docs/derivations/media.md).
+//! estimate remains unbiased with the weight that the ray leads to (docs/derivations/media.md). Where the guess was
+//! right, that is the weight it has.
 
 use super::super::{Batch, Entry, Fate};
 use crate::locus::Locus;
@@ -92,7 +93,9 @@ pub(super) fn settle_chosen(job: &Job<'_>, batch: &mut Batch) {
             None => ShadowPassage::Clear,
         };
         passage.settle(entry, stats);
-        let Some(edge) = passage.edge() else { continue };
+        let Some(edge) = passage.edge().filter(|edge| !edge.is_guessed) else {
+            continue;
+        };
         let [z, y] = candidates[chosen.candidate as usize]
             .vertices
             .map(|i| i as usize);

@@ -151,7 +151,50 @@ fn boundaries_in_one_place_have_one_order() {
     };
     let [a, b] = [3, 5].map(crossing);
     for crossings in [[a, b], [b, a]] {
+        let crossings = &mut crossings.into_iter().collect();
         let last = Passage::new(MediumId::VACUUM, crossings, 2.0).last();
         assert_eq!(last, b.into);
+    }
+}
+
+/// A guess stands where nothing was crossed, and the medium is the same everywhere and not too thick.
+#[test]
+fn right_guesses_are_known_as_such() {
+    let even = || fog().0.build().expect("the scene is valid");
+    let side = Vec3::X * 2.0;
+    for (case, scene, [a, b], expected) in [
+        ("fog", even(), [START, -START], true),
+        ("thick fog", even(), [START, START + Vec3::Z * 20.0], false),
+        (
+            "past a ball",
+            ball_in_fog(),
+            [START + side, side - START],
+            true,
+        ),
+        ("into a ball", ball_in_fog(), [START, Vec3::ZERO], false),
+        ("through a ball", ball_in_fog(), [START, -START], false),
+        (
+            "in a ball",
+            ball_in_fog(),
+            [Vec3::Z * -0.1, Vec3::Z * 0.2],
+            true,
+        ),
+        ("smoke", smoke(), [Vec3::ZERO, Vec3::Z], false),
+    ] {
+        let ends = [a, b].map(|point| Locus::in_medium(point, scene.medium_at(point)));
+        let (ends, wavelengths) = ([&ends[0], &ends[1]], Wavelengths::default());
+        let edge = scene
+            .edge(ends, &wavelengths, Stop::NEVER)
+            .expect("nothing is opaque");
+        assert_eq!(edge.is_guessed, expected, "{case}");
+        let guess = scene.guessed_edge(ends[0], ends[1], &wavelengths);
+        let numbers = |edge: &Edge| {
+            let lanes = (0..3).map(|lane| edge.transmittance[lane]);
+            lanes
+                .chain([edge.to_b, edge.to_a])
+                .map(f32::to_bits)
+                .collect::<Vec<_>>()
+        };
+        assert_eq!(numbers(&edge) == numbers(&guess), expected, "{case}");
     }
 }
