@@ -202,7 +202,7 @@ impl ColorModel {
         }
     }
 
-    /// The mean over the lanes that carry light.
+    /// The mean over the lanes that carry light: of contributions the scalar by which candidates are compared.
     #[inline]
     pub fn mean(self, spectrum: Spectrum) -> f32 {
         match self {
@@ -234,7 +234,7 @@ impl ColorModel {
         }
     }
 
-    /// The luminance of a sample's light: the scalar by which candidates are compared.
+    /// The luminance of a sample's light.
     #[inline]
     pub fn luminance(self, light: Spectrum, wavelengths: &Wavelengths) -> f32 {
         luminance(self.to_rgb(light, wavelengths))

@@ -33,8 +33,8 @@ use std::str::FromStr;
 pub struct Candidate {
     /// Its term; s ≥ 1 and t ≥ 2.
     pub term: Term,
-    /// The score that candidates are compared by: the luminance of C w, times a guess at the mean of T, times the
-    /// estimated root of the chance that nothing opaque is in the way. Positive.
+    /// The score that candidates are compared by: the mean of the lanes of C w, times a guess at that of T, times
+    /// the estimated root of the chance that nothing opaque is in the way. Positive.
     pub score: f32,
     /// The numbers of its light vertex and of its camera vertex among those of a batch.
     pub vertices: [u32; 2],

@@ -24,7 +24,7 @@ impl Selector for All {
 /// [Veach97, §10.4.1].
 #[derive(Clone, Copy, Debug)]
 pub struct RayRoulette {
-    /// The score from which on a candidate is always traced. Unit: luminance.
+    /// The score from which on a candidate is always traced.
     pub threshold: f32,
 }
 

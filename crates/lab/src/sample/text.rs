@@ -85,7 +85,7 @@ impl SampleReport {
         if count > 0 {
             writeln!(
                 f,
-                "  g, by which candidates are chosen, is the luminance of w C{}",
+                "  g, by which candidates are chosen, is the mean of the channels of w C{}",
                 if self.settings.request.integrator == Some(IntegratorKind::Lvc) {
                     ", times √V̂ where visibility is learned"
                 } else {

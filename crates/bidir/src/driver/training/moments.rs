@@ -33,7 +33,7 @@ pub(super) struct Term {
     pub(super) light: u32,
     /// v; 0 where it did not arrive. Unit: luminance.
     pub(super) value: f32,
-    /// The score of a candidate, where nothing is learned. Unit: luminance.
+    /// The score of a candidate, where nothing is learned.
     pub(super) score: f32,
     /// True of s = 1 where it draws a light point of its own.
     pub(super) is_next_event: bool,

@@ -152,8 +152,8 @@ impl Connector<'_> {
         if !(is_zero | is_offered).all() {
             return self.offer_each(t, four, connections, root_visibility);
         }
-        let luminances = values.abs_luminances(self.context.job.scene.color());
-        let scores = luminances * Vec4::from_array(root_visibility);
+        let means = values.abs_means(self.context.job.scene.color());
+        let scores = means * Vec4::from_array(root_visibility);
         let (contributions, weights) = (contributions.each(), connections.weights.to_array());
         let y = (self.camera.first + t - 1) as u32;
         // Half of all connections may be zero, at random: no branch tells them apart.
@@ -262,8 +262,8 @@ impl Connector<'_> {
         })
     }
 
-    /// Offers a connection for selection, unless it is zero. It is compared by its luminance times the √V̂ of its shadow
-    /// ray.
+    /// Offers a connection for selection, unless it is zero. It is compared by the mean of its lanes times the √V̂ of its
+    /// shadow ray.
     #[inline]
     fn offer(&mut self, t: usize, end: &LightEnd, connection: Connection) {
         if connection.contribution.is_black() {
@@ -271,10 +271,10 @@ impl Connector<'_> {
         }
         let mut term = end.term(t, connection.contribution * end.share, connection.weight);
         let value = term.value();
-        let luminance = self.context.luminance(value.map(f32::abs));
+        let mean = self.context.job.scene.color().mean(value.map(f32::abs));
         term.contribution *= connection.transmittance;
         let y = (self.camera.first + t - 1) as u32;
-        let candidate = end.candidate(term, luminance * connection.root_visibility, y);
+        let candidate = end.candidate(term, mean * connection.root_visibility, y);
         if is_summable(value) & !value.is_black() {
             self.candidates.write(candidate, 1);
         } else {
