@@ -70,7 +70,7 @@ pub struct Edge {
     pub to_b: f32,
     /// The same for a drawn from b.
     pub to_a: f32,
-    /// True where a [guess](Scene::guessed_edge) finds the same.
+    /// True where a guess before the ray is traced finds the same.
     pub is_guessed: bool,
 }
 
