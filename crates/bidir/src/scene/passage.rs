@@ -46,7 +46,7 @@ pub struct Transmittance {
 }
 
 impl Transmittance {
-    /// True where no guess takes more for it.
+    /// True where no lane is so small that a guess raises it.
     #[inline]
     fn is_guessable(&self) -> bool {
         self.drawn.min_lane().min(self.all.min_lane()) >= LEAST_GUESS
@@ -182,6 +182,7 @@ impl<'a> Passage<'a> {
         Self { start, crossings }
     }
 
+    /// Keeps the crossings before `end`, in the order in which the ray comes to them.
     #[inline(never)]
     fn order(crossings: &mut Crossings, end: f32) {
         crossings.retain(|crossing| crossing.t < end);

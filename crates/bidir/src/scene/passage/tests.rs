@@ -150,8 +150,8 @@ fn boundaries_in_one_place_have_one_order() {
         into: MediumId::new(primitive as usize).expect("few media"),
     };
     let [a, b] = [3, 5].map(crossing);
-    for crossings in [[a, b], [b, a]] {
-        let crossings = &mut crossings.into_iter().collect();
+    for order in [[a, b], [b, a]] {
+        let crossings = &mut order.into_iter().collect();
         let last = Passage::new(MediumId::VACUUM, crossings, 2.0).last();
         assert_eq!(last, b.into);
     }
@@ -162,7 +162,7 @@ fn boundaries_in_one_place_have_one_order() {
 fn right_guesses_are_known_as_such() {
     let even = || fog().0.build().expect("the scene is valid");
     let side = Vec3::X * 2.0;
-    for (case, scene, [a, b], expected) in [
+    for (case, scene, [from, to], expected) in [
         ("fog", even(), [START, -START], true),
         ("thick fog", even(), [START, START + Vec3::Z * 20.0], false),
         (
@@ -181,13 +181,13 @@ fn right_guesses_are_known_as_such() {
         ),
         ("smoke", smoke(), [Vec3::ZERO, Vec3::Z], false),
     ] {
-        let ends = [a, b].map(|point| Locus::in_medium(point, scene.medium_at(point)));
-        let (ends, wavelengths) = ([&ends[0], &ends[1]], Wavelengths::default());
+        let [a, b] = [from, to].map(|point| Locus::in_medium(point, scene.medium_at(point)));
+        let (ends, wavelengths) = ([&a, &b], Wavelengths::default());
         let edge = scene
             .edge(ends, &wavelengths, Stop::NEVER)
             .expect("nothing is opaque");
         assert_eq!(edge.is_guessed, expected, "{case}");
-        let guess = scene.guessed_edge(ends[0], ends[1], &wavelengths);
+        let guess = scene.guessed_edge(&a, &b, &wavelengths);
         let numbers = |edge: &Edge| {
             let lanes = (0..3).map(|lane| edge.transmittance[lane]);
             lanes
