@@ -12,6 +12,22 @@ EPSILON = 0.01
 TRIMMED = 1e-3
 #: The side of blocks, which measure the correlated noise of neighbours. Unit: pixels.
 BLOCK = 16
+#: How often seeds and blocks are resampled for an interval.
+RESAMPLED = 2000
+
+
+@dataclass
+class Product:
+    """Variance times microseconds, both per sample: the figure of an estimator in one scene."""
+
+    #: Of pixels without the noisiest thousandth, averaged over blocks. Shape: (seeds, blocks).
+    parts: np.ndarray
+    #: Of means over blocks; None if the film is smaller than a block.
+    of_blocks: float | None = None
+
+    def pixels(self):
+        """Return the figure of pixels."""
+        return float(self.parts.mean())
 
 
 @dataclass
@@ -19,15 +35,31 @@ class Row:
     """The figures of all estimators in one scene."""
 
     scene: str
-    #: By estimator, of pixels and of blocks; None if the film is smaller than a block.
-    products: dict[str, tuple[float, float | None]]
+    products: dict[str, Product]
     #: The plans of `auto`, by seed.
     plans: list[str]
 
-    def behind(self):
-        """Return the figure of `auto` relative to the better of `path` and `bdpt`."""
-        pixels = {name: product[0] for name, product in self.products.items()}
-        return pixels["auto"] / min(pixels["path"], pixels["bdpt"])
+    def best(self):
+        """Return the name of the best estimator that `auto` could have taken."""
+        others = [name for name in self.products if name != "auto"]
+        return min(others, key=lambda name: self.products[name].pixels())
+
+    def behind(self, other=None):
+        """Return the figure of `auto` relative to that of another estimator, or of the best."""
+        return self.products["auto"].pixels() / self.products[other or self.best()].pixels()
+
+    def interval(self):
+        """Return the ends of the 90 % interval of `behind`, by resampled seeds and blocks [Owen07].
+
+        Both are drawn apart, as a block is hard for all seeds and a plan serves all blocks.
+        """
+        random = np.random.default_rng(1)
+        auto, best = (self.products[name].parts for name in ("auto", self.best()))
+        seeds, blocks = (
+            random.multinomial(size, np.full(size, 1.0 / size), RESAMPLED) for size in auto.shape
+        )
+        ratios = np.sum(seeds @ auto * blocks, axis=1) / np.sum(seeds @ best * blocks, axis=1)
+        return tuple(np.quantile(ratios, [0.05, 0.95]))
 
     def plan(self):
         """Return the most frequent plan, and its number of seeds."""
@@ -36,7 +68,7 @@ class Row:
 
 
 def products(images, seconds, spp):
-    """Return variance times microseconds, both per sample, of pixels and of blocks, by estimator.
+    """Return the Product of each estimator.
 
     `images` and `seconds` have those of each seed first. Means that variances are relative to are
     those of all estimators, which have the same expectation.
@@ -45,25 +77,47 @@ def products(images, seconds, spp):
     found = {}
     for name, image in images.items():
         time = seconds[name] * 1e6 * spp
-        pair = [product(image, mean, time)]
+        product = Product(block_sums(trimmed(noise(image, mean, time))))
         means = blocks(image), blocks(mean[None])[0]
-        pair.append(product(*means, time) if means[1].size else None)
-        found[name] = tuple(pair)
+        if means[1].size:
+            product.of_blocks = float(noise(*means, time).mean())
+        found[name] = product
     return found
 
 
-def product(images, mean, time):
-    """Return the mean over seeds of squared differences from their mean, each times its time."""
+def noise(images, mean, time):
+    """Return relative squared differences from the mean of all seeds, times the time of each.
+
+    Shape: (seeds, rows, columns).
+    """
     seeds = len(images)
     squares = (images - images.mean(axis=0)) ** 2 * seeds / (seeds - 1)
-    relative = (squares / (mean**2 + EPSILON)).mean(axis=-1)
-    return float(trimmed_mean(np.tensordot(time, relative, 1) / seeds))
+    return time[:, None, None] * (squares / (mean**2 + EPSILON)).mean(axis=-1)
 
 
-def trimmed_mean(values):
-    """Return the mean without the largest thousandth."""
-    values = np.sort(values, axis=None)
-    return values[: values.size - math.floor(values.size * TRIMMED)].mean()
+def trimmed(values):
+    """Return values with zeros in the thousandth of pixels that is the noisiest over all seeds.
+
+    The others are scaled, so that the mean of all is that of the others.
+    """
+    of_pixels = values.mean(axis=0)
+    left_out = math.floor(of_pixels.size * TRIMMED)
+    kept = np.ones(of_pixels.size)
+    kept[np.argsort(of_pixels, axis=None)[of_pixels.size - left_out :]] = 0.0
+    return values * kept.reshape(of_pixels.shape) / kept.mean()
+
+
+def block_sums(values):
+    """Return the part of each block in the mean of `values`, times the number of blocks.
+
+    Shape: (seeds, blocks).
+    """
+    height, width = values.shape[1:]
+    rows, columns = (np.arange(size) // BLOCK for size in (height, width))
+    index = (rows[:, None] * (columns[-1] + 1) + columns).ravel()
+    count = index[-1] + 1
+    sums = [np.bincount(index, of_seed.ravel(), count) for of_seed in values]
+    return np.array(sums) * count / index.size
 
 
 def blocks(images):
@@ -75,21 +129,24 @@ def blocks(images):
 
 
 def table(rows):
-    """Return Markdown, with the geometric mean of `auto` relative to the better of `path` and `bdpt`."""
+    """Return Markdown, with the geometric mean of `auto` relative to the best of the others."""
     names = list(rows[0].products)
-    lines = [
-        f"| | {' | '.join(f'`{name}`' for name in names)} | `auto` over the better | plan |",
-        "|---|" + "---:|" * (len(names) + 1) + "---|",
-    ]
+    titles = [*(f"`{name}`" for name in names), "over the best", "90 %", "`bdpt` over `auto`", "plan"]
+    lines = [f"| | {' | '.join(titles)} |", "|---|" + "---:|" * (len(names) + 3) + "---|"]
     for row in rows:
-        cells = " | ".join(cell(*row.products[name]) for name in names)
-        lines.append(f"| {row.scene} | {cells} | {row.behind():.2f} | {row.plan()} |")
+        cells = " | ".join(cell(product) for product in row.products.values())
+        interval = "{:.2f} to {:.2f}".format(*row.interval())
+        ahead = 1.0 / row.behind("bdpt")
+        lines.append(
+            f"| {row.scene} | {cells} | {row.behind():.2f} | {interval} | {ahead:.2f} | {row.plan()} |"
+        )
     behind = [row.behind() for row in rows]
     mean = math.exp(sum(map(math.log, behind)) / len(behind))
-    lines += ["", f"{len(rows)} scenes: {mean:.2f} (geometric mean), {min(behind):.2f} to {max(behind):.2f}."]
+    lines += ["", f"{len(rows)} scenes: {mean:.3f} (geometric mean), {min(behind):.2f} to {max(behind):.2f}."]
     return "\n".join(lines)
 
 
-def cell(pixels, of_blocks):
+def cell(product):
     """Format both figures."""
-    return f"{pixels:.3g}" + ("" if of_blocks is None else f" ({of_blocks * BLOCK**2:.3g})")
+    of_blocks = product.of_blocks
+    return f"{product.pixels():.3g}" + ("" if of_blocks is None else f" ({of_blocks * BLOCK**2:.3g})")

@@ -42,6 +42,6 @@ def measured(path, args):
     images = {name: np.stack([run[0] for run in all_of]) for name, all_of in runs.items()}
     seconds = {name: least(all_of) for name, all_of in runs.items()}
     products = figures.products(images, seconds, args.spp)
-    if not all(pixels > 0.0 for pixels, _ in products.values()):
+    if not all(product.pixels() > 0.0 for product in products.values()):
         return f"{path.stem}: left out: an estimator has no noise"
     return figures.Row(path.stem, products, [run[2] for run in runs["auto"]])
