@@ -20,7 +20,8 @@ RESAMPLED = 2000
 class Product:
     """Variance times microseconds, both per sample: the figure of an estimator in one scene."""
 
-    #: Of pixels without the noisiest thousandth, averaged over blocks. Shape: (seeds, blocks).
+    #: That of each seed and block, without the noisiest thousandth of pixels; their mean is the figure.
+    #: Shape: (seeds, blocks).
     parts: np.ndarray
     #: Of means over blocks; None if the film is smaller than a block.
     of_blocks: float | None = None
@@ -51,14 +52,15 @@ class Row:
     def interval(self):
         """Return the ends of the 90 % interval of `behind`, by resampled seeds and blocks [Owen07].
 
-        Both are drawn apart, as a block is hard for all seeds and a plan serves all blocks.
+        Both are drawn apart, as a block is hard for all seeds and a plan serves all blocks. Which estimator
+        is the best, and which pixels are left out, stays as it was found.
         """
         random = np.random.default_rng(1)
         auto, best = (self.products[name].parts for name in ("auto", self.best()))
         seeds, blocks = (
             random.multinomial(size, np.full(size, 1.0 / size), RESAMPLED) for size in auto.shape
         )
-        ratios = np.sum(seeds @ auto * blocks, axis=1) / np.sum(seeds @ best * blocks, axis=1)
+        ratios = np.sum((seeds @ auto) * blocks, axis=1) / np.sum((seeds @ best) * blocks, axis=1)
         return tuple(np.quantile(ratios, [0.05, 0.95]))
 
     def plan(self):
@@ -77,7 +79,7 @@ def products(images, seconds, spp):
     found = {}
     for name, image in images.items():
         time = seconds[name] * 1e6 * spp
-        product = Product(block_sums(trimmed(noise(image, mean, time))))
+        product = Product(by_block(trimmed(noise(image, mean, time))))
         means = blocks(image), blocks(mean[None])[0]
         if means[1].size:
             product.of_blocks = float(noise(*means, time).mean())
@@ -107,7 +109,7 @@ def trimmed(values):
     return values * kept.reshape(of_pixels.shape) / kept.mean()
 
 
-def block_sums(values):
+def by_block(values):
     """Return the part of each block in the mean of `values`, times the number of blocks.
 
     Shape: (seeds, blocks).
