@@ -222,22 +222,21 @@ impl Bsdf {
         sample.filter(|sample| sample.pdf > 0.0)
     }
 
-    /// The same surface with `index` around it in place of air, of which only its transparent part takes notice.
+    /// Puts `index` around the surface in place of air, of which only its transparent part takes notice.
     #[inline]
-    #[must_use]
-    pub fn within(self, index: f32) -> Self {
+    pub fn put_within(&mut self, index: f32) {
         if index.to_bits() == 1f32.to_bits() {
-            return self;
+            return;
         }
         match self {
-            Self::Dielectric(bsdf) => Self::Dielectric(bsdf.within(index)),
-            Self::Principled(bsdf) => Self::Principled(bsdf.within(index)),
+            Self::Dielectric(bsdf) => *bsdf = bsdf.within(index),
+            Self::Principled(bsdf) => *bsdf = bsdf.within(index),
             Self::Diffuse(_)
             | Self::Conductor(_)
             | Self::ThinDielectric(_)
             | Self::DiffuseTransmission(_)
             | Self::CoatedDiffuse(_)
-            | Self::CoatedConductor(_) => self,
+            | Self::CoatedConductor(_) => {}
         }
     }
 
@@ -277,12 +276,11 @@ impl Bsdf {
         }
     }
 
-    /// The same surface whose clear coat, if it has one, has its own normal `n`. Space: local.
-    #[must_use]
-    pub fn with_coat_normal(self, n: Vec3) -> Self {
-        match self {
-            Self::Principled(bsdf) => Self::Principled(bsdf.with_coat_normal(n)),
-            other => other,
+    /// Gives the clear coat, if there is one, its own normal `n`. Space: local.
+    #[inline]
+    pub fn put_coat_normal(&mut self, n: Vec3) {
+        if let Self::Principled(bsdf) = self {
+            bsdf.put_coat_normal(n);
         }
     }
 

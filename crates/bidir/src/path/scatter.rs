@@ -5,7 +5,7 @@ use super::visible::{Drawn, on_side};
 use super::{PathContext, Scattering, Vertex};
 use crate::bsdf::{Bsdf, BsdfValue, TransportMode};
 use crate::light::LightPoint;
-use crate::math::{Vec2, Vec3};
+use crate::math::{Frame, Vec2, Vec3};
 use crate::medium::MediumScattering;
 use crate::spectrum::Spectrum;
 use std::cell::Cell;
@@ -189,6 +189,17 @@ fn phase_value(medium: &MediumScattering, wo: Vec3, wi: Vec3) -> BsdfValue {
     }
 }
 
+/// The albedo of a surface of these shading frame and geometric normal along `w`, seen from the side of that normal.
+#[inline]
+pub(super) fn albedo_seen(bsdf: &Bsdf, (frame, n_g): (&Frame, Vec3), w: Vec3) -> Spectrum {
+    if let Bsdf::Diffuse(bsdf) = bsdf {
+        return bsdf.reflectance; // From wherever it is seen.
+    }
+    let local = frame.to_local(w);
+    let cos = local.z.abs().copysign(n_g.dot(w));
+    bsdf.albedo(local.with_z(cos))
+}
+
 impl Vertex {
     /// The emission or importance of the first vertex of a walk along `w`; zero for other vertices.
     #[inline]
@@ -215,13 +226,10 @@ impl Vertex {
     }
 
     /// The albedo for a walk that comes along -`w`; 1 at the ends of paths.
+    #[inline]
     pub fn albedo(&self, w: Vec3) -> Spectrum {
         match &self.scattering {
-            Scattering::Surface(bsdf) => {
-                let local = self.frame.to_local(w);
-                let cos = local.z.abs().copysign(self.locus.n_g.dot(w));
-                bsdf.albedo(local.with_z(cos))
-            }
+            Scattering::Surface(bsdf) => albedo_seen(bsdf, (&self.frame, self.locus.n_g), w),
             Scattering::Medium(medium) => medium.albedo,
             Scattering::Camera | Scattering::Light => Spectrum::ONE,
         }

@@ -4,6 +4,7 @@
 //! `scatter` is in 1/sr at a surface, in 1/(m sr) in a medium; densities are per area, 1/m² (per volume, 1/m³, in
 //! a medium; solid angle, 1/sr, for a light at infinity). Visibility and roulette are no part of a vertex.
 
+use super::scatter::albedo_seen;
 use super::{PathContext, Segment};
 use crate::bsdf::Bsdf;
 use crate::camera::LensSample;
@@ -147,8 +148,8 @@ impl Vertex {
             at = at.seen(context.job.view.footprint(surface.point), differentials);
         }
         let material = scene.material(hit.material).choose(&at, u_mix);
-        let in_air = material.bsdf(&at, scene.color(), &context.wavelengths);
-        let mut bsdf = in_air.within(hit.around);
+        let mut bsdf = material.bsdf(&at, scene.color(), &context.wavelengths);
+        bsdf.put_within(hit.around);
         let mut frame = surface.shading;
         if let Some(differentials) = &hit.differentials {
             if let Some(relief) = material.relief() {
@@ -157,21 +158,19 @@ impl Vertex {
             let coat = material.coat_normal(surface, &at);
             let is_apart = |n: &Vec3| n.distance_squared(frame.z) > 1e-10;
             if let Some(n) = coat.filter(is_apart) {
-                bsdf = bsdf.with_coat_normal(frame.to_local(n));
+                bsdf.put_coat_normal(frame.to_local(n));
             }
         }
-        let vertex = Self {
+        let locus = surface.locus();
+        Self {
             frame,
             wo,
             beta,
+            albedo_fwd: albedo_seen(&bsdf, (&frame, locus.n_g), wo).max_lane(),
             light: hit.light.map(|(light, _)| light),
             light_primitive: hit.light.map_or(0, |(_, at)| at.primitive),
             cell: context.job.guide.cell(surface.point, frame.z),
-            ..Self::new(surface.locus(), Scattering::Surface(bsdf))
-        };
-        Self {
-            albedo_fwd: vertex.albedo(wo).max_lane(),
-            ..vertex
+            ..Self::new(locus, Scattering::Surface(bsdf))
         }
     }
 

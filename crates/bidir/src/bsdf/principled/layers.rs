@@ -43,23 +43,17 @@ impl Principled {
         (self.coat_normal != UPRIGHT).then(normal)
     }
 
-    /// The same under a coat with the normal `n`; without a coat the same.
-    pub(in crate::bsdf) fn with_coat_normal(self, n: Vec3) -> Self {
+    /// Gives the coat, if there is one, the normal `n`.
+    pub(in crate::bsdf) fn put_coat_normal(&mut self, n: Vec3) {
         let steps = (n * f32::from(i16::MAX)).round().to_array();
         let coat_normal = steps.map(|step| step as i16);
         if self.coat <= 0.0 || coat_normal == UPRIGHT {
-            return self;
+            return;
         }
-        let ggx = if self.ggx.is_smooth() {
-            Ggx::new(LEAST_ALPHA, LEAST_ALPHA)
-        } else {
-            self.ggx
-        };
-        Self {
-            ggx,
-            coat_alpha: self.coat_alpha.max(LEAST_ALPHA),
-            coat_normal,
-            ..self
+        self.coat_normal = coat_normal;
+        self.coat_alpha = self.coat_alpha.max(LEAST_ALPHA);
+        if self.ggx.is_smooth() {
+            self.ggx = Ggx::new(LEAST_ALPHA, LEAST_ALPHA);
         }
     }
 

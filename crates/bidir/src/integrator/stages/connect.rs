@@ -160,7 +160,8 @@ impl Connector<'_> {
         let is_offered = is_offered.bitmask() as usize;
         self.candidates.write_some(four.len(), |room| {
             let mut offered = 0;
-            for (lane, end) in four.iter().enumerate() {
+            let is_there = |(_, end): &(usize, &LightEnd)| end.place.s > 0;
+            for (lane, end) in four.iter().enumerate().take_while(is_there) {
                 let term = end.term(t, contributions[lane], weights[lane]);
                 room[offered] = end.candidate(term, scores[lane], y);
                 offered += is_offered >> lane & 1;
