@@ -83,8 +83,8 @@ TRAINING = [
     (
         "hits of lights counted twice",
         "crates/bidir/src/driver/training/quads.rs",
-        "parts / count) - hits - drawn[0]",
-        "parts / count) - 0.0 * hits - drawn[0]",
+        "2.0 * walks - hits - drawn[0]",
+        "2.0 * walks - 0.0 * hits - drawn[0]",
         unit("products_of_samples_tell"),
     ),
     (
@@ -93,6 +93,20 @@ TRAINING = [
         "- (a.pairs() + b.pairs()) / 2.0",
         "- 0.0 * (a.pairs() + b.pairs())",
         unit("predicted_variances_are_those"),
+    ),
+    (
+        "parts of the lights that gain by chance",
+        "crates/bidir/src/driver/training/quads.rs",
+        "(self.parts - self.parts_squares.sqrt()).max(0.0)",
+        "self.parts",
+        unit("one_bright_pair_tells_nothing"),
+    ),
+    (
+        "parts of the lights that gain nothing",
+        "crates/bidir/src/driver/training/quads.rs",
+        "self.parts += parts;",
+        "self.parts += 0.0 * parts;",
+        unit("products_of_samples_tell"),
     ),
     (
         "neighbours that share all of what light subpaths bring",

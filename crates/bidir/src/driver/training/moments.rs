@@ -298,7 +298,7 @@ impl Sums {
 
     fn judgement(mut self, counts: &Counts) -> Judgement {
         let quads = &self.quads;
-        let (mut all, mut common) = (self.moment + quads.alone, 0.0);
+        let (mut all, mut common) = (self.moment + quads.alone(), 0.0);
         if let Some(draws) = &counts.draws {
             let moment = self.of_light + quads.pairs - quads.mean_squares;
             let of_light = moment.max(0.0) / draws.subpaths;

@@ -151,17 +151,26 @@ impl Quad {
             };
             2.0 * (light_points + connections)
         });
+        2.0 * walks - hits - drawn[0] - drawn[1]
+    }
+
+    /// What the first light points have less, as they are drawn from parts of the lights.
+    fn parts(&self, counts: &Counts) -> f64 {
+        let [wa, wb, va, vb] = &self.0;
         let [count, _] = counts.next_events;
         let parts = wa.of_parts(wb, [va, vb], count) + va.of_parts(vb, [wa, wb], count);
-        2.0 * (walks - parts / count) - hits - drawn[0] - drawn[1]
+        2.0 * parts / count
     }
 }
 
 /// Sums over pixels.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct QuadVariance {
-    /// What the terms of a sample have in common.
-    pub(super) alone: f64,
+    /// What the terms of a sample have in common, were light points drawn from all lights.
+    alone: f64,
+    /// What they have less, and the squares of its parts.
+    parts: f64,
+    parts_squares: f64,
     /// Σ over pairs of connections of one light subpath.
     pub(super) pairs: f64,
     /// Σ E[T | W]².
@@ -176,12 +185,20 @@ impl QuadVariance {
     /// Adds four samples, of which the square of each counts `scale`.
     pub(super) fn add(&mut self, quad: &Quad, counts: &Counts, scale: f64) {
         self.alone += quad.alone(counts) * scale;
+        let parts = quad.parts(counts) * scale;
+        self.parts += parts;
+        self.parts_squares += parts * parts;
         self.pairs += quad.0.iter().map(Sums::pairs).sum::<f64>() * scale;
         let [wa, wb, va, vb] = quad.0.each_ref().map(Sums::connected);
         self.mean_squares += 2.0 * (wa * wb + va * vb) * scale;
         let [w, v] = [wa - wb, va - vb];
         self.spread += (w * w + v * v) * scale;
         self.common += 2.0 * w * v * scale;
+    }
+
+    /// What the terms of a sample have in common.
+    pub(super) fn alone(&self) -> f64 {
+        self.alone - (self.parts - self.parts_squares.sqrt()).max(0.0)
     }
 
     /// The part of the variance of T that two camera subpaths of a pixel have in common.
@@ -213,6 +230,32 @@ mod tests {
             (state >> 11) as f64 / (1u64 << 53) as f64
         };
         move || (0..12).map(|_| uniform()).sum::<f64>() - 6.0
+    }
+
+    #[test]
+    fn one_bright_pair_tells_nothing_of_parts_of_the_lights() {
+        let mut settings = Settings::new(IntegratorKind::Lvc);
+        settings.lvc.next_events = CandidateCount::new(8, 1);
+        let counts = Counts::new(&settings, PathRoulette::Off, 1.0, 1 << 22);
+        let alone = |numbers| {
+            let mut quad = Quad::new(numbers);
+            for (i, value) in [100.0, 100.0, 1.0, 1.0].into_iter().enumerate() {
+                let reach = Reach {
+                    t: 2,
+                    surfaces: 0,
+                    longer: 1.0,
+                };
+                quad.add(i, Part::LightPoint, reach, value);
+            }
+            let mut sums = QuadVariance::default();
+            sums.add(&quad, &counts, 1.0);
+            sums.alone()
+        };
+        let [in_one, in_two] = [0.1, 0.9].map(|second| alone([0.1, second, 0.6, 0.6]));
+        assert!(
+            (in_one - in_two).abs() < 1e-9 * in_one.abs(),
+            "{in_one} and {in_two}"
+        );
     }
 
     /// A camera subpath has a hit of the value 1 + W, light points 2 + W + X ± 1 and connections 3 + W + Y + Z, with standard
@@ -259,7 +302,7 @@ mod tests {
                 }
                 sums.add(&quad, &counts, 1.0);
             }
-            let found = (moment + sums.alone) / (4.0 * f64::from(quads));
+            let found = (moment + sums.alone()) / (4.0 * f64::from(quads));
             assert!(
                 (found / expected - 1.0).abs() < 0.02,
                 "{found} for {expected}"
