@@ -47,7 +47,7 @@ def write(path, data):
 def sources():
     """The files that a build or a test reads, relative to the root."""
     files = ["Cargo.toml", "Cargo.lock", "clippy.toml"]
-    for top in ("crates", "scenes", "experiments", "fuzz/src"):
+    for top in ("crates", "scenes", "experiments", "fuzz/src", "fuzz/seeds"):
         for folder, _, names in os.walk(os.path.join(ROOT, top)):
             files += [os.path.relpath(os.path.join(folder, name), ROOT) for name in names]
     return sorted(file for file in files if os.path.isfile(os.path.join(ROOT, file)))
