@@ -192,8 +192,9 @@ fn phase_value(medium: &MediumScattering, wo: Vec3, wi: Vec3) -> BsdfValue {
 /// The albedo of a surface of these shading frame and geometric normal along `w`, seen from the side of that normal.
 #[inline]
 pub(super) fn albedo_seen(bsdf: &Bsdf, (frame, n_g): (&Frame, Vec3), w: Vec3) -> Spectrum {
+    // A diffuse albedo is the same in all directions, so the local one is not needed.
     if let Bsdf::Diffuse(bsdf) = bsdf {
-        return bsdf.reflectance; // From wherever it is seen.
+        return bsdf.reflectance;
     }
     let local = frame.to_local(w);
     let cos = local.z.abs().copysign(n_g.dot(w));

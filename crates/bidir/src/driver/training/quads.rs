@@ -154,7 +154,7 @@ impl Quad {
         2.0 * walks - hits - drawn[0] - drawn[1]
     }
 
-    /// What the first light points have less, as they are drawn from parts of the lights.
+    /// Returns by how much drawing the first light points from parts of the lights lowers the variance.
     fn parts(&self, counts: &Counts) -> f64 {
         let [wa, wb, va, vb] = &self.0;
         let [count, _] = counts.next_events;
@@ -166,10 +166,11 @@ impl Quad {
 /// Sums over pixels.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct QuadVariance {
-    /// What the terms of a sample have in common, were light points drawn from all lights.
+    /// The sum of `Quad::alone`.
     alone: f64,
-    /// What they have less, and the squares of its parts.
+    /// The sum of `Quad::parts`.
     parts: f64,
+    /// The sum of the squares of `Quad::parts`.
     parts_squares: f64,
     /// Σ over pairs of connections of one light subpath.
     pub(super) pairs: f64,
@@ -196,7 +197,7 @@ impl QuadVariance {
         self.common += 2.0 * w * v * scale;
     }
 
-    /// What the terms of a sample have in common.
+    /// Returns the sum of `Quad::alone`, lowered by that of `Quad::parts` as far as the latter exceeds its standard error.
     pub(super) fn alone(&self) -> f64 {
         self.alone - (self.parts - self.parts_squares.sqrt()).max(0.0)
     }
