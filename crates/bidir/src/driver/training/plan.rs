@@ -32,8 +32,7 @@ pub struct Plan {
     pub shadow_rays: ShadowRays,
 }
 
-/// Path tracing, where the roulette begins at the third surface: 0.96 of the cost with the second, in 46 scenes
-/// (docs/data/plan-gains.csv).
+/// Path tracing, where the roulette begins at the third surface.
 pub(super) const PATH: Plan = Plan {
     integrator: IntegratorKind::Path,
     roulette: PathRoulette::Albedo { start: 2 },
@@ -41,6 +40,12 @@ pub(super) const PATH: Plan = Plan {
     candidates: CandidateCount::DEFAULT,
     next_events: CandidateCount::NEXT_EVENTS,
     shadow_rays: ShadowRays::All,
+};
+
+/// Path tracing, where the roulette begins at the second surface: among bright surfaces its walks are shorter.
+pub(super) const SHORT_PATH: Plan = Plan {
+    roulette: PathRoulette::Albedo { start: 1 },
+    ..PATH
 };
 
 pub(super) const BDPT: Plan = Plan {
@@ -57,7 +62,7 @@ pub(super) const LVC: Plan = Plan {
 };
 
 /// `lvc` with these numbers of candidates and light points of the first vertex, and of rays.
-const fn lvc_of(candidates: u16, light_points: u16, rays: u32) -> Plan {
+pub(super) const fn lvc_of(candidates: u16, light_points: u16, rays: u32) -> Plan {
     Plan {
         candidates: CandidateCount::new(candidates, 1),
         next_events: CandidateCount::new(light_points, 1),
@@ -70,8 +75,9 @@ const fn lvc_of(candidates: u16, light_points: u16, rays: u32) -> Plan {
 pub(super) const TYPICAL: Plan = lvc_of(24, 2, 6);
 
 /// The plans.
-const PLANS: [Plan; 14] = [
+const PLANS: [Plan; 15] = [
     PATH,
+    SHORT_PATH,
     BDPT,
     LVC,
     lvc_of(24, 2, 6),

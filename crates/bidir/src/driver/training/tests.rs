@@ -1,11 +1,13 @@
+use super::plan::{BDPT, LVC, PATH, SHORT_PATH, lvc_of};
 use super::*;
 use crate::camera::{Camera, Perspective, PerspectiveSettings};
 use crate::driver::{Resources, Session, SessionError, Stop};
 use crate::film::{FilmSettings, Filter, FilterKind, PixelRect};
-use crate::integrator::{CandidateCount, SamplesPerSubpath};
+use crate::integrator::SamplesPerSubpath;
 use crate::light::EmissionSides;
 use crate::material::Material;
 use crate::math::{Affine3A, Vec2, Vec3};
+use crate::sampler::SamplerKind;
 use crate::scene::{Emission, SceneBuilder};
 use crate::select::ShadowRays;
 use crate::shape::{Orientation, Shape, Sphere};
@@ -197,14 +199,15 @@ fn training_that_ends_late_is_training_with_as_many_samples() {
     }
 }
 
-/// The variance of the luminance of a pass between passes, of each pixel relative to the square of its mean as plans are
-/// judged.
-fn rendered_variance(scene: &Scene, settings: &Settings) -> f64 {
-    let passes = 400;
-    let view = view(WHOLE);
-    let mut session = Session::new(scene, &view, settings.clone(), &Resources::default())
+/// Returns the relative variance of luminance between passes as plans are judged: the sum over 16 x 16 blocks of the
+/// means of their pixels.
+fn rendered_variance(scene: &Scene, view: &View, settings: &Settings) -> f64 {
+    let passes = 32;
+    let pixels = view.film().resolution.map(|n| n as usize);
+    let pixels = pixels[0] * pixels[1];
+    let mut session = Session::new(scene, view, settings.clone(), &Resources::default())
         .expect("the film is small");
-    let (mut sums, mut squares, mut before) = ([0.0; 256], [0.0; 256], [0.0; 256]);
+    let [mut sums, mut squares, mut before] = [(); 3].map(|()| vec![0.0; pixels]);
     for pass in 1..=passes {
         session.step(&());
         let pixels = session.film().develop().pixels;
@@ -216,50 +219,65 @@ fn rendered_variance(scene: &Scene, settings: &Settings) -> f64 {
             squares[i] += value * value;
         }
     }
-    let count = f64::from(passes);
-    let mean = sums.iter().sum::<f64>() / count / 256.0;
-    let relative = |i: usize| {
-        let of_pixel = sums[i] / count;
-        let variance = (squares[i] - count * of_pixel * of_pixel) / (count - 1.0);
+    let (count, pixels) = (f64::from(passes), pixels as f64);
+    let mean = sums.iter().sum::<f64>() / count / pixels;
+    let relative = |(sum, square): (&f64, &f64)| {
+        let of_pixel = sum / count;
+        let variance = (square - count * of_pixel * of_pixel) / (count - 1.0);
         variance / (of_pixel * of_pixel + 0.01 * mean * mean)
     };
-    (0..256).map(relative).sum()
+    sums.iter().zip(&squares).map(relative).sum::<f64>() * 256.0 / pixels
 }
 
-/// What the survey predicts is what renders have, with no constant that is fitted.
+/// Settings of `auto` with the independent sampler; with the default one the light images of a pass have less noise.
+fn independent() -> Settings {
+    let mut settings = Settings::new(IntegratorKind::Auto);
+    settings.sampler = SamplerKind::Independent;
+    settings
+}
+
+/// Returns the mean over surveys of what they predict for `plans`.
+fn predicted_variances<const N: usize>(scene: &Scene, view: &View, plans: [Plan; N]) -> [f64; N] {
+    let surveys = 4;
+    let mut auto = independent();
+    let mut sums = [0.0; N];
+    for seed in 0..surveys {
+        auto.seed = seed;
+        let settings = &auto;
+        let task = Task {
+            scene,
+            view,
+            settings,
+        };
+        let survey = survey_of(task, Effort::WHOLE);
+        let terms = survey.relative_terms(view.film()).expect("a lamp");
+        let judge = known::Judge::new(task, &survey, &survey.found.cells());
+        for (sum, plan) in sums.iter_mut().zip(plans) {
+            let judgement = judge.judge(&plan.apply(settings), &terms);
+            *sum += judgement.variance(plan.shadow_rays).pixels / surveys as f64;
+        }
+    }
+    sums
+}
+
+/// What surveys predict is what renders have, with no constant that is fitted.
 #[test]
 fn predicted_variances_are_those_of_renders() {
-    let (scene, view) = (room(), view(WHOLE));
-    let auto = Settings::new(IntegratorKind::Auto);
-    let task = Task {
-        scene: &scene,
-        view: &view,
-        settings: &auto,
+    let crop = PixelRect {
+        min: [0; 2],
+        max: [64; 2],
     };
-    let survey = survey_of(task, Effort::WHOLE);
-    let terms = survey.relative_terms(view.film()).expect("a lamp");
-    let judge = known::Judge::new(task, &survey, &survey.found.cells());
-    for (integrator, candidates, light_points, rays) in [
-        (IntegratorKind::Path, 1, 1, ShadowRays::All),
-        (IntegratorKind::Bdpt, 1, 1, ShadowRays::All),
-        (IntegratorKind::Lvc, 12, 2, ShadowRays::Budget(6)),
-        (IntegratorKind::Lvc, 24, 2, ShadowRays::Budget(3)),
-        (IntegratorKind::Lvc, 24, 8, ShadowRays::All),
-    ] {
-        let mut settings = Settings::new(integrator);
-        settings.path.roulette = auto.path.roulette;
-        settings.lvc.candidates = CandidateCount::new(candidates, 1);
-        settings.lvc.next_events = CandidateCount::new(light_points, 1);
-        settings.shadow_rays = rays;
-        let predicted = judge.judge(&settings, &terms).variance(rays).pixels;
-        let ratio = predicted / rendered_variance(&scene, &settings);
-        let name = format!("{integrator:?}, {candidates}, {light_points}, {rays}");
-        // Groups of 64 samples have 32 light subpaths: what those have in common is the least certain.
-        let expected = match integrator {
-            IntegratorKind::Lvc => 0.75..1.33,
-            _ => 0.85..1.18,
-        };
-        assert!(expected.contains(&ratio), "{name}: {ratio}");
+    let (scene, view) = (room(), view_of(64, crop));
+    let all_rays = Plan {
+        shadow_rays: ShadowRays::All,
+        ..lvc_of(24, 8, 1)
+    };
+    let plans = [PATH, SHORT_PATH, BDPT, LVC, lvc_of(24, 2, 3), all_rays];
+    let predicted = predicted_variances(&scene, &view, plans);
+    for (plan, predicted) in plans.into_iter().zip(predicted) {
+        let settings = plan.apply(&independent());
+        let ratio = predicted / rendered_variance(&scene, &view, &settings);
+        assert!((0.87..1.15).contains(&ratio), "{plan}: {ratio}");
     }
 }
 
