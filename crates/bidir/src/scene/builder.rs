@@ -430,13 +430,21 @@ impl SceneBuilder {
     /// The volumes with what they enclose, if any touches another. Forgets them where none does.
     fn nested_volumes(&mut self) -> Vec<Enclosed> {
         let boxes = nesting::boxes(&self.shapes, &self.surfaces, &self.objects);
-        if !nesting::keep_touching(&mut self.surfaces, boxes) {
+        if !nesting::keep_touching(&mut self.surfaces, boxes.clone()) {
             return Vec::new();
         }
         let mut volumes: Vec<_> = std::mem::take(&mut self.volumes)
             .into_iter()
-            .map(|volume| Enclosed { volume, size: 0.0 })
+            .map(|volume| Enclosed {
+                volume,
+                size: 0.0,
+                reach: 0.0,
+            })
             .collect();
+        for (volume, bounds) in &boxes {
+            let reach = &mut volumes[*volume as usize].reach;
+            *reach = reach.max(nesting::reach(bounds));
+        }
         for (surface, shape) in self.surfaces.iter().zip(&self.shapes) {
             if let Some(volume) = surface.volume {
                 volumes[volume as usize].size += shape.enclosed();

@@ -34,11 +34,14 @@ pub struct Volume {
     pub priority: i32,
 }
 
-/// A volume of a scene, and the space that it encloses. Unit: m³, in the space of its shapes.
+/// A volume of a scene.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Enclosed {
     pub(super) volume: Volume,
+    /// The space that it encloses. Unit: m³, in the space of its shapes.
     pub(super) size: f64,
+    /// The greatest coordinate of its boxes.
+    pub(super) reach: f32,
 }
 
 /// A volume in its place, as one of those around a point. Of two the greater fills the point.
@@ -46,6 +49,7 @@ pub(super) struct Enclosed {
 struct Filling {
     volume: Volume,
     size: f64,
+    reach: f32,
     /// The volume and the instance.
     number: (u32, u32),
     /// Volumes of one material are of one substance.
@@ -321,11 +325,16 @@ impl Scene {
         let (placed, primitive) = self.resolve(hit);
         let surface = &self.surfaces[primitive.shape as usize];
         let number = surface.volume?;
-        let Enclosed { volume, size } = self.volumes[number as usize];
+        let Enclosed {
+            volume,
+            size,
+            reach,
+        } = self.volumes[number as usize];
         let scale = placed.map_or(1.0, |placed| placed.place.volume_scale());
         Some(Filling {
             volume,
             size: size * scale,
+            reach,
             number: (number, hit.instance),
             material: surface.material,
         })
@@ -369,20 +378,30 @@ impl Scene {
 /// Swaps crossings so that a volume is entered before another is left wherever they touch but for rounding.
 fn close_gaps(ray: &Ray, events: &mut [Event]) {
     let unit = ray.direction.length();
+    // Distances from a far origin have errors of their own.
+    let error = 8.0 * f32::EPSILON * ray.origin.abs().max_element();
     for i in 1..events.len() {
         let [left, entered] = [events[i - 1], events[i]];
-        let both = left.of.is_some() && entered.of.is_some();
-        if !both || !left.crossing.leaves || entered.crossing.leaves {
+        let (Some((_, a)), Some((_, b))) = (left.of, entered.of) else {
             continue;
-        }
+        };
         let gap = (entered.crossing.t - left.crossing.t) * unit;
-        let reach = (ray.origin + ray.direction * left.crossing.t)
-            .abs()
-            .max_element();
-        if gap <= position_error(reach) {
+        let is_gap = left.crossing.leaves && !entered.crossing.leaves;
+        if is_gap && gap <= least_gap(a.reach.max(b.reach)) + error {
             events.swap(i - 1, i);
         }
     }
+}
+
+/// Returns the least gap between two surfaces with coordinates up to `reach`: a ray that starts on one side of a smaller one
+/// may start behind the other.
+fn least_gap(reach: f32) -> f32 {
+    2.0 * position_error(reach)
+}
+
+/// Returns the greatest coordinate of a box.
+pub(super) fn reach(of: &Aabb) -> f32 {
+    of.min.abs().max(of.max.abs()).max_element()
 }
 
 /// The boxes of volumes' shapes in the world, those of objects at each place.
@@ -408,10 +427,16 @@ pub(super) fn boxes(shapes: &[Shape], surfaces: &[Surface], objects: &Objects) -
     boxes
 }
 
-/// Forgets the volumes of shapes that touch no other of a volume. `boxes` are those of such shapes in their places.
+/// Forgets the volumes of shapes that touch no other of a volume but for rounding. `boxes` are those of such shapes in
+/// their places.
 ///
 /// Returns whether any is left.
 pub(super) fn keep_touching(surfaces: &mut [Surface], mut boxes: Vec<(u32, Aabb)>) -> bool {
+    for (_, bounds) in &mut boxes {
+        let gap = least_gap(reach(bounds));
+        bounds.min -= gap;
+        bounds.max += gap;
+    }
     boxes.sort_by(|(_, a), (_, b)| a.min.x.total_cmp(&b.min.x));
     let touching = touching(&boxes);
     for surface in surfaces {

@@ -57,13 +57,23 @@ pub(super) fn seen(draft: &Draft) -> [f32; 3] {
 }
 
 pub(super) fn seen_by(draft: &Draft, integrator: IntegratorKind, passes: u32) -> [f32; 3] {
+    seen_within(draft, integrator, 32, passes)
+}
+
+/// The same by paths of at most so many bounces.
+pub(super) fn seen_within(
+    draft: &Draft,
+    integrator: IntegratorKind,
+    max_depth: u32,
+    passes: u32,
+) -> [f32; 3] {
     let options = LoadOptions {
         resolution: Some([1, 1]),
         ..LoadOptions::default()
     };
     let loaded = load_bytes("a.gltf", &draft.gltf(), &options).expect("it is valid");
     let (mut settings, resources) = (Settings::new(integrator), Resources::default());
-    settings.path.max_depth = Some(32);
+    settings.path.max_depth = Some(max_depth);
     let session = Session::new(&loaded.scene, &loaded.view, settings, &resources);
     let mut session = session.expect("a small film");
     for _ in 0..passes {
