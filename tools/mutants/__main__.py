@@ -16,6 +16,7 @@ import fcntl
 import functools
 import os
 import re
+import signal
 import subprocess
 import sys
 import time
@@ -94,19 +95,29 @@ def cargo(tree, test, *arguments, number=0, timeout=TIMEOUT):
     environment["PROPTEST_DISABLE_FAILURE_PERSISTENCE"] = "1"
     # From one mutant of its own to the next one file differs.
     environment["CARGO_INCREMENTAL"] = "1" if tree == TREE else "0"
+    with subprocess.Popen(
+        command,
+        cwd=tree,
+        env=environment,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        start_new_session=True,
+    ) as run:
+        try:
+            output, _ = run.communicate(timeout=timeout)
+        except subprocess.TimeoutExpired:
+            return None, ""
+        finally:
+            end_session(run)
+    return run.returncode, output.decode(errors="replace")
+
+
+def end_session(run):
+    """Kills what runs in the session of `run`: the test that a stopped cargo started would go on for ever."""
     try:
-        run = subprocess.run(
-            command,
-            cwd=tree,
-            env=environment,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-            timeout=timeout,
-            check=False,
-        )
-    except subprocess.TimeoutExpired:
-        return None, ""
-    return run.returncode, run.stdout.decode(errors="replace")
+        os.killpg(run.pid, signal.SIGKILL)
+    except ProcessLookupError:
+        pass
 
 
 def passed(output):

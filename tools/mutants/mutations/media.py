@@ -95,13 +95,6 @@ MEDIA = [
         media("nested_media"),
     ),
     (
-        "grids foreseen like media that are even",
-        "crates/bidir/src/scene/builder.rs",
-        "foresees_media: is_opaque && self.media.iter().all(Medium::is_even),",
-        "foresees_media: is_opaque,",
-        media("smoke_that_absorbs_nothing"),
-    ),
-    (
         "open boundaries between two places that are clear",
         PASSAGE,
         "self.is_opaque && place.media == MediumSides::VACUUM",
@@ -272,8 +265,15 @@ MEDIA = [
     (
         "air between volumes that touch",
         NESTING,
-        "if gap <= position_error(reach) {",
-        "if gap < 0.0 {",
+        "gap <= least_gap(a.reach.max(b.reach)) + error",
+        "gap < 0.0 * (least_gap(a.reach.max(b.reach)) + error)",
+        formats("nested::a_liquid_meets_glass"),
+    ),
+    (
+        "volumes apart that rounding cannot tell",
+        NESTING,
+        "let gap = least_gap(reach(bounds));",
+        "let gap = 0.0 * least_gap(reach(bounds));",
         formats("nested::a_liquid_meets_glass"),
     ),
     (

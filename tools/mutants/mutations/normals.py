@@ -1,6 +1,6 @@
 """Faults in shading normals, and in coats with normals of their own."""
 
-from .tests import PATH, formats, materials, relief
+from .tests import PATH, formats, relief
 
 VISIBLE = "crates/bidir/src/path/visible.rs"
 
@@ -24,7 +24,7 @@ NORMALS = [
         VISIBLE,
         "[by_light.pdf * light(wo), by_camera.pdf_reverse]",
         "[by_camera.pdf, by_camera.pdf_reverse]",
-        materials("slanted_normals"),
+        relief("walks_from_a_light"),
     ),
     (
         "shading normals that face away from the viewer",

@@ -205,8 +205,12 @@ fn a_point_looks_the_same_to_every_walk() {
     }
 }
 
-/// The light that a point under a slant sends along `wo` in a furnace: the mean weight of walks.
-fn furnace(material: Material, wo: Vec3) -> f32 {
+/// Returns the integral over directions above the floor of `value`, at the point of this material that is seen along `wo`.
+fn above(
+    material: Material,
+    wo: Vec3,
+    value: impl Fn(&Vertex, &PathContext<'_>, Vec3) -> f32,
+) -> f32 {
     let mut builder = builder(SIZE, 0.0);
     add_floor(&mut builder, material);
     let floor = builder.build().expect("the floor is valid");
@@ -224,12 +228,36 @@ fn furnace(material: Material, wo: Vec3) -> f32 {
         let (y, phi) = (at(i % n, n), 2.0 * PI * at(i / n, 2 * n));
         let r = (1.0 - y * y).sqrt();
         let wi = Vec3::new(r * libm::cosf(phi), y, r * libm::sinf(phi));
-        let scatter = seen
-            .turn(seen.wo, wi, TransportMode::Radiance)
-            .scatter(&context);
-        scatter[0] * y * 2.0 * PI
+        value(&seen, &context, wi) * 2.0 * PI
     };
     (0..2 * n * n).map(value).sum::<f32>() / (2 * n * n) as f32
+}
+
+/// The light that a point under a slant sends along `wo` in a furnace: the mean weight of walks.
+fn furnace(material: Material, wo: Vec3) -> f32 {
+    above(material, wo, |seen, context, wi| {
+        let turn = seen.turn(seen.wo, wi, TransportMode::Radiance);
+        turn.scatter(context)[0] * wi.y
+    })
+}
+
+/// Walks from a light draw by the normal as it is, whatever the camera sees of it, and take the opposite of directions
+/// below the surface.
+#[test]
+fn walks_from_a_light_draw_one_direction_under_a_slant() {
+    let wo = Vec3::new(0.3, 0.9, -0.2).normalize();
+    for (x, y) in [(0.0, 0.0), (0.4, 0.4), (0.0, -0.6), (-0.9, 0.45)] {
+        let relief = Relief::NormalMap(common::slant(x, y));
+        let drawn = above(
+            diffuse([0.5; 3]).embossed(relief),
+            wo,
+            |seen, context, wi| {
+                let turn = seen.turn(seen.wo, wi, TransportMode::Importance);
+                turn.pdf(context)
+            },
+        );
+        assert!((drawn - 1.0).abs() < 2e-3, "{x}, {y}: {drawn}");
+    }
 }
 
 /// A white surface under normals that face away from the viewer is nearly as bright as without.
