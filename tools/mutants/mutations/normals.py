@@ -24,7 +24,7 @@ NORMALS = [
         VISIBLE,
         "[by_light.pdf * light(wo), by_camera.pdf_reverse]",
         "[by_camera.pdf, by_camera.pdf_reverse]",
-        relief("walks_from_a_light"),
+        relief("densities_of_light_walks"),
     ),
     (
         "shading normals that face away from the viewer",

@@ -40,7 +40,7 @@ pub(super) struct Enclosed {
     pub(super) volume: Volume,
     /// The space that it encloses. Unit: m³, in the space of its shapes.
     pub(super) size: f64,
-    /// The greatest coordinate of its boxes.
+    /// The greatest coordinate of its boxes in the world.
     pub(super) reach: f32,
 }
 
@@ -49,6 +49,7 @@ pub(super) struct Enclosed {
 struct Filling {
     volume: Volume,
     size: f64,
+    /// The greatest coordinate of its boxes.
     reach: f32,
     /// The volume and the instance.
     number: (u32, u32),
@@ -378,7 +379,7 @@ impl Scene {
 /// Swaps crossings so that a volume is entered before another is left wherever they touch but for rounding.
 fn close_gaps(ray: &Ray, events: &mut [Event]) {
     let unit = ray.direction.length();
-    // Distances from a far origin have errors of their own.
+    // The rounding of distances grows with the origin.
     let error = 8.0 * f32::EPSILON * ray.origin.abs().max_element();
     for i in 1..events.len() {
         let [left, entered] = [events[i - 1], events[i]];
@@ -393,8 +394,8 @@ fn close_gaps(ray: &Ray, events: &mut [Event]) {
     }
 }
 
-/// Returns the least gap between two surfaces with coordinates up to `reach`: a ray that starts on one side of a smaller one
-/// may start behind the other.
+/// Returns the width of gaps, between surfaces with coordinates up to `reach`, that the offset of a ray that starts on the
+/// one surface may cross.
 fn least_gap(reach: f32) -> f32 {
     2.0 * position_error(reach)
 }

@@ -244,7 +244,7 @@ fn furnace(material: Material, wo: Vec3) -> f32 {
 /// Walks from a light draw by the normal as it is, whatever the camera sees of it, and take the opposite of directions
 /// below the surface.
 #[test]
-fn walks_from_a_light_draw_one_direction_under_a_slant() {
+fn densities_of_light_walks_under_a_slant_integrate_to_one() {
     let wo = Vec3::new(0.3, 0.9, -0.2).normalize();
     for (x, y) in [(0.0, 0.0), (0.4, 0.4), (0.0, -0.6), (-0.9, 0.45)] {
         let relief = Relief::NormalMap(common::slant(x, y));

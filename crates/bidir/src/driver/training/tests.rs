@@ -203,11 +203,11 @@ fn training_that_ends_late_is_training_with_as_many_samples() {
 /// means of their pixels.
 fn rendered_variance(scene: &Scene, view: &View, settings: &Settings) -> f64 {
     let passes = 32;
-    let pixels = view.film().resolution.map(|n| n as usize);
-    let pixels = pixels[0] * pixels[1];
+    let [width, height] = view.film().resolution.map(|n| n as usize);
+    let area = width * height;
     let mut session = Session::new(scene, view, settings.clone(), &Resources::default())
         .expect("the film is small");
-    let [mut sums, mut squares, mut before] = [(); 3].map(|()| vec![0.0; pixels]);
+    let [mut sums, mut squares, mut before] = [(); 3].map(|()| vec![0.0; area]);
     for pass in 1..=passes {
         session.step(&());
         let pixels = session.film().develop().pixels;
@@ -219,17 +219,17 @@ fn rendered_variance(scene: &Scene, view: &View, settings: &Settings) -> f64 {
             squares[i] += value * value;
         }
     }
-    let (count, pixels) = (f64::from(passes), pixels as f64);
-    let mean = sums.iter().sum::<f64>() / count / pixels;
+    let (count, area) = (f64::from(passes), area as f64);
+    let mean = sums.iter().sum::<f64>() / count / area;
     let relative = |(sum, square): (&f64, &f64)| {
         let of_pixel = sum / count;
         let variance = (square - count * of_pixel * of_pixel) / (count - 1.0);
         variance / (of_pixel * of_pixel + 0.01 * mean * mean)
     };
-    sums.iter().zip(&squares).map(relative).sum::<f64>() * 256.0 / pixels
+    sums.iter().zip(&squares).map(relative).sum::<f64>() * 256.0 / area
 }
 
-/// Settings of `auto` with the independent sampler; with the default one the light images of a pass have less noise.
+/// Returns settings of `auto` with the independent sampler; with the default one the light images of a pass have less noise.
 fn independent() -> Settings {
     let mut settings = Settings::new(IntegratorKind::Auto);
     settings.sampler = SamplerKind::Independent;
@@ -260,7 +260,7 @@ fn predicted_variances<const N: usize>(scene: &Scene, view: &View, plans: [Plan;
     sums
 }
 
-/// What surveys predict is what renders have, with no constant that is fitted.
+/// Surveys predict the variance of renders, without a fitted constant.
 #[test]
 fn predicted_variances_are_those_of_renders() {
     let crop = PixelRect {

@@ -60,7 +60,7 @@ pub(super) fn seen_by(draft: &Draft, integrator: IntegratorKind, passes: u32) ->
     seen_within(draft, integrator, 32, passes)
 }
 
-/// The same by paths of at most so many bounces.
+/// Returns the light that the camera gets by paths of at most `max_depth` bounces.
 pub(super) fn seen_within(
     draft: &Draft,
     integrator: IntegratorKind,
