@@ -1,9 +1,8 @@
 //! Four lanes of light.
 //!
 //! Everything that travels along a path is a [`Spectrum`]: four `f32` lanes, multiplied and added
-//! lane by lane. A [`ColorModel`] decides the meaning of the lanes once per render; BSDFs, paths,
-//! weights and selection never ask. Only three edges convert, and each takes the sample's
-//! [`Wavelengths`]: emission, texture look-up and film development.
+//! lane by lane. [`Lanes`] hold the meaning of the lanes, which belongs to all samples that are joined; BSDFs, paths,
+//! weights and selection never ask. Only three edges convert: emission, texture look-up and film development.
 
 mod four;
 
@@ -161,44 +160,37 @@ where
     0.2126 * r + 0.7152 * g + 0.0722 * b
 }
 
-/// The wavelengths of one sample, drawn once and handed to every edge that converts colour.
-///
-/// Under [`ColorModel::Rgb`] the lanes are red, green and blue and this holds nothing of interest.
-/// Unit: nm.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Wavelengths([f32; 4]);
-
-/// The meaning of the lanes of a [`Spectrum`] in this render.
+/// The meaning of the four lanes of a [`Spectrum`], which all samples of a group share: those that join walks.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum ColorModel {
+pub enum Lanes {
     /// Linear Rec. 709 red, green and blue; the fourth lane is zero in all light.
     #[default]
     Rgb,
 }
 
-impl ColorModel {
-    /// Draws the wavelengths of a sample from `u` in `[0, 1)`.
-    #[inline]
-    pub fn sample_wavelengths(self, _u: f32) -> Wavelengths {
-        match self {
-            Self::Rgb => Wavelengths([0.0; 4]),
-        }
-    }
-
+impl Lanes {
     /// The lanes of a reflectance or transmittance.
     #[inline]
-    pub fn albedo(self, rgb: Rgb, _wavelengths: &Wavelengths) -> Spectrum {
+    pub fn albedo(self, [r, g, b]: Rgb) -> Spectrum {
         match self {
-            Self::Rgb => Spectrum([rgb[0], rgb[1], rgb[2], 0.0]),
+            Self::Rgb => Spectrum([r, g, b, 0.0]),
         }
     }
 
     /// The lanes of a quantity without an upper bound, such as an index of refraction.
     #[inline]
-    pub fn unbounded(self, rgb: Rgb, _wavelengths: &Wavelengths) -> Spectrum {
+    pub fn unbounded(self, [r, g, b]: Rgb) -> Spectrum {
         match self {
             // The unused lane must stay harmless under division: it repeats blue.
-            Self::Rgb => Spectrum([rgb[0], rgb[1], rgb[2], rgb[2]]),
+            Self::Rgb => Spectrum([r, g, b, b]),
+        }
+    }
+
+    /// The lanes of an emitted radiance or intensity.
+    #[inline]
+    pub fn illuminant(self, [r, g, b]: Rgb) -> Spectrum {
+        match self {
+            Self::Rgb => Spectrum([r, g, b, 0.0]),
         }
     }
 
@@ -218,25 +210,17 @@ impl ColorModel {
         }
     }
 
-    /// The lanes of an emitted radiance or intensity.
+    /// The colour that light adds to the film.
     #[inline]
-    pub fn illuminant(self, rgb: Rgb, _wavelengths: &Wavelengths) -> Spectrum {
-        match self {
-            Self::Rgb => Spectrum([rgb[0], rgb[1], rgb[2], 0.0]),
-        }
-    }
-
-    /// The colour that a sample's light adds to the film.
-    #[inline]
-    pub fn to_rgb(self, light: Spectrum, _wavelengths: &Wavelengths) -> Rgb {
+    pub fn to_rgb(self, light: Spectrum) -> Rgb {
         match self {
             Self::Rgb => [light[0], light[1], light[2]],
         }
     }
 
-    /// The luminance of a sample's light.
+    /// The luminance of light.
     #[inline]
-    pub fn luminance(self, light: Spectrum, wavelengths: &Wavelengths) -> f32 {
-        luminance(self.to_rgb(light, wavelengths))
+    pub fn luminance(self, light: Spectrum) -> f32 {
+        luminance(self.to_rgb(light))
     }
 }

@@ -32,11 +32,10 @@ struct Contributions {
 /// Records the contributions of a pass, pixel by pixel.
 fn record(session: &Session<'_>, pass: u64) -> Vec<Contributions> {
     let crop = session.view().film().crop;
-    let color = session.scene().color();
     let pixels = 0..crop.area() as usize;
     let of = |pixel| {
         let replay = session.replay(crop.pixel(pixel), pass)?;
-        let rgb = |value| color.to_rgb(value, &replay.sample().wavelengths);
+        let rgb = |value| replay.lanes.to_rgb(value);
         let splats = replay.splats();
         let splats = splats.map(|(contribution, place)| (place, rgb(contribution.value())));
         Some(Contributions {

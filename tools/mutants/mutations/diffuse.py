@@ -114,15 +114,15 @@ DIFFUSE_ENDS = [
     (
         "light points of diffuse vertices with the wrong cosine in a density",
         DIFFUSE,
-        "f64::from(x0.pdf_leaving(context, -segment.w) * segment.to_a)",
-        "f64::from(x0.pdf_leaving(context, -segment.w) * segment.to_b)",
+        "f64::from(x0.pdf_leaving(job, -segment.w) * segment.to_a)",
+        "f64::from(x0.pdf_leaving(job, -segment.w) * segment.to_b)",
         RUNNING,
     ),
     (
         "light images of diffuse vertices with the wrong cosine in a density",
         DIFFUSE,
-        "f64::from(lens.pdf_leaving(context, -segment.w) * segment.to_a)",
-        "f64::from(lens.pdf_leaving(context, -segment.w) * segment.to_b)",
+        "f64::from(lens.pdf_leaving(job, -segment.w) * segment.to_a)",
+        "f64::from(lens.pdf_leaving(job, -segment.w) * segment.to_b)",
         RUNNING,
     ),
     (

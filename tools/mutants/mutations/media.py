@@ -13,15 +13,15 @@ MEDIA = [
     (
         "a surface behind media as likely as without them",
         PASSAGE,
-        "LocusKind::Infinity => self.color.mean(drawn)",
+        "LocusKind::Infinity => lanes.mean(drawn)",
         "LocusKind::Infinity => 1.0",
         FURNACE,
     ),
     (
         "the density of a collision without the coefficient",
         PASSAGE,
-        "self.color.mean(extinction * drawn)",
-        "self.color.mean(drawn)",
+        "lanes.mean(extinction * drawn)",
+        "lanes.mean(drawn)",
         FURNACE,
     ),
     (
@@ -55,8 +55,8 @@ MEDIA = [
     (
         "distances by one lane alone",
         PASSAGE,
-        "lane: self.color.pick_lane(u_lane),",
-        "lane: self.color.pick_lane(u_lane * 0.0),",
+        "lane: lanes.pick_lane(u_lane),",
+        "lane: lanes.pick_lane(u_lane * 0.0),",
         FURNACE,
     ),
     (
@@ -69,8 +69,8 @@ MEDIA = [
     (
         "the weight of a guess kept after the ray",
         "crates/bidir/src/integrator/stages/media.rs",
-        "        entry.contribution.term.weight = weights.weight(&context, &path, &sums);",
-        "        weights.weight(&context, &path, &sums);",
+        "        entry.contribution.term.weight = weights.weight(job, &path, &sums);",
+        "        weights.weight(job, &path, &sums);",
         media("nested_media"),
     ),
     (
@@ -146,14 +146,14 @@ MEDIA = [
     (
         "a walk collides in thin smoke as often as in thicker smoke",
         "crates/bidir/src/medium/mod.rs",
-        "color.unbounded(self.at(point).extinction, wavelengths)",
-        "color.unbounded(self.at(point).extinction.map(|c| c.max(0.4)), wavelengths)",
+        "lanes.unbounded(self.at(point).extinction)",
+        "lanes.unbounded(self.at(point).extinction.map(|c| c.max(0.4)))",
         media("smoke_that_absorbs_nothing"),
     ),
     (
         "a fire that walks from the camera do not see",
         "crates/bidir/src/path/vertex.rs",
-        "light: context.job.scene.glow(locus.media.outside),",
+        "light: job.scene.glow(locus.media.outside),",
         "light: None,",
         media("glow::a_ball"),
     ),

@@ -36,10 +36,10 @@ PATHS = [
     (
         "forward and reverse density swapped",
         "crates/bidir/src/path/densities.rs",
-        "            drawn_density(context, &subpath[..=i]),\n"
-        "            vertex.pdf_rev * factor(context, n - 1 - i, after),",
-        "            vertex.pdf_rev * factor(context, n - 1 - i, after),\n"
-        "            drawn_density(context, &subpath[..=i]),",
+        "            drawn_density(job, &subpath[..=i]),\n"
+        "            vertex.pdf_rev * factor(job, n - 1 - i, after),",
+        "            vertex.pdf_rev * factor(job, n - 1 - i, after),\n"
+        "            drawn_density(job, &subpath[..=i]),",
         PATH,
     ),
     (
@@ -53,7 +53,7 @@ PATHS = [
         "old direction at the junction",
         "crates/bidir/src/path/densities.rs",
         "before[0] = pdf * z",
-        "before[0] = at_z.pdf(context) * z",
+        "before[0] = at_z.pdf(job) * z",
         PATH,
     ),
     (
@@ -210,15 +210,15 @@ PATHS = [
     (
         "weights that take lights to be chosen by power where they are not",
         "crates/bidir/src/path/vertex.rs",
-        "context.emission().prob(light as usize)",
+        "job.emission().prob(light as usize)",
         "scene.light_choice().prob(light as usize)",
         PATH,
     ),
     (
         "learned light subpaths divided by the probability that power has",
         "crates/bidir/src/path/walk.rs",
-        "let (light, prob) = context.emission().sample(u_light)?;",
-        "let light = context.emission().sample(u_light)?.0;\n    let prob = scene.light_choice().prob(light);",
+        "let (light, prob) = job.emission().sample(u_light)?;",
+        "let light = job.emission().sample(u_light)?.0;\n    let prob = scene.light_choice().prob(light);",
         estimators("light_subpaths_with_a_trained"),
     ),
     (
@@ -322,7 +322,7 @@ PATHS = [
     (
         "shared light subpaths counted as one in sums",
         "crates/bidir/src/path/running.rs",
-        "links * share(context.count(i, t, [before.cell, z.cell]))",
+        "links * share(job.count(i, t, [before.cell, z.cell]))",
         "links",
         RUNNING,
     ),
@@ -343,15 +343,15 @@ PATHS = [
     (
         "path tracer's two densities swapped",
         "crates/bidir/src/integrator/stages/direct.rs",
-        "context.job.settings.mis.weight_of_two(x0.pdf, p)",
-        "context.job.settings.mis.weight_of_two(p, x0.pdf)",
+        "job.settings.mis.weight_of_two(x0.pdf, p)",
+        "job.settings.mis.weight_of_two(p, x0.pdf)",
         analytic("a_ring_light"),
     ),
     (
         "film filter's weight dropped",
         "crates/bidir/src/integrator/stages/walk.rs",
-        "camera_subpath(&context, &sample.camera, &ray, weight, camera, stats);",
-        "camera_subpath(&context, &sample.camera, &ray, 1.0, camera, stats);",
+        "camera_subpath(job, &sample.camera, &ray, weight, camera, stats);",
+        "camera_subpath(job, &sample.camera, &ray, 1.0, camera, stats);",
         estimators("filters_with"),
     ),
     # --- selection ------------------------------------------------------------------------

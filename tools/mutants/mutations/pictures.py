@@ -62,7 +62,7 @@ PICTURES = [
     (
         "depth as the distance from the lens",
         "crates/bidir/src/driver/features.rs",
-        "space.world_length(context.job.view.camera().depth(surface.locus.point))",
+        "space.world_length(job.view.camera().depth(surface.locus.point))",
         "space.world_length(surface.locus.point.length())",
         layers("features"),
     ),

@@ -10,8 +10,8 @@ TEXTURES = [
     (
         "a pixel's footprint by where the walk came from",
         "crates/bidir/src/path/vertex.rs",
-        "context.job.view.footprint(surface.point)",
-        "context.job.view.footprint(surface.point + wo)",
+        "job.view.footprint(surface.point)",
+        "job.view.footprint(surface.point + wo)",
         relief("a_point_looks_the_same"),
     ),
     (

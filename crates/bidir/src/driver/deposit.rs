@@ -20,8 +20,7 @@ impl Deposit<'_> {
     pub(super) fn take(&self, batch: &mut Batch) {
         for (sample, &value) in batch.samples.iter().zip(&batch.values) {
             if let Some(pixel) = self.pixel(sample) {
-                self.buffer
-                    .set_camera_sample(pixel, self.rgb(sample, value));
+                self.buffer.set_camera_sample(pixel, self.rgb(value));
             }
         }
         if self.layers.parts() > 0 {
@@ -34,8 +33,8 @@ impl Deposit<'_> {
 
     /// Adds the splats of `batch`, and images of single strategies.
     pub(super) fn take_splats(&self, batch: &mut Batch) {
-        for (sample, contribution, place) in splats(&batch.samples, &batch.splats) {
-            let value = self.rgb(sample, contribution.value());
+        for (contribution, place) in splats(&batch.splats) {
+            let value = self.rgb(contribution.value());
             let parts = self.parts_of(contribution);
             let film = self.job.view.film();
             self.buffer.splat(film, place, value, parts);
@@ -59,15 +58,14 @@ impl Deposit<'_> {
         self.job.view.film().crop.index(x, y)
     }
 
-    fn rgb(&self, sample: &Sample, value: Spectrum) -> Rgb {
-        let Job { scene, view, .. } = self.job;
-        let light = scene.color().to_rgb(value, &sample.wavelengths);
-        view.film().sensor.respond(light)
+    fn rgb(&self, value: Spectrum) -> Rgb {
+        let Job { lanes, view, .. } = self.job;
+        view.film().sensor.respond(lanes.to_rgb(value))
     }
 
     /// Adds to the parts of the sample's own pixel.
     fn part_of_pixel(&self, sample: &Sample, contribution: &Contribution) {
-        let value = self.rgb(sample, contribution.value());
+        let value = self.rgb(contribution.value());
         for part in self.parts_of(contribution) {
             self.add_to_part(sample, part, value);
         }
@@ -96,34 +94,29 @@ impl Deposit<'_> {
             ..
         } = batch;
         for (sample, entry) in added(samples, entries) {
-            let value = self.raw(sample, &entry.contribution, stats);
+            let value = self.raw(&entry.contribution, stats);
             if let Some((part, value)) = value {
                 self.add_to_part(sample, part, value);
             }
-            self.add_luminance(sample, entry, luminances);
+            self.add_luminance(entry, luminances);
         }
         for ((_, strategy), luminance) in luminances.drain(..) {
             stats.add_square(strategy, luminance);
         }
-        for (sample, contribution, place) in splats(samples, of_light) {
-            self.splat(sample, contribution, place, stats);
+        for (contribution, place) in splats(of_light) {
+            self.splat(contribution, place, stats);
         }
     }
 
     /// Adds to what a sample gives the weighted image of a strategy, if there is one. A strategy may
     /// contribute often, and others in between: by several light points, by several vertices of a light
     /// cache, by each environment that a walk escapes to.
-    fn add_luminance(
-        &self,
-        sample: &Sample,
-        entry: &Entry,
-        sums: &mut Vec<((u32, Strategy), f64)>,
-    ) {
+    fn add_luminance(&self, entry: &Entry, sums: &mut Vec<((u32, Strategy), f64)>) {
         let strategy = entry.contribution.term.strategy;
         if self.layers.weighted_part(strategy).is_none() {
             return;
         }
-        let luminance = self.luminance(sample, &entry.contribution);
+        let luminance = self.luminance(&entry.contribution);
         let place = (entry.sample, strategy);
         match sums.iter_mut().find(|(known, _)| *known == place) {
             Some((_, sum)) => *sum += luminance,
@@ -132,45 +125,34 @@ impl Deposit<'_> {
     }
 
     /// Adds a splat to its raw image, and counts its square, where it reaches the film.
-    fn splat(
-        &self,
-        sample: &Sample,
-        contribution: &Contribution,
-        place: SplatPlace,
-        stats: &mut Stats,
-    ) {
+    fn splat(&self, contribution: &Contribution, place: SplatPlace, stats: &mut Stats) {
         let (film, strategy) = (self.job.view.film(), contribution.term.strategy);
         let Some((_, weight)) = film.pick_pixel(place) else {
             return;
         };
         // A light subpath has one splat by each strategy.
         if self.layers.weighted_part(strategy).is_some() {
-            let luminance = self.luminance(sample, contribution) * f64::from(weight);
+            let luminance = self.luminance(contribution) * f64::from(weight);
             stats.add_square(strategy, luminance);
         }
-        if let Some((part, value)) = self.raw(sample, contribution, stats) {
+        if let Some((part, value)) = self.raw(contribution, stats) {
             self.buffer.splat_to_part(film, place, value, part);
         }
     }
 
-    fn luminance(&self, sample: &Sample, contribution: &Contribution) -> f64 {
-        f64::from(luminance(self.rgb(sample, contribution.value())))
+    fn luminance(&self, contribution: &Contribution) -> f64 {
+        f64::from(luminance(self.rgb(contribution.value())))
     }
 
     /// The raw image of a contribution, and the value added to it. None: it has none, or the value is
     /// counted as dropped from it.
-    fn raw(
-        &self,
-        sample: &Sample,
-        contribution: &Contribution,
-        stats: &mut Stats,
-    ) -> Option<(usize, Rgb)> {
+    fn raw(&self, contribution: &Contribution, stats: &mut Stats) -> Option<(usize, Rgb)> {
         let part = self.layers.raw_part(contribution.term.strategy)?;
         let Some(value) = contribution.unweighted() else {
             stats.drop_raw(contribution.term.strategy);
             return None;
         };
-        Some((part, self.rgb(sample, value)))
+        Some((part, self.rgb(value)))
     }
 }
 
@@ -183,15 +165,10 @@ fn added<'a>(
     added.map(|entry| (&samples[entry.sample as usize], entry))
 }
 
-/// The splats that add to the light image, with their samples and places.
-fn splats<'a>(
-    samples: &'a [Sample],
-    entries: &'a [Entry],
-) -> impl Iterator<Item = (&'a Sample, &'a Contribution, SplatPlace)> {
-    entries.iter().filter_map(|entry| {
-        let place = entry.splat_place()?;
-        Some((&samples[entry.sample as usize], &entry.contribution, place))
-    })
+/// The splats that add to the light image, with their places.
+fn splats(entries: &[Entry]) -> impl Iterator<Item = (&Contribution, SplatPlace)> {
+    let splats = entries.iter();
+    splats.filter_map(|entry| Some((&entry.contribution, entry.splat_place()?)))
 }
 
 #[cfg(test)]
@@ -245,7 +222,7 @@ mod tests {
         let buffer = PassBuffer::new(film.settings(), film.layers()).unwrap();
         let stream = Sampler::new(SamplerKind::Independent, 1).stream(Domain::Camera, 0, 0);
         let mut batch = Batch::default();
-        batch.fill([Sample::new(&scene, 0, [0; 2], stream, stream)]);
+        batch.fill([Sample::new(0, [0; 2], stream, stream)]);
         batch.entries.extend(entries);
         batch.splats.push(splat);
         let settings = PathSettings::default();

@@ -7,7 +7,7 @@ use super::Progress;
 use crate::film::{Aov, AovKind, Layers};
 use crate::integrator::{Batch, camera_ray};
 use crate::math::Vec3;
-use crate::path::{Job, PathContext, Vertex};
+use crate::path::{Job, Vertex};
 use crate::sampler::{Dimension, Purpose};
 use crate::scene::Chances;
 use crate::spectrum::Spectrum;
@@ -91,38 +91,33 @@ impl FirstSurface {
     /// Finds the first surface of the one sample of `batch`. None: the ray escapes.
     fn find(job: &Job<'_>, batch: &mut Batch) -> Option<Self> {
         let sample = &batch.samples[0];
-        let context = sample.context(job);
         // A walk may scatter in a medium before it.
         if batch.camera.count() > 0 && !job.scene.has_media() {
             let surface = batch.camera.get(0).vertices.get(1)?;
-            return Some(Self::new(&context, surface));
+            return Some(Self::new(job, surface));
         }
-        let (ray, _) = camera_ray(&context, sample);
+        let (ray, _) = camera_ray(job, sample);
         batch.stats.rays.camera += 1;
         let chances = Chances::new(&sample.camera, 1).until(job.stop);
         let hit = job.scene.intersect(ray.origin, ray.direction, chances)?;
         let u_mix = || sample.camera.get_1d(Dimension::at(1, Purpose::Mix));
         let (wo, beta) = (-ray.direction, Spectrum::ONE);
-        let surface = Vertex::surface(&context, &hit, wo, beta, u_mix);
-        Some(Self::new(&context, &surface))
+        let surface = Vertex::surface(job, &hit, wo, beta, u_mix);
+        Some(Self::new(job, &surface))
     }
 
-    fn new(context: &PathContext<'_>, surface: &Vertex) -> Self {
+    fn new(job: &Job<'_>, surface: &Vertex) -> Self {
         let wo = surface.wo;
-        let space = context.job.scene.space();
+        let space = job.scene.space();
         let [_, n_s] = surface.place();
         let albedo = surface.albedo(wo);
         let toward_camera = |n: Vec3| if n.dot(wo) < 0.0 { -n } else { n };
         Self {
-            albedo: context
-                .job
-                .scene
-                .color()
-                .to_rgb(albedo, &context.wavelengths),
+            albedo: job.lanes.to_rgb(albedo),
             point: space.world_point(surface.locus.point).as_vec3(),
             n_g: toward_camera(surface.locus.n_g),
             n_s: toward_camera(n_s),
-            depth: space.world_length(context.job.view.camera().depth(surface.locus.point)),
+            depth: space.world_length(job.view.camera().depth(surface.locus.point)),
         }
     }
 }

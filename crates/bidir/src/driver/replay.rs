@@ -8,12 +8,14 @@ use crate::contribution::{Contribution, Term};
 use crate::film::{FilmSettings, SplatPlace};
 use crate::integrator::{Batch, Entry, Fate, Link, Sample};
 use crate::locus::Locus;
-use crate::path::{Job, PathContext, Strategy, Subpath};
+use crate::path::{Job, Strategy, Subpath};
 use crate::select::Selector;
-use crate::spectrum::Spectrum;
+use crate::spectrum::{Lanes, Spectrum};
 
 /// One sample again, with all that it made.
 pub struct Replay {
+    /// The meaning of the lanes of its light.
+    pub lanes: Lanes,
     /// The one sample, with what its stages left.
     pub batch: Batch,
     /// The number of its light subpath. None: it uses that of another sample, or none was walked.
@@ -73,8 +75,7 @@ impl Replay {
         selector: &dyn Selector,
     ) -> Self {
         let certain = batch.entries.len() - batch.chosen.len();
-        let context = batch.samples[0].context(job);
-        let term = |entry: &Entry| ReplayedTerm::new(&context, entry, None);
+        let term = |entry: &Entry| ReplayedTerm::new(job, entry, None);
         let mut terms: Vec<_> = batch.entries[..certain].iter().map(term).collect();
         let probs = selector.probabilities(&batch.candidates);
         for ((candidate, entry), prob) in batch.connections().zip(probs) {
@@ -83,12 +84,13 @@ impl Replay {
                 prob,
             };
             let entry = entry.copied().unwrap_or_else(|| batch.untraced(candidate));
-            terms.push(ReplayedTerm::new(&context, &entry, Some(selection)));
+            terms.push(ReplayedTerm::new(job, &entry, Some(selection)));
         }
         let unoffered = batch.unoffered.iter().map(|other| batch.untraced(other));
         terms.extend(unoffered.map(|entry| term(&entry)));
         terms.extend(batch.splats.iter().map(term));
         let mut replay = Self {
+            lanes: job.lanes,
             zeros: Vec::new(),
             terms,
             batch,
@@ -144,13 +146,13 @@ impl Replay {
 }
 
 impl ReplayedTerm {
-    fn new(context: &PathContext<'_>, entry: &Entry, selection: Option<Selection>) -> Self {
-        let (job, ends) = (&context.job, entry.link.ends());
+    fn new(job: &Job<'_>, entry: &Entry, selection: Option<Selection>) -> Self {
+        let ends = entry.link.ends();
         let mut term = entry.contribution.term;
         let transmittance = match ends {
             None => 1.0,
             Some([a, b]) if job.scene.has_media() => {
-                let edge = job.scene.edge([a, b], &context.wavelengths, job.stop);
+                let edge = job.scene.edge([a, b], job.lanes, job.stop);
                 // Rays that were traced have put T into their terms.
                 if let (Fate::NotTraced, Some(edge)) = (entry.fate, &edge) {
                     term.contribution *= edge.transmittance;

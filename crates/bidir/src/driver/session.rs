@@ -19,20 +19,18 @@ use super::{Effort, Progress, Replay, Resources, SessionError, Settings, Stop, T
 use crate::analysis::no_path;
 use crate::film::{Film, FilmError, MergeError, PassBuffer};
 use crate::guide::Guide;
-use crate::integrator::{Batch, IntegratorKind, Method, Sample, group_size};
+use crate::integrator::{Batch, IntegratorKind, Method, Sample};
 use crate::medium::MediumId;
 use crate::path::{Job, SampleCounts, camera_medium};
 use crate::sampler::{Domain, Sampler};
 use crate::scene::Scene;
 use crate::select::Selector;
+use crate::spectrum::Lanes;
 use crate::stats::{Stage, StageTimes, Stats};
 use crate::view::View;
 use std::ops::Range;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-
-/// Pixels are handed to threads in runs of this length.
-const RUN: u64 = 256;
 
 /// How many samples go through the stages together: so many that a stage's code serves some before another stage's
 /// takes its place in a processor's fastest cache, and so few that their vertices stay in the next one.
@@ -87,6 +85,8 @@ pub struct Session<'a> {
     training: Option<Training>,
     film: Film,
     order: Order,
+    /// The meaning of lanes, for one group after another in turn; red, green and blue serve all.
+    lanes: Vec<Lanes>,
     /// The medium around the camera.
     medium: MediumId,
     /// No pass before this one is rendered.
@@ -147,6 +147,7 @@ impl<'a> Session<'a> {
             settings,
             method,
             order,
+            lanes: vec![Lanes::Rgb],
             training,
             film,
             first_pass: 0,
@@ -240,21 +241,15 @@ impl<'a> Session<'a> {
         batch: &mut Batch,
         progress: &dyn Progress,
     ) -> bool {
-        let job = self.job(progress.stop());
         let pixels = self.view.film().crop.area();
-        let shares_light = self.method.shares_light();
-        let run = if shares_light {
-            group_size(pixels)
-        } else {
-            RUN
-        };
         loop {
-            let begin = next.fetch_add(run, Ordering::Relaxed);
+            let begin = next.fetch_add(self.group_size(), Ordering::Relaxed);
             if begin >= pixels {
                 return true;
             }
-            let places = self.group(begin, run);
-            if shares_light {
+            let places = self.group(begin);
+            let job = self.job(begin, progress.stop());
+            if self.method.shares_light() {
                 let keep = |batch: &mut Batch| self.deposit(&job).take_splats(batch);
                 self.walk_light(&job, places.clone(), pass, (batch, BATCH), keep);
             }
@@ -274,10 +269,12 @@ impl<'a> Session<'a> {
         }
     }
 
-    fn job<'j>(&'j self, stop: Stop<'j>) -> Job<'j> {
+    /// What the samples of the group of `place` have in common.
+    fn job<'j>(&'j self, place: u64, stop: Stop<'j>) -> Job<'j> {
         Job {
             scene: &self.scene,
             view: &self.view,
+            lanes: self.lanes(place),
             settings: &self.settings.path,
             counts: self.counts(),
             guide: self.guide(),
@@ -345,14 +342,14 @@ impl<'a> Session<'a> {
         let stream = u64::from(y) * u64::from(film.resolution[0]) + u64::from(x);
         let camera = sampler.stream(Domain::Camera, stream, pass);
         let light = sampler.member(Domain::Light, place / self.samples_per_subpath(), pass);
-        Sample::new(&self.scene, pass, [x, y], camera, light)
+        Sample::new(pass, [x, y], camera, light)
     }
 
     /// Repeats the sample of `pixel` in `pass`. None: the pixel is outside the crop.
     pub fn replay(&self, pixel: [u32; 2], pass: u64) -> Option<Replay> {
         let [x, y] = pixel.map(i64::from);
         let place = self.order.place(self.view.film().crop.index(x, y)?);
-        let (job, mut batch) = (self.job(Stop::NEVER), Batch::default());
+        let (job, mut batch) = (self.job(place, Stop::NEVER), Batch::default());
         let shared = self.method.shares_light();
         let brought = shared.then(|| self.replay_light(&job, place, pass, &mut batch));
         batch.fill([self.sample(place, pass)]);

@@ -5,13 +5,12 @@ use super::stages::{ShadowPassage, lens_vertex};
 use super::{Entry, Fate, Link, List};
 use crate::contribution::{Term, is_summable};
 use crate::path::{
-    Arrival, ConnectionPart, Job, JoinedPath, PathContext, PathDensities, RunningSums, Shares,
-    Subpaths, Weights,
+    Arrival, ConnectionPart, Job, JoinedPath, PathDensities, RunningSums, Shares, Subpaths, Weights,
 };
-use crate::sampler::{Dimension, Purpose, SampleStream};
-use crate::scene::{Scene, ShadowRays};
+use crate::sampler::SampleStream;
+use crate::scene::ShadowRays;
 use crate::select::{Candidate, Chosen};
-use crate::spectrum::{Spectrum, Wavelengths};
+use crate::spectrum::Spectrum;
 use crate::stats::{Clock, Dropped, Stats, Stopwatch};
 use crate::strategy::Strategy;
 
@@ -22,8 +21,6 @@ pub struct Sample {
     pub pass: u64,
     /// The pixel.
     pub pixel: [u32; 2],
-    /// Its wavelengths.
-    pub wavelengths: Wavelengths,
     /// The random numbers of the camera subpath, and of its connections.
     pub camera: SampleStream,
     /// The random numbers of the light points of the camera subpath.
@@ -33,33 +30,15 @@ pub struct Sample {
 }
 
 impl Sample {
-    /// The sample of `pixel` in `pass` with the random numbers of its camera subpath and of its light subpath, and
-    /// with the wavelengths that it draws.
+    /// The sample of `pixel` in `pass` with the random numbers of its camera subpath and of its light subpath.
     #[inline]
-    pub fn new(
-        scene: &Scene,
-        pass: u64,
-        pixel: [u32; 2],
-        camera: SampleStream,
-        light: SampleStream,
-    ) -> Self {
-        let u = camera.get_1d(Dimension::at(0, Purpose::Wavelengths));
+    pub fn new(pass: u64, pixel: [u32; 2], camera: SampleStream, light: SampleStream) -> Self {
         Self {
             pass,
             pixel,
-            wavelengths: scene.color().sample_wavelengths(u),
             camera,
             points: camera,
             light,
-        }
-    }
-
-    /// The context of its paths.
-    #[inline]
-    pub fn context<'a>(&self, job: &Job<'a>) -> PathContext<'a> {
-        PathContext {
-            job: *job,
-            wavelengths: self.wavelengths,
         }
     }
 }
@@ -241,7 +220,7 @@ impl Batch {
     /// has no such path. `parts` gets those of single connections.
     pub(crate) fn shares(
         &self,
-        context: &PathContext<'_>,
+        job: &Job<'_>,
         entry: &Entry,
         candidate: Option<&Candidate>,
         densities: &mut PathDensities,
@@ -253,13 +232,13 @@ impl Batch {
         let passage = entry
             .link
             .ends()
-            .map(|ends| ShadowPassage::between(context, || *ends));
+            .map(|ends| ShadowPassage::between(job, || *ends));
         let edge = passage.as_ref().and_then(ShadowPassage::edge);
         let mut shares = |mut path: JoinedPath<'_>| {
             if let Some(edge) = edge {
                 path.pass(edge);
             }
-            path.shares(context, densities, parts)
+            path.shares(job, densities, parts)
         };
         Some(match candidate {
             Some(candidate) => {
@@ -268,12 +247,12 @@ impl Batch {
                 shares(JoinedPath::connection(light, &walk.vertices[..t]))
             }
             None if s == 0 => {
-                let arrival = Arrival::of(context.job.scene, &walk, t - 1, term.light)?;
-                let x0 = arrival.vertex(context);
+                let arrival = Arrival::of(job.scene, &walk, t - 1, term.light)?;
+                let x0 = arrival.vertex(job);
                 shares(JoinedPath::hit(&x0, &walk.vertices[..t - 1]))
             }
             None => {
-                let lens = lens_vertex(context, &self.samples[number], s);
+                let lens = lens_vertex(job, &self.samples[number], s);
                 let light = &self.light.get(self.first_light() + number).vertices[..s];
                 shares(JoinedPath::connection(light, std::slice::from_ref(&lens)))
             }

@@ -53,6 +53,8 @@ pub struct Entry {
     pub fate: Fate,
 }
 
+const _: () = assert!(size_of::<Entry>() == 144);
+
 impl Entry {
     /// A term that is certain to take part; its shadow ray is not traced yet.
     #[inline]

@@ -7,7 +7,7 @@ use super::{Roughness, unit};
 use crate::bsdf::coat::{Filled, Layer, Reflections, Slab};
 use crate::bsdf::{Bsdf, CoatedConductor, CoatedDiffuse, CoatedMetal, Filling};
 use crate::math::{Vec2, sqr};
-use crate::spectrum::{ColorModel, Wavelengths};
+use crate::spectrum::Lanes;
 use crate::texture::{ColorTexture, FloatTexture, Needs, TexturePoint};
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -33,10 +33,10 @@ impl CoatSettings {
         filling.and(self.albedo.needs()).and(self.roughness.needs())
     }
 
-    fn filling(&self, at: &TexturePoint, color: ColorModel, wavelengths: &Wavelengths) -> Filling {
+    fn filling(&self, at: &TexturePoint, lanes: Lanes) -> Filling {
         Filling {
             thickness: self.thickness.eval(at).max(0.0),
-            albedo: color.albedo(unit(self.albedo.eval(at)), wavelengths),
+            albedo: lanes.albedo(unit(self.albedo.eval(at))),
             g: self.g.eval(at).clamp(-1.0, 1.0),
         }
     }
@@ -233,15 +233,10 @@ impl CoatedDiffuseMaterial {
         self.coat.needs().and(self.reflectance.needs())
     }
 
-    pub(super) fn bsdf(
-        &self,
-        at: &TexturePoint,
-        color: ColorModel,
-        wavelengths: &Wavelengths,
-    ) -> Bsdf {
+    pub(super) fn bsdf(&self, at: &TexturePoint, lanes: Lanes) -> Bsdf {
         let ggx = self.coat.roughness.ggx(at);
-        let filling = self.coat.filling(at, color, wavelengths);
-        let reflectance = color.albedo(unit(self.reflectance.eval(at)), wavelengths);
+        let filling = self.coat.filling(at, lanes);
+        let reflectance = lanes.albedo(unit(self.reflectance.eval(at)));
         let alpha = ggx.mean_alpha();
         let layer = self.layers.at(alpha);
         let filled = self.fillings.at(self.layers.axis.locate(alpha), &filling);
@@ -302,15 +297,10 @@ impl CoatedConductorMaterial {
         self.coat.needs().and(metal)
     }
 
-    pub(super) fn bsdf(
-        &self,
-        at: &TexturePoint,
-        color: ColorModel,
-        wavelengths: &Wavelengths,
-    ) -> Bsdf {
+    pub(super) fn bsdf(&self, at: &TexturePoint, lanes: Lanes) -> Bsdf {
         let (ggx, facets) = (self.coat.roughness.ggx(at), self.roughness.ggx(at));
-        let filling = self.coat.filling(at, color, wavelengths);
-        let (eta, k) = self.index.eval(at, color, wavelengths);
+        let filling = self.coat.filling(at, lanes);
+        let (eta, k) = self.index.eval(at, lanes);
         let metal = CoatedMetal {
             eta: eta / self.coat.eta,
             k: k / self.coat.eta,

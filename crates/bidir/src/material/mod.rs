@@ -20,7 +20,7 @@ use crate::bsdf::{
 };
 use crate::math::{ONE_MINUS_EPSILON, Vec3};
 use crate::shape::SurfacePoint;
-use crate::spectrum::{ColorModel, Rgb, Spectrum, Wavelengths};
+use crate::spectrum::{Lanes, Rgb, Spectrum};
 use crate::texture::{ColorTexture, FloatTexture, Needs, TexturePoint};
 use std::sync::Arc;
 
@@ -93,13 +93,8 @@ impl ConductorIndex {
 
     /// Real and imaginary part.
     #[inline]
-    fn eval(
-        &self,
-        at: &TexturePoint,
-        color: ColorModel,
-        wavelengths: &Wavelengths,
-    ) -> (Spectrum, Spectrum) {
-        let unbounded = |rgb: Rgb| color.unbounded(rgb, wavelengths);
+    fn eval(&self, at: &TexturePoint, lanes: Lanes) -> (Spectrum, Spectrum) {
+        let unbounded = |rgb: Rgb| lanes.unbounded(rgb);
         match self {
             Self::Complex { eta, k } => (unbounded(eta.eval(at)), unbounded(k.eval(at))),
             Self::Reflectance(r) => {
@@ -245,8 +240,8 @@ impl Material {
 
     /// The scattering at a point, that of a mixture's first material: [`choose`](Self::choose) first.
     #[inline]
-    pub fn bsdf(&self, at: &TexturePoint, color: ColorModel, wavelengths: &Wavelengths) -> Bsdf {
-        let albedo = |texture: &ColorTexture| color.albedo(unit(texture.eval(at)), wavelengths);
+    pub fn bsdf(&self, at: &TexturePoint, lanes: Lanes) -> Bsdf {
+        let albedo = |texture: &ColorTexture| lanes.albedo(unit(texture.eval(at)));
         match self {
             Self::Diffuse { reflectance } => Bsdf::Diffuse(Diffuse {
                 reflectance: albedo(reflectance),
@@ -256,7 +251,7 @@ impl Material {
                 roughness,
                 scattering,
             } => {
-                let (eta, k) = index.eval(at, color, wavelengths);
+                let (eta, k) = index.eval(at, lanes);
                 Bsdf::Conductor(Conductor::new(eta, k, roughness.ggx(at), *scattering))
             }
             Self::Dielectric {
@@ -272,18 +267,18 @@ impl Material {
             } => {
                 let part = |texture: &ColorTexture| {
                     let scaled = texture.eval(at).map(|channel| channel * scale);
-                    color.albedo(unit(scaled), wavelengths)
+                    lanes.albedo(unit(scaled))
                 };
                 Bsdf::DiffuseTransmission(DiffuseTransmission {
                     reflectance: part(reflectance),
                     transmittance: part(transmittance),
                 })
             }
-            Self::CoatedDiffuse(material) => material.bsdf(at, color, wavelengths),
-            Self::CoatedConductor(material) => material.bsdf(at, color, wavelengths),
-            Self::Principled(material) => material.bsdf(at, color, wavelengths),
-            Self::Mix(mixture) => mixture.materials[0].bsdf(at, color, wavelengths),
-            Self::Embossed(embossed) => embossed.material.bsdf(at, color, wavelengths),
+            Self::CoatedDiffuse(material) => material.bsdf(at, lanes),
+            Self::CoatedConductor(material) => material.bsdf(at, lanes),
+            Self::Principled(material) => material.bsdf(at, lanes),
+            Self::Mix(mixture) => mixture.materials[0].bsdf(at, lanes),
+            Self::Embossed(embossed) => embossed.material.bsdf(at, lanes),
         }
     }
 }

@@ -5,7 +5,7 @@ use crate::bsdf::microfacet::Ggx;
 use crate::bsdf::{Bsdf, Principled, PrincipledCoat, PrincipledParameters, Wall};
 use crate::math::{Vec2, Vec3, sqr};
 use crate::shape::SurfacePoint;
-use crate::spectrum::{ColorModel, Rgb, Wavelengths};
+use crate::spectrum::{Lanes, Rgb};
 use crate::texture::{ColorTexture, FloatTexture, Needs, TexturePoint};
 
 /// A colour times a texture.
@@ -259,13 +259,8 @@ impl PrincipledMaterial {
     }
 
     /// The scattering at a point. Parts that the material lacks are not looked up.
-    pub(super) fn bsdf(
-        &self,
-        at: &TexturePoint,
-        color: ColorModel,
-        wavelengths: &Wavelengths,
-    ) -> Bsdf {
-        let albedo = |of: &ScaledColor| color.albedo(unit(of.eval(at)), wavelengths);
+    pub(super) fn bsdf(&self, at: &TexturePoint, lanes: Lanes) -> Bsdf {
+        let albedo = |of: &ScaledColor| lanes.albedo(unit(of.eval(at)));
         let (ggx, grain) = self.facets(at);
         let mut parameters = PrincipledParameters {
             metallic: self.metallic.share(at),
@@ -280,7 +275,7 @@ impl PrincipledMaterial {
         };
         if !self.specular_color.is_white() {
             let tint = self.specular_color.eval(at);
-            parameters.specular_color = color.unbounded(tint, wavelengths);
+            parameters.specular_color = lanes.unbounded(tint);
         }
         if parameters.diffuse_transmission > 0.0 {
             parameters.diffuse_transmission_color = albedo(&self.diffuse_transmission_color);

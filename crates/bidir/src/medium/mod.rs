@@ -31,7 +31,7 @@ pub use grid::Grid;
 pub use phase::HenyeyGreenstein;
 
 use crate::math::Vec3;
-use crate::spectrum::{ColorModel, Rgb, Spectrum, Wavelengths};
+use crate::spectrum::{Lanes, Rgb, Spectrum};
 use accel::Aabb;
 
 /// A medium of a scene, by number.
@@ -271,26 +271,16 @@ impl Medium {
 
     /// σ_t at a point. Unit: 1/m.
     #[inline]
-    pub fn extinction(
-        &self,
-        point: Vec3,
-        color: ColorModel,
-        wavelengths: &Wavelengths,
-    ) -> Spectrum {
-        color.unbounded(self.at(point).extinction, wavelengths)
+    pub fn extinction(&self, point: Vec3, lanes: Lanes) -> Spectrum {
+        lanes.unbounded(self.at(point).extinction)
     }
 
     /// The scattering of a vertex in the medium.
     #[inline]
-    pub fn scattering(
-        &self,
-        point: Vec3,
-        color: ColorModel,
-        wavelengths: &Wavelengths,
-    ) -> MediumScattering {
+    pub fn scattering(&self, point: Vec3, lanes: Lanes) -> MediumScattering {
         let at = self.at(point);
         let [coefficient, extinction] =
-            [at.scattering, at.extinction].map(|rgb| color.unbounded(rgb, wavelengths));
+            [at.scattering, at.extinction].map(|rgb| lanes.unbounded(rgb));
         let part = |s: f32, t: f32| if t > 0.0 { s / t } else { 0.0 };
         MediumScattering {
             coefficient,

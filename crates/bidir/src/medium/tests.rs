@@ -51,7 +51,7 @@ fn medium() -> Medium {
 }
 
 fn lanes(rgb: Rgb) -> Spectrum {
-    ColorModel::Rgb.unbounded(rgb, &Wavelengths::default())
+    Lanes::Rgb.unbounded(rgb)
 }
 
 fn stretch(ray: &Ray, range: [f32; 2]) -> Stretch<'_> {

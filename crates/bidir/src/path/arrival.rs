@@ -1,6 +1,6 @@
 //! s = 0: the light that a camera walk comes upon by itself, at a vertex on a light or where it escapes.
 
-use super::{Escape, PathContext, Subpath, Vertex};
+use super::{Escape, Job, Subpath, Vertex};
 use crate::light::LightPoint;
 use crate::math::Vec3;
 use crate::scene::Scene;
@@ -62,19 +62,19 @@ impl Arrival {
 
     /// C = β L_e: the contribution before its weight.
     #[inline]
-    pub fn contribution(&self, context: &PathContext<'_>) -> Spectrum {
-        self.beta * context.emitted(self.light, &self.at, self.wo)
+    pub fn contribution(&self, job: &Job<'_>) -> Spectrum {
+        self.beta * job.emitted(self.light, &self.at, self.wo)
     }
 
     /// The light as the first vertex of the path, with the density of the walk as that of the other
     /// direction.
-    pub fn vertex(&self, context: &PathContext<'_>) -> Vertex {
+    pub fn vertex(&self, job: &Job<'_>) -> Vertex {
         // Without media, the ends of the segment know the way back.
-        let through_media = context.job.scene.has_media();
+        let through_media = job.scene.has_media();
         Vertex {
             pdf_rev: self.pdf,
             to_previous: if through_media { self.to_previous } else { 0.0 },
-            ..Vertex::light(context, self.light, &self.at)
+            ..Vertex::light(job, self.light, &self.at)
         }
     }
 }

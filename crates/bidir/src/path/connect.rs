@@ -3,7 +3,7 @@
 //!
 //! No ray is traced here: visibility is the caller's to ask for.
 
-use super::{LightChoiceKind, PathContext, PathDensities, Segment, Turn, Vertex, mis_weight};
+use super::{Job, LightChoiceKind, PathDensities, Segment, Turn, Vertex, mis_weight};
 use crate::bsdf::TransportMode;
 use crate::light::{ChosenEmitter, LightChoice, LightPoint, LightSample, Part};
 use crate::math::Vec2;
@@ -131,7 +131,7 @@ impl<'a> JoinedPath<'a> {
     /// β_L · scatter(z) · G(z, y) · scatter(y) · β_C. Zero where either end is a Dirac scattering. Unit: that
     /// of a pixel's radiance.
     #[inline]
-    pub fn contribution(&self, context: &PathContext<'_>) -> Spectrum {
+    pub fn contribution(&self, job: &Job<'_>) -> Spectrum {
         debug_assert_eq!(self.junction, Junction::Connection);
         let (z, y) = (self.z(), self.y());
         let geometry_term = self.segment.geometry_term;
@@ -139,20 +139,20 @@ impl<'a> JoinedPath<'a> {
             return Spectrum::ZERO;
         }
         let [at_z, at_y] = self.turns();
-        let at_light = at_z.scatter(context);
+        let at_light = at_z.scatter(job);
         if at_light.is_black() {
             return Spectrum::ZERO;
         }
-        let at_camera = at_y.scatter(context);
+        let at_camera = at_y.scatter(job);
         z.beta * at_light * at_camera * y.beta * geometry_term
     }
 
     /// The weight of making the path in this way.
     #[inline]
-    pub fn weight(&self, context: &PathContext<'_>, densities: &mut PathDensities) -> f32 {
-        densities.gather(context, self);
-        let count = |j| self.count(context, j);
-        mis_weight(densities, count, context.job.settings.mis, self.strategy()) as f32
+    pub fn weight(&self, job: &Job<'_>, densities: &mut PathDensities) -> f32 {
+        densities.gather(job, self);
+        let count = |j| self.count(job, j);
+        mis_weight(densities, count, job.settings.mis, self.strategy()) as f32
     }
 
     /// s of the strategy that made the path.
@@ -172,14 +172,14 @@ impl<'a> JoinedPath<'a> {
 /// light, the draw has no density, or nothing of the light is there.
 #[inline]
 pub fn sample_next_event(
-    context: &PathContext<'_>,
+    job: &Job<'_>,
     x1: &Vertex,
     u_light: impl FnOnce() -> f32,
     u: Vec2,
     u_depth: impl FnOnce() -> f32,
 ) -> Option<(u32, LightSample)> {
-    let scene = context.job.scene;
-    let ChosenEmitter { light, part, prob } = match context.job.settings.light_choice {
+    let scene = job.scene;
+    let ChosenEmitter { light, part, prob } = match job.settings.light_choice {
         LightChoiceKind::Power => scene.light_choice().sample(u_light).map(by_power)?,
         LightChoiceKind::Tree => {
             let tree = scene.light_tree();
@@ -197,9 +197,9 @@ pub fn sample_next_event(
 /// The density e(x_0 | x_1) with which [`sample_next_event`] draws the point `at` of light number
 /// `light` for `x1`, a vertex of any subpath. Measure: that of the point, as in the table of [`crate::light`].
 #[inline]
-pub fn next_event_pdf(context: &PathContext<'_>, x1: &Vertex, light: u32, at: &LightPoint) -> f32 {
-    let scene = context.job.scene;
-    let ChosenEmitter { part, prob, .. } = match context.job.settings.light_choice {
+pub fn next_event_pdf(job: &Job<'_>, x1: &Vertex, light: u32, at: &LightPoint) -> f32 {
+    let scene = job.scene;
+    let ChosenEmitter { part, prob, .. } = match job.settings.light_choice {
         LightChoiceKind::Power => {
             let prob = scene.light_choice().prob(light as usize);
             by_power((light as usize, prob))
@@ -224,24 +224,18 @@ fn by_power((light, prob): (usize, f32)) -> ChosenEmitter {
     }
 }
 
-impl PathContext<'_> {
+impl Job<'_> {
     /// True where strategy (s, t) takes part.
     #[inline]
     pub fn takes(&self, s: usize, t: usize) -> bool {
-        self.job.settings.strategies.contains(s, t)
-    }
-
-    /// The luminance of light at the wavelengths of the sample.
-    #[inline]
-    pub(crate) fn luminance(&self, light: Spectrum) -> f32 {
-        self.job.scene.color().luminance(light, &self.wavelengths)
+        self.settings.strategies.contains(s, t)
     }
 
     /// How light subpaths choose the light that they begin on.
     #[inline]
     pub(super) fn emission(&self) -> &LightChoice {
-        let learned = self.job.guide.light_start;
-        learned.unwrap_or_else(|| self.job.scene.light_choice())
+        let learned = self.guide.light_start;
+        learned.unwrap_or_else(|| self.scene.light_choice())
     }
 
     /// √V̂ of the shadow ray between a light vertex `z` and a camera vertex `y`: 1 if nothing is learned, and
@@ -251,7 +245,7 @@ impl PathContext<'_> {
         if z.locus.is_infinite() {
             1.0
         } else {
-            self.job.guide.of_camera(y.cell).root_visibility(z.cell)
+            self.guide.of_camera(y.cell).root_visibility(z.cell)
         }
     }
 }

@@ -5,7 +5,7 @@
 //! it (docs/derivations/mis-weights.md). n_j depends on the two vertices that strategy j links alone, so that
 //! sums along subpaths can hold it.
 
-use super::{JoinedPath, PathContext};
+use super::{Job, JoinedPath};
 use crate::film::FilmSettings;
 use crate::guide::{Cell, CellGuide};
 
@@ -33,7 +33,7 @@ impl SampleCounts {
     }
 }
 
-impl PathContext<'_> {
+impl Job<'_> {
     /// n_j: how many samples strategy (s, t) takes in a pass of a path that it makes by linking its last light
     /// vertex, in the cell `z`, with its last camera vertex, in the cell `y`. Camera densities
     /// count per pixel, so every strategy that begins at the camera takes one; the light image takes
@@ -44,11 +44,11 @@ impl PathContext<'_> {
             next_events,
             light_subpaths,
             ..
-        } = self.job.counts;
+        } = self.counts;
         match t {
             _ if !self.takes(s, t) => 0.0,
             1 => light_subpaths,
-            _ if s >= self.job.settings.light_point.first_walked() => self.count_walked(t, [z, y]),
+            _ if s >= self.settings.light_point.first_walked() => self.count_walked(t, [z, y]),
             _ => next_events[usize::from(t > 2)],
         }
     }
@@ -56,13 +56,13 @@ impl PathContext<'_> {
     /// n_j of a strategy that takes part and links a vertex of a light subpath with camera vertex number `t` ≥ 2.
     #[inline]
     fn count_walked(&self, t: usize, [z, y]: [Cell; 2]) -> f64 {
-        self.count_from(t, self.job.guide.of_camera(y), z)
+        self.count_from(t, self.guide.of_camera(y), z)
     }
 
     /// The same, where it is known what the guide knows of the camera vertex.
     #[inline(always)]
     pub(crate) fn count_from(&self, t: usize, of_camera: CellGuide<'_>, z: Cell) -> f64 {
-        self.job.counts.connections[usize::from(t > 2)] * of_camera.count_factor(z)
+        self.counts.connections[usize::from(t > 2)] * of_camera.count_factor(z)
     }
 
     /// n_j of s = 0, which links nothing.
@@ -74,10 +74,10 @@ impl PathContext<'_> {
 
 impl JoinedPath<'_> {
     /// n_j of this path, as its weight takes it.
-    pub(super) fn count(&self, context: &PathContext<'_>, j: usize) -> f64 {
+    pub(super) fn count(&self, job: &Job<'_>, j: usize) -> f64 {
         match (j, self.len() - j) {
-            (0, t) | (_, t @ 0) => context.count_hits(t),
-            (s, t) => context.count(s, t, [self.vertex(s - 1).cell, self.vertex(s).cell]),
+            (0, t) | (_, t @ 0) => job.count_hits(t),
+            (s, t) => job.count(s, t, [self.vertex(s - 1).cell, self.vertex(s).cell]),
         }
     }
 }

@@ -4,7 +4,7 @@
 //! They describe the path, not the strategy that made it, so that every strategy finds the same
 //! weight (docs/derivations/mis-weights.md).
 
-use super::{JoinedPath, Junction, LightPointChoice, PathContext, Vertex, next_event_pdf};
+use super::{Job, JoinedPath, Junction, LightPointChoice, Vertex, next_event_pdf};
 
 /// How likely one vertex of a path is to be drawn from either side, roulette included.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,7 +33,7 @@ impl PathDensities {
     ///
     /// Stored densities hold except next to the junction, where each end has a new neighbour: the two
     /// ends and the vertices before them are evaluated again.
-    pub fn gather(&mut self, context: &PathContext<'_>, path: &JoinedPath<'_>) {
+    pub fn gather(&mut self, job: &Job<'_>, path: &JoinedPath<'_>) {
         let JoinedPath {
             light,
             camera,
@@ -57,27 +57,27 @@ impl PathDensities {
             .extend((0..s).map(|i| lobes(light, steps[0], i)));
         let of_camera = (0..camera.len()).rev().map(|i| lobes(camera, steps[1], i));
         self.vertices.extend(of_camera);
-        for (i, pdf) in walked_densities(context, light, n).enumerate() {
+        for (i, pdf) in walked_densities(job, light, n).enumerate() {
             self.vertices[i].from_light = pdf[0];
             if i + 2 < s {
                 self.vertices[i].from_camera = pdf[1];
             }
         }
-        for (c, pdf) in walked_densities(context, camera, n).enumerate() {
+        for (c, pdf) in walked_densities(job, camera, n).enumerate() {
             let x = &mut self.vertices[n - 1 - c];
             x.from_camera = pdf[0];
             if c + 2 < camera.len() || junction == Junction::Hit {
                 x.from_light = pdf[1];
             }
         }
-        self.join(context, path);
-        self.describe_light(context, path);
+        self.join(job, path);
+        self.describe_light(job, path);
     }
 
     /// Puts in the densities next to the junction.
-    fn join(&mut self, context: &PathContext<'_>, path: &JoinedPath<'_>) {
+    fn join(&mut self, job: &Job<'_>, path: &JoinedPath<'_>) {
         let (s, t) = (path.light.len(), path.camera.len());
-        let Reversed { z, y, before } = path.reversed(context);
+        let Reversed { z, y, before } = path.reversed(job);
         let x = &mut self.vertices;
         x[s].from_light = y;
         x[s - 1].from_camera = z;
@@ -93,10 +93,10 @@ impl PathDensities {
     }
 
     /// Notes how next-event estimation would draw x_0 for x_1.
-    fn describe_light(&mut self, context: &PathContext<'_>, path: &JoinedPath<'_>) {
+    fn describe_light(&mut self, job: &Job<'_>, path: &JoinedPath<'_>) {
         let x0 = &path.light[0];
-        self.light_is_delta = x0.is_on_delta_light(context);
-        self.next_event = next_event_density(context, x0, path.light.get(1).unwrap_or(path.y()));
+        self.light_is_delta = x0.is_on_delta_light(job);
+        self.next_event = next_event_density(job, x0, path.light.get(1).unwrap_or(path.y()));
     }
 }
 
@@ -115,14 +115,14 @@ pub(super) struct Reversed {
 impl JoinedPath<'_> {
     /// Evaluates the densities next to the junction.
     #[inline]
-    pub(super) fn reversed(&self, context: &PathContext<'_>) -> Reversed {
+    pub(super) fn reversed(&self, job: &Job<'_>) -> Reversed {
         let (s, t) = (self.light.len(), self.camera.len());
         let (z, y, segment) = (self.z(), self.y(), &self.segment);
         let [at_z, at_y] = self.turns();
-        let a_s = at_z.pdf(context) * segment.to_b * factor(context, s, || z.albedo_fwd);
+        let a_s = at_z.pdf(job) * segment.to_b * factor(job, s, || z.albedo_fwd);
         if self.junction == Junction::Hit {
             return Reversed {
-                z: z.pdf_rev * factor(context, t, || y.albedo_fwd),
+                z: z.pdf_rev * factor(job, t, || y.albedo_fwd),
                 y: a_s,
                 before: [0.0; 2],
             };
@@ -130,15 +130,15 @@ impl JoinedPath<'_> {
         let mut before = [0.0; 2];
         if s > 1 {
             let (pdf, albedo) = at_z.reversed();
-            before[0] = pdf * z.to_previous * factor(context, t + 1, || albedo);
+            before[0] = pdf * z.to_previous * factor(job, t + 1, || albedo);
         }
         if t > 1 {
             let (pdf, albedo) = at_y.reversed();
-            before[1] = pdf * y.to_previous * factor(context, s + 1, || albedo);
+            before[1] = pdf * y.to_previous * factor(job, s + 1, || albedo);
         }
-        let survival = factor(context, t, || y.albedo_fwd);
+        let survival = factor(job, t, || y.albedo_fwd);
         Reversed {
-            z: at_y.pdf(context) * segment.to_a * survival,
+            z: at_y.pdf(job) * segment.to_a * survival,
             y: a_s,
             before,
         }
@@ -147,53 +147,49 @@ impl JoinedPath<'_> {
 
 /// e, the density with which strategy s = 1 draws x_0 where `x1` is the next vertex.
 #[inline]
-pub(super) fn next_event_density(context: &PathContext<'_>, x0: &Vertex, x1: &Vertex) -> f32 {
+pub(super) fn next_event_density(job: &Job<'_>, x0: &Vertex, x1: &Vertex) -> f32 {
     let Some(index) = x0.light else { return 0.0 };
-    match (context.job.settings.light_point, x1.is_camera()) {
+    match (job.settings.light_point, x1.is_camera()) {
         // Of a camera and a light both at infinity no connection makes a path: the camera has to
         // see the light by itself.
         (_, true) if x0.locus.is_infinite() && x1.locus.is_infinite() => 0.0,
         // A path of two vertices has its s = 1 by t = 1, which uses the light subpath's x_0.
         (LightPointChoice::Shared, _) | (_, true) => x0.pdf_fwd,
-        _ => next_event_pdf(context, x1, index, &x0.light_point()),
+        _ => next_event_pdf(job, x1, index, &x0.light_point()),
     }
 }
 
 /// The roulette's part of the density of vertex number `index` of a walk (0 is its end of the
 /// path), with the albedo that the walk meets at the vertex before it.
 #[inline]
-pub(super) fn factor(context: &PathContext<'_>, index: usize, albedo: impl FnOnce() -> f32) -> f32 {
+pub(super) fn factor(job: &Job<'_>, index: usize, albedo: impl FnOnce() -> f32) -> f32 {
     // Vertex 1 is drawn by the end of the path itself, which no roulette guards.
     if index < 2 {
         1.0
     } else {
-        context
-            .job
-            .settings
-            .roulette
-            .density_factor(index - 2, albedo)
+        job.settings.roulette.density_factor(index - 2, albedo)
     }
 }
 
 /// The density with which its walk drew the last vertex of a subpath.
 #[inline]
-fn drawn_density(context: &PathContext<'_>, subpath: &[Vertex]) -> f32 {
+fn drawn_density(job: &Job<'_>, subpath: &[Vertex]) -> f32 {
     let (last, index) = (&subpath[subpath.len() - 1], subpath.len() - 1);
-    last.pdf_fwd * factor(context, index, || subpath[index - 1].albedo_fwd)
+    last.pdf_fwd * factor(job, index, || subpath[index - 1].albedo_fwd)
 }
 
 /// The densities of a subpath's vertices as stored: by its own walk, and by one from the other end
 /// of a path of `n` vertices. The latter is not valid for the last two.
 pub(super) fn walked_densities(
-    context: &PathContext<'_>,
+    job: &Job<'_>,
     subpath: &[Vertex],
     n: usize,
 ) -> impl Iterator<Item = [f32; 2]> {
     subpath.iter().enumerate().map(move |(i, vertex)| {
         let after = || subpath.get(i + 1).map_or(1.0, |next| next.albedo_rev);
         [
-            drawn_density(context, &subpath[..=i]),
-            vertex.pdf_rev * factor(context, n - 1 - i, after),
+            drawn_density(job, &subpath[..=i]),
+            vertex.pdf_rev * factor(job, n - 1 - i, after),
         ]
     })
 }

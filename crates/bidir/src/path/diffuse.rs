@@ -30,7 +30,7 @@
 use super::densities::factor;
 use super::running::{ANY_DEEPER, EndSums, PathStart};
 use super::visible::{LEAST_PART, MOST_LEAST, least_cosine};
-use super::{MisHeuristic, PathContext, Scattering, Segment, Vertex};
+use super::{Job, MisHeuristic, Scattering, Segment, Vertex};
 use crate::bsdf::{Bsdf, TransportMode};
 use crate::guide::Cell;
 use crate::math::lanes::{Vec3x4, dot, dot_each, gather, offset};
@@ -75,16 +75,11 @@ impl DiffuseEnd {
     /// `vertex` of a walk of `mode`, with the sums there, which hold for all of its connections. [None](Self::NONE)
     /// where it is not diffuse, where nothing is scattered, where the camera sees another shading normal, where rays from it may go through media, or where weights
     /// are not those of the balance heuristic with one roulette for paths of any length.
-    pub(super) fn new(
-        context: &PathContext<'_>,
-        vertex: &Vertex,
-        sums: &EndSums,
-        mode: TransportMode,
-    ) -> Self {
-        let settings = context.job.settings;
+    pub(super) fn new(job: &Job<'_>, vertex: &Vertex, sums: &EndSums, mode: TransportMode) -> Self {
+        let settings = job.settings;
         let is_even = settings.roulette.density_start().unwrap_or(0) == 0;
         let is_balance = settings.mis == MisHeuristic::Balance;
-        let is_clear = context.job.scene.is_clear_around(&vertex.locus);
+        let is_clear = job.scene.is_clear_around(&vertex.locus);
         let [cos_s, cos_g] = [vertex.frame.z, vertex.locus.n_g].map(|n| n.dot(vertex.wo));
         let least = match mode {
             TransportMode::Radiance => least_cosine(cos_g.abs()),
@@ -103,7 +98,7 @@ impl DiffuseEnd {
                     point: vertex.locus.point,
                     others: 0.0,
                     n_g: vertex.locus.n_g * 1f32.copysign(cos_g),
-                    density: INV_PI * factor(context, usize::MAX, || vertex.albedo_fwd),
+                    density: INV_PI * factor(job, usize::MAX, || vertex.albedo_fwd),
                     n_s: vertex.frame.z * 1f32.copysign(cos_s),
                     cell: vertex.cell,
                     is_diffuse: true,
@@ -143,19 +138,19 @@ impl DiffuseEnd {
     #[inline]
     pub fn next_event(
         &self,
-        context: &PathContext<'_>,
+        job: &Job<'_>,
         t: usize,
         (x0, e): (&Vertex, f32),
         segment: &Segment,
     ) -> Option<(Spectrum, f32)> {
         let cos_s = self.n_s.dot(segment.w);
-        let contribution = self.contribution(context, x0, segment, cos_s)?;
-        let start = PathStart::new(context, x0, e);
+        let contribution = self.contribution(job, x0, segment, cos_s)?;
+        let start = PathStart::new(job, x0, e);
         let to_light = f64::from(self.density * cos_s * segment.to_b);
         // r_0 / e, and (a_0 / e) r.
         let hit = start.is_hit * to_light / start.next_event;
-        let drawn = start.up() * f64::from(x0.pdf_leaving(context, -segment.w) * segment.to_a);
-        let n = context.count(1, t, [x0.cell, self.cell]);
+        let drawn = start.up() * f64::from(x0.pdf_leaving(job, -segment.w) * segment.to_a);
+        let n = job.count(1, t, [x0.cell, self.cell]);
         let others = hit + drawn * f64::from(self.others);
         Some((contribution, (n / (n + others)) as f32))
     }
@@ -172,15 +167,15 @@ impl DiffuseEnd {
     #[inline]
     pub fn light_image(
         &self,
-        context: &PathContext<'_>,
+        job: &Job<'_>,
         (s, vertex, sums): (usize, &Vertex, &EndSums),
         lens: &Vertex,
         segment: &Segment,
     ) -> Option<(Spectrum, f32)> {
         let cos_g = self.n_g.dot(segment.w);
-        let contribution = self.contribution(context, lens, segment, cos_g)?;
-        let drawn = f64::from(lens.pdf_leaving(context, -segment.w) * segment.to_a);
-        let n = context.count(s, 1, [self.cell, lens.cell]);
+        let contribution = self.contribution(job, lens, segment, cos_g)?;
+        let drawn = f64::from(lens.pdf_leaving(job, -segment.w) * segment.to_a);
+        let n = job.count(s, 1, [self.cell, lens.cell]);
         let others = drawn * sums.per_density(1, self.before(vertex));
         Some((contribution, (n / (n + others)) as f32))
     }
@@ -190,7 +185,7 @@ impl DiffuseEnd {
     #[inline]
     fn contribution(
         &self,
-        context: &PathContext<'_>,
+        job: &Job<'_>,
         end: &Vertex,
         segment: &Segment,
         cos: f32,
@@ -200,7 +195,7 @@ impl DiffuseEnd {
         if !is_ahead {
             return None;
         }
-        let contribution = end.leaving(context, -w) * end.beta * self.flux * (cos * to_b);
+        let contribution = end.leaving(job, -w) * end.beta * self.flux * (cos * to_b);
         (!contribution.is_black()).then_some(contribution)
     }
 

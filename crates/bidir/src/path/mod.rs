@@ -56,7 +56,7 @@ pub use walk::{camera_subpath, light_subpath};
 use crate::guide::Guide;
 use crate::medium::MediumId;
 use crate::scene::Scene;
-use crate::spectrum::Wavelengths;
+use crate::spectrum::Lanes;
 use crate::view::View;
 use accel::Stop;
 
@@ -104,13 +104,15 @@ impl PathSettings {
     }
 }
 
-/// The data of a render that all of its samples have in common.
+/// The data that all samples of a group have in common: those that may be joined with each other.
 #[derive(Clone, Copy)]
 pub struct Job<'a> {
     /// The scene.
     pub scene: &'a Scene,
     /// The camera that sees it, and its film.
     pub view: &'a View,
+    /// The meaning of the lanes of light.
+    pub lanes: Lanes,
     /// How paths are made and weighted.
     pub settings: &'a PathSettings,
     /// How many samples strategies take.
@@ -124,11 +126,12 @@ pub struct Job<'a> {
 }
 
 impl<'a> Job<'a> {
-    /// A job in which every sample has a light subpath of its own, and nothing is learned.
+    /// An RGB job in which every sample has a light subpath of its own, and nothing is learned.
     pub fn of_own_subpaths(scene: &'a Scene, view: &'a View, settings: &'a PathSettings) -> Self {
         Self {
             scene,
             view,
+            lanes: Lanes::Rgb,
             settings,
             counts: SampleCounts::of_own_subpaths(view.film()),
             guide: Guide::default(),
@@ -145,13 +148,4 @@ pub fn camera_medium(scene: &Scene, view: &View) -> MediumId {
     } else {
         MediumId::VACUUM
     }
-}
-
-/// The data that every step of making a path needs.
-#[derive(Clone, Copy)]
-pub struct PathContext<'a> {
-    /// The data of the render.
-    pub job: Job<'a>,
-    /// The wavelengths of the sample.
-    pub wavelengths: Wavelengths,
 }

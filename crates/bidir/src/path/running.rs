@@ -10,9 +10,7 @@
 //! [`mis_weight`](super::mis_weight) finds, but for rounding.
 
 use super::densities::{Reversed, next_event_density, walked_densities};
-use super::{
-    DiffuseEnd, JoinedPath, Junction, PathContext, PathDensities, PathSettings, Subpath, Vertex,
-};
+use super::{DiffuseEnd, Job, JoinedPath, Junction, PathDensities, PathSettings, Subpath, Vertex};
 use crate::bsdf::TransportMode;
 use std::slice;
 
@@ -115,39 +113,39 @@ impl RunningSums {
     }
 
     /// Adds the sums along a light walk, which follows the one before.
-    pub fn add_light(&mut self, context: &PathContext<'_>, walk: &Subpath<'_>) {
-        let share = |ratio| context.job.settings.mis.share(ratio);
+    pub fn add_light(&mut self, job: &Job<'_>, walk: &Subpath<'_>) {
+        let share = |ratio| job.settings.mis.share(ratio);
         let start = match walk.vertices {
             [] => return,
             [_] => PathStart::NONE,
-            [x0, x1, ..] => PathStart::new(context, x0, next_event_density(context, x0, x1)),
+            [x0, x1, ..] => PathStart::new(job, x0, next_event_density(job, x0, x1)),
         };
         let links = |i: usize, [before, z]: [&Vertex; 2]| {
             let links = if i == 1 { start.is_drawn } else { 1.0 };
-            [2, ANY_DEEPER].map(|t| links * share(context.count(i, t, [before.cell, z.cell])))
+            [2, ANY_DEEPER].map(|t| links * share(job.count(i, t, [before.cell, z.cell])))
         };
         let per_drawn = |i: usize, a: f64| match i {
             1 => share(start.next_event / start.emission / a),
             _ => share(1.0 / a),
         };
-        self.add(context, walk, start.sums(context), links, per_drawn);
+        self.add(job, walk, start.sums(job), links, per_drawn);
     }
 
     /// Adds the sums along a camera walk, which follows the one before.
-    pub fn add_camera(&mut self, context: &PathContext<'_>, walk: &Subpath<'_>) {
-        let share = |ratio| context.job.settings.mis.share(ratio);
+    pub fn add_camera(&mut self, job: &Job<'_>, walk: &Subpath<'_>) {
+        let share = |ratio| job.settings.mis.share(ratio);
         let Some(lens) = walk.vertices.first() else {
             return;
         };
         let links = |c: usize, [before, y]: [&Vertex; 2]| {
-            [share(context.count(ANY_WALKED, c, [y.cell, before.cell])); 2]
+            [share(job.count(ANY_WALKED, c, [y.cell, before.cell])); 2]
         };
         let per_drawn = |_: usize, b: f64| share(1.0 / b);
         let first = EndSums {
             per_drawn: finite(per_drawn(0, lens.pdf_fwd.into())),
             ..EndSums::NONE
         };
-        self.add(context, walk, first, links, per_drawn);
+        self.add(job, walk, first, links, per_drawn);
     }
 
     /// Adds the sums along a walk, those of its first vertex given; `links` is the share of the strategy that links
@@ -155,20 +153,20 @@ impl RunningSums {
     #[inline]
     fn add(
         &mut self,
-        context: &PathContext<'_>,
+        job: &Job<'_>,
         walk: &Subpath<'_>,
         first: EndSums,
         links: impl Fn(usize, [&Vertex; 2]) -> [f64; 2],
         per_drawn: impl Fn(usize, f64) -> f64,
     ) {
-        let share = |ratio| context.job.settings.mis.share(ratio);
+        let share = |ratio| job.settings.mis.share(ratio);
         let mode = if walk.vertices[0].is_camera() {
             TransportMode::Radiance
         } else {
             TransportMode::Importance
         };
         let (mut last, mut back) = (first, 0.0);
-        for (i, [drawn, reverse]) in walked_densities(context, walk.vertices, FAR).enumerate() {
+        for (i, [drawn, reverse]) in walked_densities(job, walk.vertices, FAR).enumerate() {
             if let Some(before) = i.checked_sub(1) {
                 let [before, vertex] = [before, i].map(|i| &walk.vertices[i]);
                 let linked = possible(!before.went_by_delta);
@@ -184,7 +182,7 @@ impl RunningSums {
             }
             self.ends.push(last);
             let vertex = &walk.vertices[i];
-            let end = DiffuseEnd::new(context, vertex, &last, mode);
+            let end = DiffuseEnd::new(job, vertex, &last, mode);
             self.diffuse.push(end);
             back = f64::from(reverse);
         }
@@ -238,17 +236,12 @@ impl Weights {
     /// It is the pure form itself where not all strategies take part, and where a subpath is so short that the
     /// roulette of densities begins behind its end: roulette then depends on the length of the path.
     #[inline]
-    pub fn weight(
-        &mut self,
-        context: &PathContext<'_>,
-        path: &JoinedPath<'_>,
-        sums: &PathSums<'_>,
-    ) -> f32 {
+    pub fn weight(&mut self, job: &Job<'_>, path: &JoinedPath<'_>, sums: &PathSums<'_>) -> f32 {
         let (s, t) = (path.light.len(), path.camera.len());
         let weight = match path.junction {
-            Junction::Hit if self.shortest == 0 => sums.hit(context, path),
-            Junction::Connection if self.shortest <= s.min(t) => sums.connection(context, path),
-            _ => return path.weight(context, &mut self.densities),
+            Junction::Hit if self.shortest == 0 => sums.hit(job, path),
+            Junction::Connection if self.shortest <= s.min(t) => sums.connection(job, path),
+            _ => return path.weight(job, &mut self.densities),
         };
         weight as f32
     }
@@ -256,52 +249,48 @@ impl Weights {
 
 impl PathSums<'_> {
     /// s = 0: all others have more light vertices.
-    fn hit(&self, context: &PathContext<'_>, path: &JoinedPath<'_>) -> f64 {
+    fn hit(&self, job: &Job<'_>, path: &JoinedPath<'_>) -> f64 {
         let (y, t) = (path.y(), path.camera.len());
-        let share = |ratio| context.job.settings.mis.share(ratio);
-        let start = self.start(context, path);
-        let reversed = path.reversed(context);
-        let count = share(context.count(1, t, [path.z().cell, y.cell]));
+        let share = |ratio| job.settings.mis.share(ratio);
+        let start = self.start(job, path);
+        let reversed = path.reversed(job);
+        let count = share(job.count(1, t, [path.z().cell, y.cell]));
         let links = count * start.is_drawn * possible(!y.went_by_delta);
         let up = share(start.up() * f64::from(reversed.y)) * self.camera.per_drawn;
         let from_drawn = chain(links, up, self.camera.sum);
         let up = share(start.next_event / f64::from(reversed.z));
         let mut others = chain(0.0, up, from_drawn);
         if t == 1 {
-            others = context.job.settings.mis.share_of_image(others, 1.0);
+            others = job.settings.mis.share_of_image(others, 1.0);
         }
         1.0 / (1.0 + others)
     }
 
     /// x_0 of a path of which the rest is one subpath.
     #[inline]
-    fn start(&self, context: &PathContext<'_>, path: &JoinedPath<'_>) -> PathStart {
-        let next_event = || next_event_density(context, path.z(), path.y());
-        PathStart::new(
-            context,
-            path.z(),
-            self.next_event.unwrap_or_else(next_event),
-        )
+    fn start(&self, job: &Job<'_>, path: &JoinedPath<'_>) -> PathStart {
+        let next_event = || next_event_density(job, path.z(), path.y());
+        PathStart::new(job, path.z(), self.next_event.unwrap_or_else(next_event))
     }
 
     /// s ≥ 1: the strategies with fewer light vertices, and those with fewer camera vertices.
-    fn connection(&self, context: &PathContext<'_>, path: &JoinedPath<'_>) -> f64 {
+    fn connection(&self, job: &Job<'_>, path: &JoinedPath<'_>) -> f64 {
         let (s, t) = (path.light.len(), path.camera.len());
-        let share = |ratio| context.job.settings.mis.share(ratio);
-        let Reversed { z, y, before } = path.reversed(context);
+        let share = |ratio| job.settings.mis.share(ratio);
+        let Reversed { z, y, before } = path.reversed(job);
         let [z, y] = [z, y].map(f64::from);
         let before = before.map(|density| share(density.into()));
         let (fewer_light, y) = if s == 1 {
-            let start = self.start(context, path);
-            let sums = start.sums(context);
+            let start = self.start(job, path);
+            let sums = start.sums(job);
             (sums.shares(t, share(z), 0.0), start.up() * y)
         } else {
             (self.light.shares(t, share(z), before[0]), y)
         };
         let fewer_camera = self.camera.shares(s, share(y), before[1]);
-        let mut own = share(context.count(s, t, [path.z().cell, path.y().cell]));
+        let mut own = share(job.count(s, t, [path.z().cell, path.y().cell]));
         if s + t == 2 {
-            own = context.job.settings.mis.share_of_image(own, fewer_light);
+            own = job.settings.mis.share_of_image(own, fewer_light);
         }
         own / (own + fewer_light + fewer_camera)
     }
@@ -317,20 +306,20 @@ impl PathStart {
     };
 
     #[inline]
-    pub(super) fn new(context: &PathContext<'_>, x0: &Vertex, next_event: f32) -> Self {
+    pub(super) fn new(job: &Job<'_>, x0: &Vertex, next_event: f32) -> Self {
         Self {
             emission: f64::from(x0.pdf_fwd),
             next_event: f64::from(next_event.max(f32::MIN_POSITIVE)),
             is_drawn: possible(next_event > 0.0),
-            is_hit: possible(!x0.is_on_delta_light(context)),
+            is_hit: possible(!x0.is_on_delta_light(job)),
         }
     }
 
     /// The sums at x_0: s = 0 alone has fewer light vertices, and p_0 / p_1 = b_0 / e.
     #[inline]
-    fn sums(&self, context: &PathContext<'_>) -> EndSums {
+    fn sums(&self, job: &Job<'_>) -> EndSums {
         EndSums {
-            per_drawn: finite(context.job.settings.mis.share(1.0 / self.next_event)),
+            per_drawn: finite(job.settings.mis.share(1.0 / self.next_event)),
             links: [self.is_hit; 2],
             slope: 0.0,
             sum: self.is_hit,

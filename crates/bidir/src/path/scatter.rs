@@ -2,7 +2,7 @@
 //! draw there, and their densities. Visibility and roulette are no part of it.
 
 use super::visible::{Drawn, on_side};
-use super::{PathContext, Scattering, Vertex};
+use super::{Job, Scattering, Vertex};
 use crate::bsdf::{Bsdf, BsdfValue, TransportMode};
 use crate::light::LightPoint;
 use crate::math::{Frame, Vec2, Vec3};
@@ -143,9 +143,9 @@ impl<'a> Turn<'a> {
     /// geometric normal disagree on the side of ω, nothing is scattered; towards the camera the shading normal
     /// turns (`visible`).
     #[inline]
-    pub fn scatter(&self, context: &PathContext<'_>) -> Spectrum {
+    pub fn scatter(&self, job: &Job<'_>) -> Spectrum {
         match &self.vertex.scattering {
-            Scattering::Camera | Scattering::Light => self.vertex.leaving(context, self.wi.world),
+            Scattering::Camera | Scattering::Light => self.vertex.leaving(job, self.wi.world),
             Scattering::Surface(_) | Scattering::Medium(_) => self.value().f,
         }
     }
@@ -154,11 +154,9 @@ impl<'a> Turn<'a> {
     /// light at infinity area of the disk that its rays cross, 1/m². Without Dirac lobes: it integrates
     /// to the probability of the others.
     #[inline]
-    pub fn pdf(&self, context: &PathContext<'_>) -> f32 {
+    pub fn pdf(&self, job: &Job<'_>) -> f32 {
         match &self.vertex.scattering {
-            Scattering::Camera | Scattering::Light => {
-                self.vertex.pdf_leaving(context, self.wi.world)
-            }
+            Scattering::Camera | Scattering::Light => self.vertex.pdf_leaving(job, self.wi.world),
             Scattering::Surface(_) | Scattering::Medium(_) => self.value().pdf,
         }
     }
@@ -204,20 +202,20 @@ pub(super) fn albedo_seen(bsdf: &Bsdf, (frame, n_g): (&Frame, Vec3), w: Vec3) ->
 impl Vertex {
     /// The emission or importance of the first vertex of a walk along `w`; zero for other vertices.
     #[inline]
-    pub(super) fn leaving(&self, context: &PathContext<'_>, w: Vec3) -> Spectrum {
+    pub(super) fn leaving(&self, job: &Job<'_>, w: Vec3) -> Spectrum {
         match (&self.scattering, self.light) {
-            (Scattering::Camera, _) => Spectrum::splat(context.job.view.camera().importance(w)),
-            (Scattering::Light, Some(light)) => context.emitted(light, &self.light_point(), w),
+            (Scattering::Camera, _) => Spectrum::splat(job.view.camera().importance(w)),
+            (Scattering::Light, Some(light)) => job.emitted(light, &self.light_point(), w),
             _ => Spectrum::ZERO,
         }
     }
 
     /// The density of `w` in walks that begin here, in the measure of [`Turn::pdf`]; zero where none does.
     #[inline]
-    pub(super) fn pdf_leaving(&self, context: &PathContext<'_>, w: Vec3) -> f32 {
-        let scene = context.job.scene;
+    pub(super) fn pdf_leaving(&self, job: &Job<'_>, w: Vec3) -> f32 {
+        let scene = job.scene;
         match (&self.scattering, self.light) {
-            (Scattering::Camera, _) => context.job.view.camera().pdf_direction(w),
+            (Scattering::Camera, _) => job.view.camera().pdf_direction(w),
             (Scattering::Light, Some(light)) => {
                 let (light, at) = (scene.light(light), self.light_point());
                 light.pdf_direction(&scene.light_context(), &at, w)
@@ -370,13 +368,13 @@ impl Vertex {
     }
 }
 
-impl PathContext<'_> {
+impl Job<'_> {
     /// The emission of light number `light` from `at` along the unit direction `w`: radiance, intensity or
     /// irradiance, as [`Light::emitted`](crate::light::Light::emitted) says.
     #[inline]
     pub(crate) fn emitted(&self, light: u32, at: &LightPoint, w: Vec3) -> Spectrum {
-        let scene = self.job.scene;
+        let scene = self.scene;
         let emitted = scene.light(light).emitted(&scene.light_context(), at, w);
-        scene.color().illuminant(emitted, &self.wavelengths)
+        self.lanes.illuminant(emitted)
     }
 }

@@ -3,7 +3,7 @@
 //! other (docs/derivations/choosing-a-plan.md).
 
 use super::mis::for_each_other;
-use super::{JoinedPath, MisHeuristic, PathContext, PathDensities};
+use super::{Job, JoinedPath, MisHeuristic, PathDensities};
 
 /// The number of light vertices of a connection with a vertex of a light walk, and its part of D.
 pub(crate) type ConnectionPart = (u16, f32);
@@ -30,19 +30,19 @@ impl JoinedPath<'_> {
     /// The shares of the path, by the balance heuristic. `parts` gets those of single connections.
     pub(crate) fn shares(
         &self,
-        context: &PathContext<'_>,
+        job: &Job<'_>,
         densities: &mut PathDensities,
         parts: &mut Vec<ConnectionPart>,
     ) -> Shares {
         parts.clear();
-        densities.gather(context, self);
+        densities.gather(job, self);
         let n = self.len();
-        let first_walked = context.job.settings.light_point.first_walked();
+        let first_walked = job.settings.light_point.first_walked();
         let [mut hits, mut light_images] = [0.0, 0.0];
         let [mut next_events, mut connections] = [[0.0; 2]; 2];
         let mut add = |j: usize, ratio: f64| {
             let deeper = usize::from(n - j > 2);
-            let samples = self.count(context, j) * ratio;
+            let samples = self.count(job, j) * ratio;
             *match (j, n - j) {
                 (0, _) => &mut hits,
                 (_, 1) => &mut light_images,

@@ -5,7 +5,7 @@
 //! a medium; solid angle, 1/sr, for a light at infinity). Visibility and roulette are no part of a vertex.
 
 use super::scatter::albedo_seen;
-use super::{PathContext, Segment};
+use super::{Job, Segment};
 use crate::bsdf::Bsdf;
 use crate::camera::LensSample;
 use crate::guide::Cell;
@@ -69,6 +69,8 @@ pub struct Vertex {
     pub cell: Cell,
 }
 
+const _: () = assert!(size_of::<Vertex>() == 304);
+
 impl Vertex {
     /// A vertex without the data of a walk.
     fn new(locus: Locus, scattering: Scattering) -> Self {
@@ -105,27 +107,22 @@ impl Vertex {
     }
 
     /// A point on light number `light`, which light subpaths draw with density `pdf_fwd`.
-    pub fn light(context: &PathContext<'_>, light: u32, at: &LightPoint) -> Self {
-        let scene = context.job.scene;
-        let prob = context.emission().prob(light as usize);
+    pub fn light(job: &Job<'_>, light: u32, at: &LightPoint) -> Self {
+        let scene = job.scene;
+        let prob = job.emission().prob(light as usize);
         let pdf_position = scene.light(light).pdf_position(&scene.light_context(), at);
-        Self::on_light(context, light, at, prob * pdf_position)
+        Self::on_light(job, light, at, prob * pdf_position)
     }
 
     /// A point on light number `light`, the density of which is known.
-    pub(super) fn on_light(
-        context: &PathContext<'_>,
-        light: u32,
-        at: &LightPoint,
-        pdf_fwd: f32,
-    ) -> Self {
-        let scene = context.job.scene;
+    pub(super) fn on_light(job: &Job<'_>, light: u32, at: &LightPoint, pdf_fwd: f32) -> Self {
+        let scene = job.scene;
         let mut locus = at.locus;
         if scene.has_media() {
             locus.media = scene.light_media(light);
         }
         Self {
-            cell: context.job.guide.cell(at.locus.point, at.locus.n_g),
+            cell: job.guide.cell(at.locus.point, at.locus.n_g),
             pdf_fwd,
             light: Some(light),
             light_primitive: at.primitive,
@@ -136,19 +133,19 @@ impl Vertex {
     /// A surface point reached along `-wo` with throughput `beta`. The number `u_mix` chooses among
     /// mixed materials; others do not ask for it.
     pub fn surface(
-        context: &PathContext<'_>,
+        job: &Job<'_>,
         hit: &SurfaceHit,
         wo: Vec3,
         beta: Spectrum,
         u_mix: impl FnOnce() -> f32,
     ) -> Self {
-        let (scene, surface) = (context.job.scene, &hit.surface);
+        let (scene, surface) = (job.scene, &hit.surface);
         let mut at = TexturePoint::new(surface);
         if let Some(differentials) = &hit.differentials {
-            at = at.seen(context.job.view.footprint(surface.point), differentials);
+            at = at.seen(job.view.footprint(surface.point), differentials);
         }
         let material = scene.material(hit.material).choose(&at, u_mix);
-        let mut bsdf = material.bsdf(&at, scene.color(), &context.wavelengths);
+        let mut bsdf = material.bsdf(&at, job.lanes);
         bsdf.put_within(hit.around);
         let mut frame = surface.shading;
         if let Some(differentials) = &hit.differentials {
@@ -169,14 +166,14 @@ impl Vertex {
             albedo_fwd: albedo_seen(&bsdf, (&frame, locus.n_g), wo).max_lane(),
             light: hit.light.map(|(light, _)| light),
             light_primitive: hit.light.map_or(0, |(_, at)| at.primitive),
-            cell: context.job.guide.cell(surface.point, frame.z),
+            cell: job.guide.cell(surface.point, frame.z),
             ..Self::new(locus, Scattering::Surface(bsdf))
         }
     }
 
     /// A point in a medium reached along `-wo` with throughput `beta`.
     pub fn medium(
-        context: &PathContext<'_>,
+        job: &Job<'_>,
         locus: Locus,
         scattering: MediumScattering,
         wo: Vec3,
@@ -186,8 +183,8 @@ impl Vertex {
             wo,
             beta,
             albedo_fwd: scattering.albedo.max_lane(),
-            light: context.job.scene.glow(locus.media.outside),
-            cell: context.job.guide.cell(locus.point, locus.n_g),
+            light: job.scene.glow(locus.media.outside),
+            cell: job.guide.cell(locus.point, locus.n_g),
             ..Self::new(locus, Scattering::Medium(scattering))
         }
     }
@@ -247,9 +244,9 @@ impl Vertex {
 
     /// True on a light that no ray can hit by chance.
     #[inline]
-    pub(crate) fn is_on_delta_light(&self, context: &PathContext<'_>) -> bool {
+    pub(crate) fn is_on_delta_light(&self, job: &Job<'_>) -> bool {
         self.light
-            .is_some_and(|light| context.job.scene.light(light).is_delta())
+            .is_some_and(|light| job.scene.light(light).is_delta())
     }
 
     /// This vertex and `other` as they see each other; at most one of the two is at infinity.

@@ -5,7 +5,7 @@
 //! A walk ends by escape, by roulette, where nothing scatters, or at the limit of path length. It
 //! adds nothing to any image.
 
-use super::{Escape, PathContext, Segment, Subpaths, Vertex};
+use super::{Escape, Job, Segment, Subpaths, Vertex};
 use crate::bsdf::TransportMode;
 use crate::camera::CameraRay;
 use crate::light::EmissionSample;
@@ -31,7 +31,7 @@ struct End(Option<Escape>);
 
 /// The data that a walk does not change.
 struct Walker<'a> {
-    context: &'a PathContext<'a>,
+    job: &'a Job<'a>,
     mode: TransportMode,
     stream: &'a SampleStream,
     max_vertices: usize,
@@ -40,7 +40,7 @@ struct Walker<'a> {
 /// Walks a camera subpath that starts with `ray` and the weight `weight` of its film position, and adds it to
 /// `subpaths`.
 pub fn camera_subpath(
-    context: &PathContext<'_>,
+    job: &Job<'_>,
     stream: &SampleStream,
     ray: &CameraRay,
     weight: f32,
@@ -48,37 +48,33 @@ pub fn camera_subpath(
     stats: &mut Stats,
 ) {
     let walker = Walker {
-        context,
+        job,
         mode: TransportMode::Radiance,
         stream,
-        max_vertices: context.job.settings.max_vertices(),
+        max_vertices: job.settings.max_vertices(),
     };
     // Cameras draw rays in proportion to their importance: its weight leaves the film's alone.
     let step = Step {
         origin: ray.origin,
         direction: ray.direction,
         beta: Spectrum::splat(weight),
-        pdf_w: context.job.view.camera().pdf_direction(ray.direction),
+        pdf_w: job.view.camera().pdf_direction(ray.direction),
     };
-    let start = Vertex::camera(&ray.lens, context.job.medium);
+    let start = Vertex::camera(&ray.lens, job.medium);
     walker.walk(subpaths, &start, step, &mut stats.rays.camera);
 }
 
 /// Walks a light subpath, and adds it to `subpaths`.
 pub fn light_subpath(
-    context: &PathContext<'_>,
+    job: &Job<'_>,
     stream: &SampleStream,
     subpaths: &mut Subpaths,
     stats: &mut Stats,
 ) {
-    let Some((start, emission)) = draw_emission(context, stream) else {
+    let Some((start, emission)) = draw_emission(job, stream) else {
         return subpaths.end(None);
     };
-    let emitted = context
-        .job
-        .scene
-        .color()
-        .illuminant(emission.emitted_cos, &context.wavelengths);
+    let emitted = job.lanes.illuminant(emission.emitted_cos);
     let start_of_ray = Locus {
         point: emission.origin,
         ..start.locus
@@ -90,25 +86,22 @@ pub fn light_subpath(
         pdf_w: emission.pdf_direction,
     };
     let walker = Walker {
-        context,
+        job,
         mode: TransportMode::Importance,
         stream,
         // At least the lens is the camera's.
-        max_vertices: context.job.settings.max_vertices() - 1,
+        max_vertices: job.settings.max_vertices() - 1,
     };
     walker.walk(subpaths, &start, step, &mut stats.rays.light);
 }
 
 /// Draws the start of a light subpath and the ray that leaves it. None: the draw has no density, the light is cut
 /// out or its medium ended before, or a medium without end swallows it.
-fn draw_emission(
-    context: &PathContext<'_>,
-    stream: &SampleStream,
-) -> Option<(Vertex, EmissionSample)> {
-    let scene = context.job.scene;
+fn draw_emission(job: &Job<'_>, stream: &SampleStream) -> Option<(Vertex, EmissionSample)> {
+    let scene = job.scene;
     let at = |purpose| Dimension::at(0, purpose);
     let u_light = || stream.get_1d(at(Purpose::Light));
-    let (light, prob) = context.emission().sample(u_light)?;
+    let (light, prob) = job.emission().sample(u_light)?;
     let u_position = stream.get_2d(at(Purpose::LightPosition));
     let u_direction = stream.get_2d(at(Purpose::LightDirection));
     let lights = scene.light_context();
@@ -119,7 +112,7 @@ fn draw_emission(
     if !scene.is_lit(of_light, &from.at) {
         return None;
     }
-    let mut start = Vertex::on_light(context, light as u32, &from.at, prob * from.pdf);
+    let mut start = Vertex::on_light(job, light as u32, &from.at, prob * from.pdf);
     if start.locus.is_infinite() && !scene.is_open() {
         return None;
     }
@@ -133,7 +126,7 @@ impl Walker<'_> {
         let first = subpaths.vertices.len();
         subpaths.vertices.push(*start);
         let vertices = &mut subpaths.vertices;
-        let escape = if self.context.job.scene.has_media() {
+        let escape = if self.job.scene.has_media() {
             self.extend_in_media(vertices, first, step, rays)
         } else {
             self.extend(vertices, first, step, rays, Self::advance)
@@ -181,8 +174,8 @@ impl Walker<'_> {
     /// Adds vertex number `index`, the surface that `step` leads to.
     #[inline(always)]
     fn advance(&self, vertices: &mut Vec<Vertex>, step: &Step, index: usize) -> Option<End> {
-        let chances = Chances::new(self.stream, index).until(self.context.job.stop);
-        let scene = self.context.job.scene;
+        let chances = Chances::new(self.stream, index).until(self.job.stop);
+        let scene = self.job.scene;
         let Some(hit) = scene.intersect(step.origin, step.direction, chances) else {
             let from = vertices[vertices.len() - 1].locus;
             return Some(End(self.escape(&from, step, None)));
@@ -202,12 +195,12 @@ impl Walker<'_> {
         let from = vertices[vertices.len() - 1].locus;
         let ray = accel::Ray::new(step.origin, step.direction);
         let medium = from.medium_toward(step.direction);
-        let chances = Chances::new(self.stream, index).until(self.context.job.stop);
-        let (scene, wavelengths) = (self.context.job.scene, &self.context.wavelengths);
+        let chances = Chances::new(self.stream, index).until(self.job.stop);
+        let (scene, lanes) = (self.job.scene, self.job.lanes);
         let Advance {
             interaction,
             transmittance,
-        } = scene.advance(&ray, medium, chances, wavelengths);
+        } = scene.advance(&ray, medium, chances, lanes);
         let vertex = match &interaction {
             Interaction::Escape => return Some(End(self.escape(&from, step, Some(transmittance)))),
             Interaction::Surface(hit, media) => {
@@ -215,15 +208,11 @@ impl Walker<'_> {
                 vertex.locus.media = *media;
                 vertex
             }
-            Interaction::Medium(locus, scattering) => Vertex::medium(
-                self.context,
-                *locus,
-                *scattering,
-                -step.direction,
-                step.beta,
-            ),
+            Interaction::Medium(locus, scattering) => {
+                Vertex::medium(self.job, *locus, *scattering, -step.direction, step.beta)
+            }
         };
-        let edge = scene.edge_of(transmittance, [&from, &vertex.locus], wavelengths);
+        let edge = scene.edge_of(transmittance, [&from, &vertex.locus], lanes);
         vertices.push(vertex);
         reach(vertices, step, Some(&edge))
     }
@@ -231,7 +220,7 @@ impl Walker<'_> {
     #[inline(always)]
     fn surface(&self, hit: &SurfaceHit, step: &Step, index: usize) -> Vertex {
         let u_mix = || self.stream.get_1d(Dimension::at(index, Purpose::Mix));
-        Vertex::surface(self.context, hit, -step.direction, step.beta, u_mix)
+        Vertex::surface(self.job, hit, -step.direction, step.beta, u_mix)
     }
 
     /// The escape of a walk from the place `from` past media of this T. None: nothing arrives.
@@ -246,9 +235,9 @@ impl Walker<'_> {
         let mut segment = Segment::along(from, &to, step.direction);
         let mut beta = step.beta;
         if let Some(transmittance) = transmittance {
-            let Self { context, .. } = self;
-            let (scene, wavelengths) = (context.job.scene, &context.wavelengths);
-            let edge = scene.edge_of(transmittance, [from, &to], wavelengths);
+            let Self { job, .. } = self;
+            let (scene, lanes) = (job.scene, job.lanes);
+            let edge = scene.edge_of(transmittance, [from, &to], lanes);
             segment.pass(&edge);
             beta *= edge.walked();
         }
@@ -275,7 +264,7 @@ impl Walker<'_> {
         vertex.went_by_delta = scattered.is_delta;
         vertex.albedo_rev = scattered.albedo_reverse;
         let beta = vertex.beta * scattered.weight;
-        let survival = self.context.job.settings.roulette.survival_prob(
+        let survival = self.job.settings.roulette.survival_prob(
             index - 1,
             vertex.albedo_fwd,
             magnitude(beta) / start,

@@ -8,7 +8,7 @@ pub enum Purpose {
     Film,
     /// Position on the lens (vertex 0 of a camera subpath).
     Lens,
-    /// Wavelengths of the sample (vertex 0 of a camera subpath).
+    /// Wavelengths of a group; red, green and blue need none.
     Wavelengths,
     /// Which light a light subpath starts on.
     Light,

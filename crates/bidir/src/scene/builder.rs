@@ -12,7 +12,7 @@ use crate::material::Material;
 use crate::math::{DAffine3, Vec3};
 use crate::medium::{Medium, MediumId, MediumSides};
 use crate::shape::{Place, Shape};
-use crate::spectrum::{ColorModel, Rgb};
+use crate::spectrum::Rgb;
 use crate::texture::{ColorTexture, FloatTexture, clamped_coverage};
 use thiserror::Error;
 
@@ -104,7 +104,6 @@ impl SceneError {
 #[derive(Debug, Default)]
 pub struct SceneBuilder {
     space: RenderSpace,
-    color: ColorModel,
     shapes: Vec<Shape>,
     surfaces: Vec<Surface>,
     objects: Objects,
@@ -397,7 +396,6 @@ impl SceneBuilder {
             around: MediumId::VACUUM,
             light_media: Vec::new(),
             space: self.space,
-            color: self.color,
             environment: environment.collect(),
             light_groups: self.light_groups,
             group_names: self.group_names,

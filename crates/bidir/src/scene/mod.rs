@@ -32,7 +32,6 @@ use crate::material::Material;
 use crate::math::{Vec2, Vec3};
 use crate::medium::{Medium, MediumId, MediumSides};
 use crate::shape::{Differentials, Shape, SurfacePoint};
-use crate::spectrum::ColorModel;
 use crate::texture::FloatTexture;
 
 /// A primitive of the intersector as a part of a shape.
@@ -104,7 +103,6 @@ pub struct SurfaceHit {
 #[derive(Debug)]
 pub struct Scene {
     space: RenderSpace,
-    color: ColorModel,
     shapes: Vec<Shape>,
     surfaces: Vec<Surface>,
     /// The primitives of the world first, then those of the objects.
@@ -144,12 +142,6 @@ impl Scene {
     #[inline]
     pub fn space(&self) -> &RenderSpace {
         &self.space
-    }
-
-    /// The meaning of the lanes of a spectrum.
-    #[inline]
-    pub fn color(&self) -> ColorModel {
-        self.color
     }
 
     /// All lights.

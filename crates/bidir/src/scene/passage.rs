@@ -8,7 +8,7 @@ use super::{Chances, Presence, Scene, SurfaceHit};
 use crate::locus::{Locus, LocusKind};
 use crate::math::Vec3;
 use crate::medium::{Detail, Drawn, Medium, MediumId, MediumScattering, MediumSides, Stretch};
-use crate::spectrum::{Spectrum, Wavelengths};
+use crate::spectrum::{Lanes, Spectrum};
 use accel::{Hit, Ray, Stop};
 use smallvec::SmallVec;
 use std::cell::RefCell;
@@ -228,6 +228,15 @@ impl Span {
     }
 }
 
+/// Draws the depth where a walk stops.
+fn draw(chances: Chances<'_>, lanes: Lanes) -> Drawn {
+    let [u_lane, u_depth] = chances.flight();
+    Drawn {
+        lane: lanes.pick_lane(u_lane),
+        depth: -libm::log1pf(-u_depth),
+    }
+}
+
 impl Scene {
     /// True where rays may go through media.
     #[inline]
@@ -282,12 +291,12 @@ impl Scene {
         medium: MediumId,
         stretch: &Stretch<'_>,
         detail: Detail,
-        wavelengths: &Wavelengths,
+        lanes: Lanes,
     ) -> Depth {
-        let lanes = |rgb| self.color.unbounded(rgb, wavelengths);
+        let unbounded = |rgb| lanes.unbounded(rgb);
         let medium = self.medium(medium);
         medium.map_or(Depth::ZERO, |medium| {
-            Depth::of(medium, medium.depth(stretch, detail, lanes))
+            Depth::of(medium, medium.depth(stretch, detail, unbounded))
         })
     }
 
@@ -298,27 +307,27 @@ impl Scene {
         ray: &Ray,
         medium: MediumId,
         chances: Chances<'_>,
-        wavelengths: &Wavelengths,
+        lanes: Lanes,
     ) -> Advance {
         let mut crossings = Crossings::new();
         let (hit, interface) = self.first(ray, chances, &mut crossings);
         let end = hit.map_or(f32::INFINITY, |hit| hit.t);
         let passage = Passage::new(medium, &mut crossings, end);
-        let lanes = |rgb| self.color.unbounded(rgb, wavelengths);
+        let unbounded = |rgb| lanes.unbounded(rgb);
         let mut drawn = None;
         let mut depth = Depth::ZERO;
         for span in passage.spans(end) {
             let Some(index) = span.medium.index() else {
                 continue;
             };
-            let drawn = drawn.get_or_insert_with(|| self.draw(chances));
+            let drawn = drawn.get_or_insert_with(|| draw(chances, lanes));
             let medium = &self.media[index];
-            let flight = medium.fly(&span.of(ray, 1.0), *drawn, lanes);
+            let flight = medium.fly(&span.of(ray, 1.0), *drawn, unbounded);
             let part = Depth::of(medium, flight.depth);
             depth = depth.and(part);
             if let Some(t) = flight.reached {
                 return Advance {
-                    interaction: self.collide(ray, t, index, wavelengths),
+                    interaction: self.collide(ray, t, index, lanes),
                     transmittance: depth.transmittance(),
                 };
             }
@@ -367,39 +376,25 @@ impl Scene {
         }
     }
 
-    /// The depth where a walk stops.
-    fn draw(&self, chances: Chances<'_>) -> Drawn {
-        let [u_lane, u_depth] = chances.flight();
-        Drawn {
-            lane: self.color.pick_lane(u_lane),
-            depth: -libm::log1pf(-u_depth),
-        }
-    }
-
     /// The interaction with medium number `index` at `t` of a ray.
-    fn collide(&self, ray: &Ray, t: f32, index: usize, wavelengths: &Wavelengths) -> Interaction {
+    fn collide(&self, ray: &Ray, t: f32, index: usize, lanes: Lanes) -> Interaction {
         let point = ray.origin + ray.direction * t;
         let medium = MediumId::new(index).unwrap_or_default();
-        let scattering = self.media[index].scattering(point, self.color, wavelengths);
+        let scattering = self.media[index].scattering(point, lanes);
         Interaction::Medium(Locus::in_medium(point, medium), scattering)
     }
 
     /// The media between two ends, of which at most one is at infinity. None: something opaque is there, nothing
     /// arrives, or nobody waits for it, because `stop` was asked for.
     #[inline(never)]
-    pub fn edge(
-        &self,
-        [a, b]: [&Locus; 2],
-        wavelengths: &Wavelengths,
-        stop: Stop<'_>,
-    ) -> Option<Edge> {
+    pub fn edge(&self, [a, b]: [&Locus; 2], lanes: Lanes, stop: Stop<'_>) -> Option<Edge> {
         let ray = super::visibility::shadow_ray(a, b);
         let mut crossings = Crossings::new();
         let visible = self.visible(&ray, stop, &mut crossings);
         if visible <= 0.0 || stop.is_asked() {
             return None;
         }
-        let edge = self.edge_across(&ray, &mut crossings, [a, b], wavelengths);
+        let edge = self.edge_across(&ray, &mut crossings, [a, b], lanes);
         let arrives = edge.transmittance * visible;
         (!arrives.is_black()).then_some(Edge {
             transmittance: arrives,
@@ -409,14 +404,9 @@ impl Scene {
 
     /// The media between two ends if they see each other, where the scene [foresees](Self::foresees_media) them. None:
     /// nothing arrives.
-    pub(crate) fn foreseen_edge(
-        &self,
-        a: &Locus,
-        b: &Locus,
-        wavelengths: &Wavelengths,
-    ) -> Option<Edge> {
+    pub(crate) fn foreseen_edge(&self, a: &Locus, b: &Locus, lanes: Lanes) -> Option<Edge> {
         let ray = super::visibility::shadow_ray(a, b);
-        let edge = self.edge_across(&ray, &mut Crossings::new(), [a, b], wavelengths);
+        let edge = self.edge_across(&ray, &mut Crossings::new(), [a, b], lanes);
         (!edge.transmittance.is_black()).then_some(edge)
     }
 
@@ -427,14 +417,14 @@ impl Scene {
         ray: &Ray,
         crossings: &mut Crossings,
         [a, b]: [&Locus; 2],
-        wavelengths: &Wavelengths,
+        lanes: Lanes,
     ) -> Edge {
         let (start, end) = if a.is_infinite() { (b, a) } else { (a, b) };
         let unit = ray.direction.length();
         let passage = Passage::new(start.medium_toward(ray.direction), crossings, ray.t_max);
         let depths = passage
             .spans(ray.t_max)
-            .map(|span| self.depth(span.medium, &span.of(ray, unit), Detail::Full, wavelengths));
+            .map(|span| self.depth(span.medium, &span.of(ray, unit), Detail::Full, lanes));
         let depth = depths.fold(Depth::ZERO, Depth::and);
         let transmittance = depth.transmittance();
         let is_even = self.medium(passage.start).is_none_or(Medium::is_even);
@@ -444,14 +434,14 @@ impl Scene {
                 && is_even
                 && is_one
                 && transmittance.is_guessable(),
-            ..self.edge_of(transmittance, [a, b], wavelengths)
+            ..self.edge_of(transmittance, [a, b], lanes)
         }
     }
 
     /// A guess at the media between two ends from those next to them: the thinner of both, all the way. Something
     /// always arrives.
     #[inline(never)]
-    pub(crate) fn guessed_edge(&self, a: &Locus, b: &Locus, wavelengths: &Wavelengths) -> Edge {
+    pub(crate) fn guessed_edge(&self, a: &Locus, b: &Locus, lanes: Lanes) -> Edge {
         let ray = super::visibility::shadow_ray(a, b);
         let stretch = Stretch {
             ray: &ray,
@@ -463,7 +453,7 @@ impl Scene {
             from.medium_toward(ray.direction),
             to.medium_toward(-ray.direction),
         ];
-        let through = |medium| self.depth(medium, &stretch, Detail::Means, wavelengths);
+        let through = |medium| self.depth(medium, &stretch, Detail::Means, lanes);
         let near = through(media[0]);
         let depth = if media[0] == media[1] {
             near
@@ -472,7 +462,7 @@ impl Scene {
         };
         let Transmittance { all, drawn } = depth.transmittance();
         let [all, drawn] = [all, drawn].map(|t| t.map(|lane| lane.max(LEAST_GUESS)));
-        self.edge_of(Transmittance { all, drawn }, [a, b], wavelengths)
+        self.edge_of(Transmittance { all, drawn }, [a, b], lanes)
     }
 
     /// The edge of which T is known. Its densities are 0 where nothing arrives.
@@ -481,18 +471,17 @@ impl Scene {
         &self,
         Transmittance { all, drawn }: Transmittance,
         [a, b]: [&Locus; 2],
-        wavelengths: &Wavelengths,
+        lanes: Lanes,
     ) -> Edge {
         let density = |end: &Locus| match end.kind {
             _ if all.is_black() => 0.0,
             LocusKind::Medium => {
                 let medium = self.medium(end.media.outside);
-                let extinction = medium.map_or(Spectrum::ZERO, |medium| {
-                    medium.extinction(end.point, self.color, wavelengths)
-                });
-                self.color.mean(extinction * drawn)
+                let extinction =
+                    medium.map_or(Spectrum::ZERO, |medium| medium.extinction(end.point, lanes));
+                lanes.mean(extinction * drawn)
             }
-            LocusKind::Surface | LocusKind::Space | LocusKind::Infinity => self.color.mean(drawn),
+            LocusKind::Surface | LocusKind::Space | LocusKind::Infinity => lanes.mean(drawn),
         };
         Edge {
             transmittance: all,

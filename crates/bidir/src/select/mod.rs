@@ -42,6 +42,8 @@ pub struct Candidate {
     pub light_vertex: u32,
 }
 
+const _: () = assert!(size_of::<Candidate>() == 48);
+
 impl Candidate {
     /// Keeps an estimate away from zero: every candidate has a chance to be chosen.
     #[inline]

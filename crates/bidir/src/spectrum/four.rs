@@ -1,6 +1,6 @@
 //! Four spectra at once: a lane of light of each in a register.
 
-use super::{ColorModel, Spectrum};
+use super::{Lanes, Spectrum};
 use crate::math::lanes::transpose;
 use glam::{BVec4A, Vec4};
 use std::ops::Mul;
@@ -43,9 +43,9 @@ impl FourSpectra {
 
     /// The means of the lanes of the four that carry light, without signs.
     #[inline]
-    pub(crate) fn abs_means(self, color: ColorModel) -> Vec4 {
-        match color {
-            ColorModel::Rgb => {
+    pub(crate) fn abs_means(self, lanes: Lanes) -> Vec4 {
+        match lanes {
+            Lanes::Rgb => {
                 let [r, g, b, _] = self.0.map(Vec4::abs);
                 (r + g + b) * (1.0 / 3.0)
             }
@@ -86,8 +86,8 @@ mod tests {
         ];
         let (by, scales) = (Spectrum([0.3, 0.7, 0.9, 1.0]), [3.0, 0.5, 1e20, 1.0]);
         let four = FourSpectra::of(spectra) * by * Vec4::from_array(scales);
-        let color = ColorModel::Rgb;
-        let means = four.abs_means(color);
+        let lanes = Lanes::Rgb;
+        let means = four.abs_means(lanes);
         for i in 0..4 {
             let alone = spectra[i] * by * scales[i];
             assert_eq!(
@@ -96,7 +96,7 @@ mod tests {
             );
             assert_eq!(four.are_black().test(i), alone.is_black());
             assert_eq!(four.are_within(1e20).test(i), alone.is_within(1e20));
-            let mean = color.mean(alone.map(f32::abs));
+            let mean = lanes.mean(alone.map(f32::abs));
             assert_eq!(means[i].to_bits(), mean.to_bits());
         }
     }

@@ -3,7 +3,7 @@
 //! A texture is a function of the point, its normal and its parameters, and of how wide a pixel is
 //! there for the camera ([`TexturePoint`]); it never depends on how a walk arrived, so the integrand
 //! stays one function of the path. Colours are linear Rec. 709; the material that asks chooses the
-//! [`ColorModel`](crate::spectrum::ColorModel) conversion they go through.
+//! [`Lanes`](crate::spectrum::Lanes) conversion they go through.
 //!
 //! Numbers and colours share one implementation over [`Value`]. Evaluation allocates nothing, and
 //! takes time in proportion to [`Texture::size`].

@@ -3,38 +3,36 @@
 use super::Shot;
 use bidir::guide::{Cells, LightProposals, PairSums};
 use bidir::light::LightChoice;
-use bidir::path::{
-    Job, PathContext, PathSettings, Subpath, Subpaths, Vertex, camera_subpath, light_subpath,
-};
+use bidir::path::{Job, PathSettings, Subpath, Subpaths, Vertex, camera_subpath, light_subpath};
 use bidir::sampler::{Dimension, Domain, Purpose, Sampler, SamplerKind};
 use bidir::scene::Edge;
-use bidir::spectrum::{Spectrum, Wavelengths};
+use bidir::spectrum::Spectrum;
 use bidir::stats::Stats;
 
 /// How many pairs a scene gets.
 const PAIRS: u64 = 400;
 
 /// Walks the light subpath and the camera subpath of a pair.
-fn walk(context: &PathContext<'_>, index: u64, [light, camera]: [&mut Subpaths; 2]) {
+fn walk(job: &Job<'_>, index: u64, [light, camera]: [&mut Subpaths; 2]) {
     let sampler = Sampler::new(SamplerKind::Independent, 5);
     let stream = sampler.stream(Domain::Camera, 0, index);
     let raster = stream.get_2d(Dimension::at(0, Purpose::Film)) * 8.0;
     let lens = stream.get_2d(Dimension::at(0, Purpose::Lens));
-    let ray = context.job.view.camera().sample_ray(raster, || lens);
+    let ray = job.view.camera().sample_ray(raster, || lens);
     let mut stats = Stats::default();
     camera.clear();
-    camera_subpath(context, &stream, &ray, 1.0, camera, &mut stats);
+    camera_subpath(job, &stream, &ray, 1.0, camera, &mut stats);
     light.clear();
     let stream = sampler.stream(Domain::Light, 0, index);
-    light_subpath(context, &stream, light, &mut stats);
+    light_subpath(job, &stream, light, &mut stats);
 }
 
 /// The media between two vertices. None: nothing arrives, as far as a scene with media says so; one without says
 /// nothing.
-pub(crate) fn edge(context: &PathContext<'_>, a: &Vertex, b: &Vertex) -> Option<Edge> {
-    let scene = context.job.scene;
+pub(crate) fn edge(job: &Job<'_>, a: &Vertex, b: &Vertex) -> Option<Edge> {
+    let scene = job.scene;
     if scene.has_media() {
-        return scene.edge([&a.locus, &b.locus], &context.wavelengths, context.job.stop);
+        return scene.edge([&a.locus, &b.locus], job.lanes, job.stop);
     }
     Some(Edge {
         transmittance: Spectrum::splat(1.0),
@@ -44,11 +42,11 @@ pub(crate) fn edge(context: &PathContext<'_>, a: &Vertex, b: &Vertex) -> Option<
     })
 }
 
-/// Calls `f` with the context of a scene and a number of subpath pairs.
+/// Calls `f` with the job of a scene and a number of subpath pairs.
 pub(crate) fn for_each_pair(
     settings: &PathSettings,
     scene: &Shot,
-    f: impl FnMut(&PathContext<'_>, &Subpath<'_>, &Subpath<'_>),
+    f: impl FnMut(&Job<'_>, &Subpath<'_>, &Subpath<'_>),
 ) {
     let job = Job::of_own_subpaths(&scene.scene, &scene.view, settings);
     for_some_pairs(PAIRS, job, f);
@@ -78,19 +76,15 @@ pub(crate) fn some_light_start(scene: &Shot) -> LightChoice {
     LightChoice::with_weights(lights.map(|light| (7 - light * 5 % 7) as f32))
 }
 
-/// Calls `f` with the context of `job` and the first `pairs` pairs of subpaths.
+/// Calls `f` with `job` and the first `pairs` pairs of subpaths.
 pub(crate) fn for_some_pairs(
     pairs: u64,
     job: Job<'_>,
-    mut f: impl FnMut(&PathContext<'_>, &Subpath<'_>, &Subpath<'_>),
+    mut f: impl FnMut(&Job<'_>, &Subpath<'_>, &Subpath<'_>),
 ) {
-    let context = PathContext {
-        job,
-        wavelengths: Wavelengths::default(),
-    };
     let [mut light, mut camera] = [Subpaths::default(), Subpaths::default()];
     for index in 0..pairs {
-        walk(&context, index, [&mut light, &mut camera]);
-        f(&context, &light.get(0), &camera.get(0));
+        walk(&job, index, [&mut light, &mut camera]);
+        f(&job, &light.get(0), &camera.get(0));
     }
 }

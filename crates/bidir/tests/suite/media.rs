@@ -16,7 +16,7 @@ use bidir::math::{Affine3A, Vec3};
 use bidir::medium::{Coefficients, Grid, HenyeyGreenstein, Medium, MediumId, MediumSides};
 use bidir::select::ShadowRays;
 use bidir::shape::{Orientation, Shape, Sphere};
-use bidir::spectrum::{Rgb, Wavelengths};
+use bidir::spectrum::{Lanes, Rgb};
 use bidir::texture::FloatTexture;
 
 const ESTIMATORS: [IntegratorKind; 4] = [
@@ -246,7 +246,7 @@ fn light_that_passes_a_hole_in_a_boundary_is_in_the_medium_behind_it() {
     let scene = finish(builder).scene;
     let [near, far] = [-1.0, 2.0].map(|z| Locus::in_space(Vec3::new(0.1, 0.2, z)));
     for (a, b) in [(&near, &far), (&far, &near)] {
-        let edge = scene.edge([a, b], &Wavelengths::default(), Stop::NEVER);
+        let edge = scene.edge([a, b], Lanes::Rgb, Stop::NEVER);
         let arrives = edge.expect("half of the light passes").transmittance[0];
         assert!((arrives - 0.5 * libm::expf(-1.0)).abs() < 1e-4, "{arrives}");
     }

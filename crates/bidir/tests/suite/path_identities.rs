@@ -13,8 +13,8 @@ use bidir::light::Part;
 use bidir::math::Vec2;
 use bidir::math::Vec3;
 use bidir::path::{
-    Job, JoinedPath, LightChoiceKind, LightPointChoice, MAX_VERTICES, MisHeuristic, PathContext,
-    PathDensities, PathRoulette, PathSettings, SampleCounts, Vertex,
+    Job, JoinedPath, LightChoiceKind, LightPointChoice, MAX_VERTICES, MisHeuristic, PathDensities,
+    PathRoulette, PathSettings, SampleCounts, Vertex,
 };
 use bidir::spectrum::Spectrum;
 
@@ -29,38 +29,30 @@ fn settings(mis: MisHeuristic, light_point: LightPointChoice) -> PathSettings {
 }
 
 /// The part of roulette in the density of vertex `index` of a walk.
-fn survival(context: &PathContext<'_>, index: usize, before: &Vertex) -> f32 {
+fn survival(job: &Job<'_>, index: usize, before: &Vertex) -> f32 {
     if index < 2 {
         return 1.0;
     }
     let albedo = before.albedo(before.wo).max_lane();
-    context
-        .job
-        .settings
-        .roulette
-        .density_factor(index - 2, || albedo)
+    job.settings.roulette.density_factor(index - 2, || albedo)
 }
 
 /// Walks again over `points`, the first of which is an end with its own `pdf_fwd` and `beta`:
 /// everything that a walk stores is computed from scratch. None: no walk goes there.
-fn rewalk(
-    context: &PathContext<'_>,
-    points: &[Vertex],
-    mode: TransportMode,
-) -> Option<Vec<Vertex>> {
+fn rewalk(job: &Job<'_>, points: &[Vertex], mode: TransportMode) -> Option<Vec<Vertex>> {
     let mut walk: Vec<Vertex> = Vec::new();
     for (i, point) in points.iter().enumerate() {
         let mut vertex = *point;
         if i > 0 {
             let before = walk[i - 1];
             let mut segment = before.segment_to(&vertex);
-            let edge = edge(context, &before, &vertex)?;
+            let edge = edge(job, &before, &vertex)?;
             segment.pass(&edge);
             vertex.wo = -segment.w;
-            vertex.pdf_fwd = before.turn(before.wo, segment.w, mode).pdf(context) * segment.to_b;
+            vertex.pdf_fwd = before.turn(before.wo, segment.w, mode).pdf(job) * segment.to_b;
             vertex.to_previous = segment.to_a;
-            let roulette = survival(context, i, &before);
-            let scatter = before.turn(before.wo, -vertex.wo, mode).scatter(context);
+            let roulette = survival(job, i, &before);
+            let scatter = before.turn(before.wo, -vertex.wo, mode).scatter(job);
             let step = segment.geometry_term / (vertex.pdf_fwd * roulette);
             // The first camera density counts samples per pixel, and so does importance.
             vertex.beta = before.beta * scatter * edge.transmittance * step;
@@ -72,8 +64,8 @@ fn rewalk(
         let (next, vertex) = (walk[i + 1], walk[i]);
         if let Some(after) = walk.get(i + 2).copied() {
             let (wi, mut back) = (next.segment_to(&after).w, next.segment_to(&vertex));
-            back.pass(&edge(context, &next, &vertex)?);
-            walk[i].pdf_rev = next.turn(wi, back.w, mode.reversed()).pdf(context) * back.to_b;
+            back.pass(&edge(job, &next, &vertex)?);
+            walk[i].pdf_rev = next.turn(wi, back.w, mode.reversed()).pdf(job) * back.to_b;
             walk[i + 1].albedo_rev = next.albedo(wi).max_lane();
         }
     }
@@ -133,11 +125,11 @@ fn check_stored(scene: &Shot) {
     let settings = settings(MisHeuristic::Balance, LightPointChoice::Fresh);
     let mut comparisons: [Comparisons; 5] = Default::default();
     let [pdf_fwd, pdf_rev, albedo_fwd, albedo_rev, beta] = &mut comparisons;
-    for_each_pair(&settings, scene, |context, light, camera| {
+    for_each_pair(&settings, scene, |job, light, camera| {
         let modes = [TransportMode::Importance, TransportMode::Radiance];
         for (subpath, mode) in [light, camera].into_iter().zip(modes) {
             let stored = subpath.vertices;
-            let Some(fresh) = rewalk(context, stored, mode) else {
+            let Some(fresh) = rewalk(job, stored, mode) else {
                 continue;
             };
             for i in 1..stored.len() {
@@ -169,11 +161,11 @@ fn check_stored(scene: &Shot) {
 }
 
 /// The whole path as points, from the light, with ends that have the densities of subpaths.
-fn whole_path(context: &PathContext<'_>, light: &[Vertex], camera: &[Vertex]) -> Vec<Vertex> {
+fn whole_path(job: &Job<'_>, light: &[Vertex], camera: &[Vertex]) -> Vec<Vertex> {
     let mut path: Vec<Vertex> = light.iter().chain(camera.iter().rev()).copied().collect();
     let at = path[0].light_point();
     let index = path[0].light.expect("a light subpath begins on a light");
-    path[0] = Vertex::light(context, index, &at);
+    path[0] = Vertex::light(job, index, &at);
     path[0].beta = Spectrum::splat(1.0 / path[0].pdf_fwd);
     // An end of a subpath is connected, whatever its walk did next.
     for vertex in &mut path {
@@ -191,25 +183,22 @@ fn took_a_dirac_lobe(subpath: &[Vertex]) -> bool {
 }
 
 /// The density with which strategy s = 1 draws x_0.
-fn next_event_density(context: &PathContext<'_>, path: &[Vertex]) -> f32 {
+fn next_event_density(job: &Job<'_>, path: &[Vertex]) -> f32 {
     let index = path[0].light.expect("x_0 is on a light");
-    let (light, lights) = (
-        context.job.scene.light(index),
-        context.job.scene.light_context(),
-    );
+    let (light, lights) = (job.scene.light(index), job.scene.light_context());
     let at = path[0].light_point();
-    let by_power = context.job.scene.light_choice();
-    let emission = context.job.guide.light_start.unwrap_or(by_power);
-    if context.job.settings.light_point == LightPointChoice::Shared || path.len() == 2 {
+    let by_power = job.scene.light_choice();
+    let emission = job.guide.light_start.unwrap_or(by_power);
+    if job.settings.light_point == LightPointChoice::Shared || path.len() == 2 {
         return emission.prob(index as usize) * light.pdf_position(&lights, &at);
     }
     let x1 = &path[1];
-    let (part, prob) = match context.job.settings.light_choice {
+    let (part, prob) = match job.settings.light_choice {
         LightChoiceKind::Power => (Part::Whole, by_power.prob(index as usize)),
         LightChoiceKind::Tree => {
             // Light leaves on the side that it goes on at.
             let receiver = || x1.receiver(path[2].locus.point - x1.locus.point);
-            let tree = context.job.scene.light_tree();
+            let tree = job.scene.light_tree();
             let chosen = tree.find(receiver, index, at.primitive);
             (chosen.part, chosen.prob)
         }
@@ -219,14 +208,14 @@ fn next_event_density(context: &PathContext<'_>, path: &[Vertex]) -> f32 {
 
 /// For every strategy that can make the path: its index, its weight, and f / (p n) with the
 /// density p as the product over the vertices. None: nothing arrives on one of its segments.
-fn strategies(context: &PathContext<'_>, path: &[Vertex]) -> Option<Vec<(usize, f32, Spectrum)>> {
+fn strategies(job: &Job<'_>, path: &[Vertex]) -> Option<Vec<(usize, f32, Spectrum)>> {
     let n = path.len();
     let reversed: Vec<Vertex> = path.iter().rev().copied().collect();
     let mut densities = PathDensities::default();
     let mut result = Vec::new();
     let is_drawn = |walk: &[Vertex]| walk.iter().all(|vertex| vertex.pdf_fwd > 0.0);
     for s in 0..n {
-        let camera = rewalk(context, &reversed[..n - s], TransportMode::Radiance)?;
+        let camera = rewalk(job, &reversed[..n - s], TransportMode::Radiance)?;
         // Walks from a light end where its shading normal faces away.
         if !is_drawn(&camera) {
             continue;
@@ -235,43 +224,43 @@ fn strategies(context: &PathContext<'_>, path: &[Vertex]) -> Option<Vec<(usize, 
             let mut x0 = path[0];
             x0.pdf_rev = camera[n - 1].pdf_fwd;
             x0.to_previous = camera[n - 1].to_previous;
-            let w = JoinedPath::hit(&x0, &camera[..n - 1]).weight(context, &mut densities);
+            let w = JoinedPath::hit(&x0, &camera[..n - 1]).weight(job, &mut densities);
             let turn = x0.turn(x0.wo, camera[n - 1].wo, TransportMode::Importance);
-            let emitted = turn.scatter(context);
+            let emitted = turn.scatter(job);
             result.push((s, w, camera[n - 1].beta * emitted));
             continue;
         }
-        let mut light = rewalk(context, &path[..s], TransportMode::Importance)?;
+        let mut light = rewalk(job, &path[..s], TransportMode::Importance)?;
         if !is_drawn(&light) {
             continue;
         }
-        let edge = edge(context, &path[s - 1], &path[s])?;
+        let edge = edge(job, &path[s - 1], &path[s])?;
         let mut joined = JoinedPath::connection(&light, &camera);
         joined.pass(&edge);
-        let w = joined.weight(context, &mut densities);
+        let w = joined.weight(job, &mut densities);
         if s == 1 {
-            let density = next_event_density(context, path);
+            let density = next_event_density(job, path);
             light[0].beta = Spectrum::splat(1.0 / density);
         }
-        let count = count(context, s, path) as f32;
-        let value = JoinedPath::connection(&light, &camera).contribution(context);
+        let count = count(job, s, path) as f32;
+        let value = JoinedPath::connection(&light, &camera).contribution(job);
         result.push((s, w, value * edge.transmittance / count));
     }
     Some(result)
 }
 
 /// n_s of these connections.
-fn count(context: &PathContext<'_>, s: usize, path: &[Vertex]) -> f64 {
+fn count(job: &Job<'_>, s: usize, path: &[Vertex]) -> f64 {
     let SampleCounts {
         next_events,
         light_subpaths,
         ..
-    } = context.job.counts;
-    let is_guided = context.job.guide.proposals.is_some();
+    } = job.counts;
+    let is_guided = job.guide.proposals.is_some();
     match (s, path.len() - s) {
         (_, 1) => light_subpaths,
         (1, t) => next_events[usize::from(t > 2)],
-        (s, t) if s > 0 && is_guided => context.count(s, t, [path[s - 1].cell, path[s].cell]),
+        (s, t) if s > 0 && is_guided => job.count(s, t, [path[s - 1].cell, path[s].cell]),
         _ => 1.0,
     }
 }
@@ -284,19 +273,19 @@ fn check_paths(mis: MisHeuristic, light_point: LightPointChoice, scene: &Shot) {
 fn check_job(job: Job<'_>) {
     let settings = job.settings;
     let mut paths = 0;
-    for_some_pairs(400, job, |context, light, camera| {
+    for_some_pairs(400, job, |job, light, camera| {
         for s in 1..=light.vertices.len() {
             for t in 1..=camera.vertices.len() {
                 let (light, camera) = (&light.vertices[..s], &camera.vertices[..t]);
                 let path = JoinedPath::connection(light, camera);
-                let contributes = !path.contribution(context).is_black();
+                let contributes = !path.contribution(job).is_black();
                 // Such a step cannot be made again from points alone.
                 let is_bound = took_a_dirac_lobe(light) || took_a_dirac_lobe(camera);
                 if s + t > settings.max_vertices() || !contributes || is_bound {
                     continue;
                 }
-                let path = whole_path(context, light, camera);
-                paths += usize::from(check_path(context, &path, settings.mis));
+                let path = whole_path(job, light, camera);
+                paths += usize::from(check_path(job, &path, settings.mis));
             }
         }
     });
@@ -305,8 +294,8 @@ fn check_job(job: Job<'_>) {
 
 /// Weights sum to 1, f is the same whatever strategy makes the path, and under the balance
 /// heuristic w_s / (n_s p_s) is the same for all. False: there is no such path.
-fn check_path(context: &PathContext<'_>, path: &[Vertex], mis: MisHeuristic) -> bool {
-    let Some(all) = strategies(context, path) else {
+fn check_path(job: &Job<'_>, path: &[Vertex], mis: MisHeuristic) -> bool {
+    let Some(all) = strategies(job, path) else {
         return false;
     };
     let possible: Vec<_> = all
@@ -419,7 +408,7 @@ fn proposals_are_one_function_of_the_path() {
 fn densities_of_points_in_front_of_each_other_are_reciprocal() {
     // G is symmetric, and a walk's first camera density is the raster's Jacobian.
     let settings = settings(MisHeuristic::Balance, LightPointChoice::Fresh);
-    for_each_pair(&settings, &common::room(0.0), |context, light, camera| {
+    for_each_pair(&settings, &common::room(0.0), |job, light, camera| {
         let (z, y) = (
             &light.vertices[0],
             &camera.vertices[camera.vertices.len() - 1],
@@ -427,8 +416,7 @@ fn densities_of_points_in_front_of_each_other_are_reciprocal() {
         let [there, back] = [z.segment_to(y), y.segment_to(z)];
         assert_close(there.geometry_term, back.geometry_term, "G");
         if let [lens, first, ..] = camera.vertices {
-            let raster = context
-                .job
+            let raster = job
                 .view
                 .camera()
                 .raster(lens.locus.point, lens.segment_to(first).w);

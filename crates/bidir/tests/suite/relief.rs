@@ -16,11 +16,11 @@ use bidir::material::{
 };
 
 use bidir::math::{Affine3A, PI, Vec2, Vec3};
-use bidir::path::{Job, PathContext, PathSettings, Scattering, Vertex};
+use bidir::path::{Job, PathSettings, Scattering, Vertex};
 use bidir::sampler::{Domain, Sampler, SamplerKind};
 use bidir::scene::{Chances, SceneBuilder};
 use bidir::shape::Shape;
-use bidir::spectrum::{Spectrum, Wavelengths};
+use bidir::spectrum::Spectrum;
 use bidir::texture::{
     Beyond, Cells, Change, Checkerboard, ColorTexture, FloatTexture, Image, ImageFilter, ImageMap,
     Mapping, Noise, NoiseKind, TextureSpace, Wrap,
@@ -164,13 +164,13 @@ fn relief_changes_the_picture() {
 }
 
 /// The vertex where a ray from `origin` meets the floor at `target`.
-fn vertex(context: &PathContext<'_>, origin: Vec3, target: Vec3) -> Vertex {
+fn vertex(job: &Job<'_>, origin: Vec3, target: Vec3) -> Vertex {
     let stream = Sampler::new(SamplerKind::Independent, 1).stream(Domain::Camera, 0, 0);
     let direction = (target - origin).normalize();
     let chances = Chances::new(&stream, 1);
-    let hit = context.job.scene.intersect(origin, direction, chances);
+    let hit = job.scene.intersect(origin, direction, chances);
     let hit = hit.expect("the floor is there");
-    Vertex::surface(context, &hit, -direction, Spectrum::ONE, || 0.9)
+    Vertex::surface(job, &hit, -direction, Spectrum::ONE, || 0.9)
 }
 
 /// The frame and the albedo of a point are the same from wherever a walk comes.
@@ -180,18 +180,15 @@ fn a_point_looks_the_same_to_every_walk() {
     add_floor(&mut builder, floor());
     let floor = builder.build().expect("the floor is valid");
     let settings = PathSettings::default();
-    let context = PathContext {
-        job: Job::of_own_subpaths(&floor.scene, &floor.view, &settings),
-        wavelengths: Wavelengths::default(),
-    };
+    let job = Job::of_own_subpaths(&floor.scene, &floor.view, &settings);
     for i in 0..64 {
         let along = Vec2::new(
             (0.3 + 0.618 * i as f32).fract(),
             (0.1 + 0.414 * i as f32).fract(),
         );
         let target = Vec3::new(-1.7 + 3.4 * along.x, -1.3, -1.3 + 2.9 * along.y);
-        let near = vertex(&context, target + Vec3::new(0.01, 0.02, 0.01), target);
-        let far = vertex(&context, target + Vec3::new(7.0, 40.0, -9.0), target);
+        let near = vertex(&job, target + Vec3::new(0.01, 0.02, 0.01), target);
+        let far = vertex(&job, target + Vec3::new(7.0, 40.0, -9.0), target);
         let [near, far] = [near, far].map(|vertex| match vertex.scattering {
             Scattering::Surface(bsdf) => (vertex.frame.z, bsdf.albedo(Vec3::Z)[0]),
             Scattering::Camera | Scattering::Light | Scattering::Medium(_) => {
@@ -206,21 +203,14 @@ fn a_point_looks_the_same_to_every_walk() {
 }
 
 /// Returns the integral over directions above the floor of `value`, at the point of this material that is seen along `wo`.
-fn above(
-    material: Material,
-    wo: Vec3,
-    value: impl Fn(&Vertex, &PathContext<'_>, Vec3) -> f32,
-) -> f32 {
+fn above(material: Material, wo: Vec3, value: impl Fn(&Vertex, &Job<'_>, Vec3) -> f32) -> f32 {
     let mut builder = builder(SIZE, 0.0);
     add_floor(&mut builder, material);
     let floor = builder.build().expect("the floor is valid");
     let settings = PathSettings::default();
-    let context = PathContext {
-        job: Job::of_own_subpaths(&floor.scene, &floor.view, &settings),
-        wavelengths: Wavelengths::default(),
-    };
+    let job = Job::of_own_subpaths(&floor.scene, &floor.view, &settings);
     let target = Vec3::new(0.2, -1.3, 0.3);
-    let seen = vertex(&context, target + wo, target);
+    let seen = vertex(&job, target + wo, target);
     let n = 200;
     let value = |i: i32| {
         // Even over the upper hemisphere.
@@ -228,16 +218,16 @@ fn above(
         let (y, phi) = (at(i % n, n), 2.0 * PI * at(i / n, 2 * n));
         let r = (1.0 - y * y).sqrt();
         let wi = Vec3::new(r * libm::cosf(phi), y, r * libm::sinf(phi));
-        value(&seen, &context, wi) * 2.0 * PI
+        value(&seen, &job, wi) * 2.0 * PI
     };
     (0..2 * n * n).map(value).sum::<f32>() / (2 * n * n) as f32
 }
 
 /// The light that a point under a slant sends along `wo` in a furnace: the mean weight of walks.
 fn furnace(material: Material, wo: Vec3) -> f32 {
-    above(material, wo, |seen, context, wi| {
+    above(material, wo, |seen, job, wi| {
         let turn = seen.turn(seen.wo, wi, TransportMode::Radiance);
-        turn.scatter(context)[0] * wi.y
+        turn.scatter(job)[0] * wi.y
     })
 }
 
@@ -248,14 +238,10 @@ fn densities_of_light_walks_under_a_slant_integrate_to_one() {
     let wo = Vec3::new(0.3, 0.9, -0.2).normalize();
     for (x, y) in [(0.0, 0.0), (0.4, 0.4), (0.0, -0.6), (-0.9, 0.45)] {
         let relief = Relief::NormalMap(common::slant(x, y));
-        let drawn = above(
-            diffuse([0.5; 3]).embossed(relief),
-            wo,
-            |seen, context, wi| {
-                let turn = seen.turn(seen.wo, wi, TransportMode::Importance);
-                turn.pdf(context)
-            },
-        );
+        let drawn = above(diffuse([0.5; 3]).embossed(relief), wo, |seen, job, wi| {
+            let turn = seen.turn(seen.wo, wi, TransportMode::Importance);
+            turn.pdf(job)
+        });
         assert!((drawn - 1.0).abs() < 2e-3, "{x}, {y}: {drawn}");
     }
 }

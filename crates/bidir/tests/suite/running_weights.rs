@@ -10,8 +10,8 @@ use bidir::light::{DistantLight, InfiniteLight, Light, PointLight};
 use bidir::math::{Affine3A, Vec2, Vec3};
 use bidir::path::{
     Arrival, DiffuseEnd, Job, JoinedPath, Junction, LightChoiceKind, LightPointChoice,
-    MisHeuristic, PathContext, PathDensities, PathRoulette, PathSettings, PathSums, RunningSums,
-    SampleCounts, Strategies, Subpath, Vertex, Weights, sample_next_event,
+    MisHeuristic, PathDensities, PathRoulette, PathSettings, PathSums, RunningSums, SampleCounts,
+    Strategies, Subpath, Vertex, Weights, sample_next_event,
 };
 use bidir::shape::Shape;
 use bidir::spectrum::Spectrum;
@@ -39,84 +39,74 @@ struct Comparison {
 
 impl Comparison {
     #[track_caller]
-    fn compare(&mut self, context: &PathContext<'_>, path: &JoinedPath<'_>) {
+    fn compare(&mut self, job: &Job<'_>, path: &JoinedPath<'_>) {
         let [light, camera] = [path.light, path.camera].map(<[Vertex]>::len);
         let (s, t) = match path.junction {
             Junction::Hit => (0, light + camera),
             Junction::Connection => (light, camera),
         };
-        if !context.takes(s, t) {
+        if !job.takes(s, t) {
             return;
         }
-        let pure = path.weight(context, &mut self.densities);
+        let pure = path.weight(job, &mut self.densities);
         let [of_light, of_camera] = &self.sums;
         let sums = PathSums {
             light: of_light.at(light - 1),
             camera: of_camera.at(camera - 1),
             next_event: self.next_event,
         };
-        let running = self.weights.weight(context, path, &sums);
+        let running = self.weights.weight(job, path, &sums);
         assert!(
             (running - pure).abs() <= TOLERANCE * pure + SMALL,
             "s = {s}, t = {t}: {running} instead of {pure}; {}",
-            describe(context.job.settings)
+            describe(job.settings)
         );
         self.paths += 1;
         self.shared += usize::from(s + t > 4 && (0.01..0.99).contains(&pure));
     }
 
     /// All paths that the two subpaths make.
-    fn compare_pair(
-        &mut self,
-        context: &PathContext<'_>,
-        light: &Subpath<'_>,
-        camera: &Subpath<'_>,
-    ) {
-        self.weights.set(context.job.settings);
+    fn compare_pair(&mut self, job: &Job<'_>, light: &Subpath<'_>, camera: &Subpath<'_>) {
+        self.weights.set(job.settings);
         self.sums.iter_mut().for_each(RunningSums::clear);
         if self.weights.uses_sums() {
-            self.sums[0].add_light(context, light);
-            self.sums[1].add_camera(context, camera);
+            self.sums[0].add_light(job, light);
+            self.sums[1].add_camera(job, camera);
         }
-        self.compare_hits(context, camera);
-        self.compare_light_images(context, light.vertices);
-        self.compare_next_events(context, camera.vertices);
-        let fresh = context.job.settings.light_point == LightPointChoice::Fresh;
+        self.compare_hits(job, camera);
+        self.compare_light_images(job, light.vertices);
+        self.compare_next_events(job, camera.vertices);
+        let fresh = job.settings.light_point == LightPointChoice::Fresh;
         for t in 2..=camera.vertices.len() {
             for s in 1 + usize::from(fresh)..=light.vertices.len() {
                 let (light, camera) = (&light.vertices[..s], &camera.vertices[..t]);
-                self.compare_connection(context, light, camera);
-                self.compare_diffuse(context, light, camera);
+                self.compare_connection(job, light, camera);
+                self.compare_diffuse(job, light, camera);
             }
         }
     }
 
-    fn compare_connection(
-        &mut self,
-        context: &PathContext<'_>,
-        light: &[Vertex],
-        camera: &[Vertex],
-    ) {
+    fn compare_connection(&mut self, job: &Job<'_>, light: &[Vertex], camera: &[Vertex]) {
         let mut path = JoinedPath::connection(light, camera);
-        let edge = edge(context, &light[light.len() - 1], &camera[camera.len() - 1]);
+        let edge = edge(job, &light[light.len() - 1], &camera[camera.len() - 1]);
         if let Some(edge) = edge
-            && !path.contribution(context).is_black()
+            && !path.contribution(job).is_black()
         {
             path.pass(&edge);
-            self.compare(context, &path);
+            self.compare(job, &path);
         }
     }
 
     /// A connection of diffuse vertices against the general form.
     #[track_caller]
-    fn compare_diffuse(&mut self, context: &PathContext<'_>, light: &[Vertex], camera: &[Vertex]) {
+    fn compare_diffuse(&mut self, job: &Job<'_>, light: &[Vertex], camera: &[Vertex]) {
         let (s, t) = (light.len(), camera.len());
         let [of_light, of_camera] = &self.sums;
         let (Some(z), Some(y)) = (of_light.diffuse(s - 1), of_camera.diffuse(t - 1)) else {
             return;
         };
         let path = JoinedPath::connection(light, camera);
-        let count = context.count(s, t, [light[s - 1].cell, camera[t - 1].cell]);
+        let count = job.count(s, t, [light[s - 1].cell, camera[t - 1].cell]);
         // Other vertices, with counts of their own, are in the other lanes.
         let own = (s + t) % 4;
         let ends = from_fn(|lane| match of_light.diffuse((s + lane) % 8) {
@@ -126,7 +116,7 @@ impl Comparison {
         let counts = from_fn(|lane| count as f32 * if lane == own { 1.0 } else { 3.0 });
         let connections = y.connect(ends, counts);
         if let Some(found) = connections.get(own) {
-            self.check_diffuse(context, &path, Some(found).filter(|(c, _)| !c.is_black()));
+            self.check_diffuse(job, &path, Some(found).filter(|(c, _)| !c.is_black()));
         }
     }
 
@@ -134,11 +124,11 @@ impl Comparison {
     #[track_caller]
     fn check_diffuse(
         &mut self,
-        context: &PathContext<'_>,
+        job: &Job<'_>,
         path: &JoinedPath<'_>,
         found: Option<(Spectrum, f32)>,
     ) {
-        let contribution = path.contribution(context);
+        let contribution = path.contribution(job);
         let (s, t) = (path.light.len(), path.camera.len());
         let Some((found, weight)) = found else {
             assert!(
@@ -153,78 +143,74 @@ impl Comparison {
                 "s = {s}, t = {t}: {found} instead of {expected}"
             );
         }
-        let pure = path.weight(context, &mut self.densities);
+        let pure = path.weight(job, &mut self.densities);
         assert!(
             (weight - pure).abs() <= 3.0 * TOLERANCE * pure + SMALL,
             "s = {s}, t = {t}: {weight} instead of {pure}; {}",
-            describe(context.job.settings)
+            describe(job.settings)
         );
         self.diffuse[if s == 1 { 0 } else { t.min(2) }] += 1;
     }
 
-    fn compare_hits(&mut self, context: &PathContext<'_>, camera: &Subpath<'_>) {
+    fn compare_hits(&mut self, job: &Job<'_>, camera: &Subpath<'_>) {
         for (i, vertex) in camera.vertices.iter().enumerate().skip(1) {
             if let Some(arrival) = Arrival::at(vertex) {
-                let x0 = arrival.vertex(context);
-                self.compare(context, &JoinedPath::hit(&x0, &camera.vertices[..i]));
+                let x0 = arrival.vertex(job);
+                self.compare(job, &JoinedPath::hit(&x0, &camera.vertices[..i]));
             }
         }
         let Some(escape) = camera.escape else { return };
-        for arrival in Arrival::of_escape(context.job.scene, escape) {
-            let x0 = arrival.vertex(context);
-            self.compare(context, &JoinedPath::hit(&x0, camera.vertices));
+        for arrival in Arrival::of_escape(job.scene, escape) {
+            let x0 = arrival.vertex(job);
+            self.compare(job, &JoinedPath::hit(&x0, camera.vertices));
         }
     }
 
-    fn compare_light_images(&mut self, context: &PathContext<'_>, light: &[Vertex]) {
-        let lens = context
-            .job
-            .view
-            .camera()
-            .sample_lens(|| Vec2::new(0.3, 0.8));
-        let medium = context.job.scene.medium_at(lens.locus.point);
+    fn compare_light_images(&mut self, job: &Job<'_>, light: &[Vertex]) {
+        let lens = job.view.camera().sample_lens(|| Vec2::new(0.3, 0.8));
+        let medium = job.scene.medium_at(lens.locus.point);
         let lens = Vertex::camera(&lens, medium);
         for s in 1..=light.len() {
             let (z, lens) = (&light[s - 1], std::slice::from_ref(&lens));
             if z.locus.is_infinite() && lens[0].locus.is_infinite() {
                 continue;
             }
-            self.compare_connection(context, &light[..s], lens);
+            self.compare_connection(job, &light[..s], lens);
             let sums = &self.sums[0];
             let segment = z.segment_to(&lens[0]);
-            if context.takes(s, 1)
+            if job.takes(s, 1)
                 && let Some(end) = sums.diffuse(s - 1)
                 && !end.is_turned(segment.w)
             {
                 let of_walk = (s, z, sums.at(s - 1));
-                let found = end.light_image(context, of_walk, &lens[0], &segment);
+                let found = end.light_image(job, of_walk, &lens[0], &segment);
                 let path = JoinedPath::connection(&light[..s], lens);
-                self.check_diffuse(context, &path, found);
+                self.check_diffuse(job, &path, found);
             }
         }
     }
 
-    fn compare_next_events(&mut self, context: &PathContext<'_>, camera: &[Vertex]) {
+    fn compare_next_events(&mut self, job: &Job<'_>, camera: &[Vertex]) {
         for t in 2..=camera.len() {
             let (u_light, u) = (0.17 * t as f32 % 1.0, Vec2::new(0.4, 0.11 * t as f32 % 1.0));
-            let drawn = sample_next_event(context, &camera[t - 1], || u_light, u, || u.x);
+            let drawn = sample_next_event(job, &camera[t - 1], || u_light, u, || u.x);
             let Some((light, drawn)) = drawn else {
                 continue;
             };
-            let x0 = Vertex::light(context, light, &drawn.at);
-            let is_fresh = context.job.settings.light_point == LightPointChoice::Fresh;
+            let x0 = Vertex::light(job, light, &drawn.at);
+            let is_fresh = job.settings.light_point == LightPointChoice::Fresh;
             self.next_event = is_fresh.then_some(drawn.pdf);
             let of_light = std::slice::from_ref(&x0);
-            self.compare_connection(context, of_light, &camera[..t]);
+            self.compare_connection(job, of_light, &camera[..t]);
             self.next_event = None;
             if is_fresh
-                && context.takes(1, t)
+                && job.takes(1, t)
                 && let Some(y) = self.sums[1].diffuse(t - 1)
             {
                 let segment = camera[t - 1].segment_to(&x0);
-                let found = y.next_event(context, t, (&x0, drawn.pdf), &segment);
+                let found = y.next_event(job, t, (&x0, drawn.pdf), &segment);
                 let path = JoinedPath::connection(of_light, &camera[..t]);
-                self.check_diffuse(context, &path, found);
+                self.check_diffuse(job, &path, found);
             }
         }
     }
@@ -312,10 +298,9 @@ fn check(scene: &Shot, pairs: u64) -> usize {
             },
             ..guided
         };
-        for_some_pairs(pairs, guided, |context, light, camera| {
-            for job in [own, uniform, guided] {
-                let context = PathContext { job, ..*context };
-                comparison.compare_pair(&context, light, camera);
+        for_some_pairs(pairs, guided, |_, light, camera| {
+            for job in [&own, &uniform, &guided] {
+                comparison.compare_pair(job, light, camera);
             }
         });
         least += pairs as usize;
@@ -441,8 +426,8 @@ fn long_paths() {
         for_some_pairs(
             4,
             Job::of_own_subpaths(&scene.scene, &scene.view, &settings),
-            |context, light, camera| {
-                comparison.compare_pair(context, light, camera);
+            |job, light, camera| {
+                comparison.compare_pair(job, light, camera);
             },
         );
         assert!(comparison.shared > 400, "{} are shared", comparison.shared);

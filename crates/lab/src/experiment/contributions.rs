@@ -152,12 +152,11 @@ fn terms(loaded: &LoadedScene<'_>, settings: &Settings, pass: u64) -> Vec<[f64; 
         let pixel = film.crop.pixel(i as usize);
         let camera = sampler.stream(Domain::Camera, i, pass);
         let light = sampler.stream(Domain::Light, 0, pass * film.light_paths() + i);
-        let sample = Sample::new(scene, pass, pixel, camera, light);
-        batch.fill([sample]);
+        batch.fill([Sample::new(pass, pixel, camera, light)]);
         method.run(&job, &mut batch);
         terms.extend(batch.candidates.iter().map(|candidate| {
             let term = &candidate.term;
-            let luminance = |value| f64::from(scene.color().luminance(value, &sample.wavelengths));
+            let luminance = |value| f64::from(job.lanes.luminance(value));
             [term.contribution, term.value()].map(luminance)
         }));
     }

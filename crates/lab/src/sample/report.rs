@@ -4,7 +4,7 @@ use super::TrainingReport;
 use super::subpath::{SubpathReport, View};
 use super::term::{CandidateReport, SplatReport, TermReport};
 use bidir::driver::{Replay, Session};
-use bidir::spectrum::{ColorModel, Rgb, Spectrum, Wavelengths};
+use bidir::spectrum::{Lanes, Rgb};
 use formats::film::SettingsText;
 use serde::Serialize;
 
@@ -39,32 +39,16 @@ pub struct SampleReport {
     pub(super) dropped: u64,
 }
 
-/// The conversion of light to linear Rec. 709.
-pub(super) struct Color {
-    model: ColorModel,
-    wavelengths: Wavelengths,
-}
-
-impl Color {
-    pub(super) fn rgb(&self, value: Spectrum) -> Rgb {
-        self.model.to_rgb(value, &self.wavelengths)
-    }
-}
-
 impl SampleReport {
     /// The report of a repeated sample: that of `pixel` in `pass`.
     pub fn new(session: &Session<'_>, pixel: [u32; 2], pass: u64, replay: &Replay) -> Self {
-        let (scene, stats) = (session.scene(), &replay.batch.stats);
-        let color = Color {
-            model: scene.color(),
-            wavelengths: replay.sample().wavelengths,
-        };
+        let (lanes, stats) = (replay.lanes, &replay.batch.stats);
         let view = View::new(session, &replay.camera());
         let Terms {
             hits,
             candidates,
             light_image,
-        } = Terms::new(&color, &view, replay);
+        } = Terms::new(lanes, &view, replay);
         let all = candidates
             .iter()
             .filter(|c| c.is_visible && !c.term.is_dropped);
@@ -73,9 +57,9 @@ impl SampleReport {
             pass,
             settings: SettingsText::from(session.settings()),
             training: TrainingReport::new(session),
-            camera: SubpathReport::new(&color, &view, &replay.camera()),
-            light: SubpathReport::new(&color, &view, &replay.light()),
-            value: color.rgb(replay.value()),
+            camera: SubpathReport::new(lanes, &view, &replay.camera()),
+            light: SubpathReport::new(lanes, &view, &replay.light()),
+            value: lanes.to_rgb(replay.value()),
             value_of_hits: sum(hits.iter().map(|hit| hit.added)),
             value_of_candidates: sum(candidates.iter().map(|c| c.term.added)),
             value_of_all_candidates: sum(all.map(CandidateReport::arriving)),
@@ -100,19 +84,19 @@ struct Terms {
 }
 
 impl Terms {
-    fn new(color: &Color, view: &View<'_>, replay: &Replay) -> Self {
+    fn new(lanes: Lanes, view: &View<'_>, replay: &Replay) -> Self {
         let mut terms = Self::default();
         for term in &replay.terms {
             match (&term.landing, &term.ends) {
                 (Some(landing), Some([light, _])) => {
-                    let splat = SplatReport::new(color, term, landing, view.end(light));
+                    let splat = SplatReport::new(lanes, term, landing, view.end(light));
                     terms.light_image.push(splat);
                 }
                 (None, Some([light, _])) => {
-                    let candidate = CandidateReport::new(color, term, view.end(light));
+                    let candidate = CandidateReport::new(lanes, term, view.end(light));
                     terms.candidates.push(candidate);
                 }
-                (_, None) => terms.hits.push(TermReport::new(color, term)),
+                (_, None) => terms.hits.push(TermReport::new(lanes, term)),
             }
         }
         terms

@@ -1,13 +1,12 @@
 //! The vertices of a sample, in the scene and on the film.
 
-use super::report::Color;
 use bidir::camera::{Camera, LensSample};
 use bidir::driver::Session;
 use bidir::locus::Locus;
 use bidir::math::{Vec2, Vec3};
 use bidir::path::{Scattering, Subpath, Vertex};
 use bidir::scene::RenderSpace;
-use bidir::spectrum::Rgb;
+use bidir::spectrum::{Lanes, Rgb};
 use serde::Serialize;
 
 #[derive(Clone, Debug, Serialize)]
@@ -128,11 +127,11 @@ impl<'a> View<'a> {
 }
 
 impl SubpathReport {
-    pub(super) fn new(color: &Color, view: &View<'_>, subpath: &Subpath<'_>) -> Self {
+    pub(super) fn new(lanes: Lanes, view: &View<'_>, subpath: &Subpath<'_>) -> Self {
         let vertices = subpath
             .vertices
             .iter()
-            .map(|vertex| VertexReport::new(color, view, vertex));
+            .map(|vertex| VertexReport::new(lanes, view, vertex));
         Self {
             vertices: vertices.collect(),
             escape: subpath.escape.map(|escape| escape.direction.to_array()),
@@ -141,7 +140,7 @@ impl SubpathReport {
 }
 
 impl VertexReport {
-    fn new(color: &Color, view: &View<'_>, vertex: &Vertex) -> Self {
+    fn new(lanes: Lanes, view: &View<'_>, vertex: &Vertex) -> Self {
         let kind = match vertex.scattering {
             Scattering::Camera => "camera",
             Scattering::Light => "light",
@@ -154,7 +153,7 @@ impl VertexReport {
             normal: vertex.locus.n_g.to_array(),
             is_delta: vertex.is_delta() || vertex.went_by_delta,
             light: vertex.light,
-            beta: color.rgb(vertex.beta),
+            beta: lanes.to_rgb(vertex.beta),
             pdf_fwd: vertex.pdf_fwd,
             pdf_rev: vertex.pdf_rev,
         }

@@ -1,10 +1,9 @@
 //! The contribution of each strategy.
 
-use super::report::Color;
 use super::subpath::Place;
 use bidir::driver::{Landing, ReplayedTerm};
 use bidir::integrator::Fate;
-use bidir::spectrum::Rgb;
+use bidir::spectrum::{Lanes, Rgb};
 use serde::Serialize;
 
 /// The report that all strategies have.
@@ -57,24 +56,24 @@ pub(super) struct SplatReport {
 }
 
 impl TermReport {
-    pub(super) fn new(color: &Color, replayed: &ReplayedTerm) -> Self {
+    pub(super) fn new(lanes: Lanes, replayed: &ReplayedTerm) -> Self {
         let term = &replayed.term;
         Self {
             s: term.strategy.s,
             t: term.strategy.t,
-            contribution: color.rgb(term.contribution),
+            contribution: lanes.to_rgb(term.contribution),
             weight: term.weight,
-            value: color.rgb(term.value()),
+            value: lanes.to_rgb(term.value()),
             is_dropped: replayed.fate == Fate::Dropped,
-            added: color.rgb(replayed.added),
+            added: lanes.to_rgb(replayed.added),
         }
     }
 }
 
 impl CandidateReport {
-    pub(super) fn new(color: &Color, replayed: &ReplayedTerm, light_end: Place) -> Self {
+    pub(super) fn new(lanes: Lanes, replayed: &ReplayedTerm, light_end: Place) -> Self {
         Self {
-            term: TermReport::new(color, replayed),
+            term: TermReport::new(lanes, replayed),
             light_end,
             score: replayed.selection.map(|selection| selection.score),
             // Without a choice everything is traced.
@@ -93,13 +92,13 @@ impl CandidateReport {
 
 impl SplatReport {
     pub(super) fn new(
-        color: &Color,
+        lanes: Lanes,
         replayed: &ReplayedTerm,
         landing: &Landing,
         light_end: Place,
     ) -> Self {
         Self {
-            term: TermReport::new(color, replayed),
+            term: TermReport::new(lanes, replayed),
             light_end,
             is_visible: replayed.is_visible(),
             transmittance: replayed.transmittance,

@@ -1,12 +1,31 @@
-//! Groups of samples that share their light subpaths: these are walked before the samples.
+//! Groups of samples: a thread takes one at a time. Its samples may share light subpaths, which are walked before them.
 
 use super::Session;
 use crate::integrator::{Batch, Entry, begin_group, end_group, group_size, walk_group};
 use crate::path::Job;
+use crate::spectrum::Lanes;
 use crate::stats::{Stage, Stats};
 use std::ops::Range;
 
+/// How many samples a group has that share no light subpaths.
+const RUN: u64 = 256;
+
 impl Session<'_> {
+    /// How many samples a group has.
+    pub(super) fn group_size(&self) -> u64 {
+        if self.method.shares_light() {
+            group_size(self.view.film().crop.area())
+        } else {
+            RUN
+        }
+    }
+
+    /// The meaning of the lanes of the group of `place`.
+    pub(super) fn lanes(&self, place: u64) -> Lanes {
+        let group = place / self.group_size();
+        self.lanes[group as usize % self.lanes.len()]
+    }
+
     /// How many samples there are for one light subpath.
     pub(super) fn samples_per_subpath(&self) -> u64 {
         if self.method.shares_light() {
@@ -16,8 +35,10 @@ impl Session<'_> {
         }
     }
 
-    /// The places of the group of `size` that begins at `begin`.
-    pub(super) fn group(&self, begin: u64, size: u64) -> Range<u64> {
+    /// The places of the group of `place`.
+    pub(super) fn group(&self, place: u64) -> Range<u64> {
+        let size = self.group_size();
+        let begin = place / size * size;
         begin..(begin + size).min(self.view.film().crop.area())
     }
 
@@ -64,8 +85,7 @@ impl Session<'_> {
         pass: u64,
         batch: &mut Batch,
     ) -> Option<(usize, Vec<Entry>)> {
-        let size = group_size(self.view.film().crop.area());
-        let group = self.group(place / size * size, size);
+        let group = self.group(place);
         let pixel = self.sample(place, pass).pixel;
         let (mut own, mut own_stats) = (None, Stats::default());
         self.walk_light(job, group, pass, (batch, 1), |batch| {

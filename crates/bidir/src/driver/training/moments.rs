@@ -17,7 +17,7 @@ use super::selection::{self, Expected};
 use super::survey::{QUAD, Survey};
 use crate::contribution::Contribution;
 use crate::film::FilmSettings;
-use crate::path::{PathContext, Shares};
+use crate::path::{Job, Shares};
 use crate::select::ShadowRays;
 use crate::strategy::Strategy;
 
@@ -45,7 +45,7 @@ pub(super) struct Term {
 impl Term {
     /// Of a contribution of sample number `sample` that landed on a pixel, of which the filter takes a part.
     pub(super) fn new(
-        context: &PathContext<'_>,
+        job: &Job<'_>,
         sample: u64,
         contribution: &Contribution,
         (pixel, part): (usize, f32),
@@ -56,11 +56,11 @@ impl Term {
             pixel: pixel as u32,
             strategy: contribution.term.strategy,
             light: contribution.term.light,
-            value: context.luminance(contribution.value()) * part,
+            value: job.lanes.luminance(contribution.value()) * part,
             score: 0.0,
             edge: None,
             is_next_event: usize::from(contribution.term.strategy.s)
-                < context.job.settings.light_point.first_walked(),
+                < job.settings.light_point.first_walked(),
             shares,
         }
     }

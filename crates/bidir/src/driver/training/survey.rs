@@ -82,7 +82,7 @@ impl Survey {
     /// Adds what was made of sample number `number`, the one of `batch`.
     fn keep(&mut self, job: &Job<'_>, number: u64, batch: &Batch) {
         let sample = &batch.samples[0];
-        let (context, film) = (sample.context(job), job.view.film());
+        let film = job.view.film();
         let [x, y] = sample.pixel.map(i64::from);
         let own = film.crop.index(x, y).map(|pixel| (pixel, 1.0));
         let (mut densities, mut parts) = (PathDensities::default(), Vec::new());
@@ -94,8 +94,8 @@ impl Survey {
                 Link::Walk | Link::Connection(_) => own,
                 Link::LightImage(_, place) => film.pick_pixel(place),
             };
-            let shares = batch.shares(&context, entry, candidate, &mut densities, &mut parts)?;
-            let mut term = Term::new(&context, number, &entry.contribution, landed?, shares);
+            let shares = batch.shares(job, entry, candidate, &mut densities, &mut parts)?;
+            let mut term = Term::new(job, number, &entry.contribution, landed?, shares);
             term.edge = edge;
             term.score = candidate.map_or(0.0, |candidate| candidate.score);
             self.luminance += term.of_mean_pixel(film);
@@ -190,7 +190,7 @@ impl<'a> Surveyor<'a> {
         };
         batch.fill([Sample {
             points: sampler.stream(Domain::TrainingCamera, number, 1),
-            ..Sample::new(self.scene, 0, pixel, camera, light)
+            ..Sample::new(0, pixel, camera, light)
         }]);
         self.method.run(&job, batch);
         survey.keep(&job, number, batch);

@@ -6,8 +6,8 @@ use crate::contribution::is_summable;
 use crate::guide::CellGuide;
 use crate::math::fixed::LARGEST_CONTRIBUTION;
 use crate::path::{
-    DiffuseConnections, DiffuseEnd, EndSums, Job, JoinedPath, PathContext, PathSums, RunningSums,
-    Subpath, Subpaths, Weights,
+    DiffuseConnections, DiffuseEnd, EndSums, Job, JoinedPath, PathSums, RunningSums, Subpath,
+    Subpaths, Weights,
 };
 use crate::select::Candidate;
 use crate::spectrum::Spectrum;
@@ -23,7 +23,7 @@ pub(in super::super) fn connect(job: &Job<'_>, batch: &mut Batch) {
     let (mut begin, mut ends_of_lists) = (0, batch.light_ends_end.iter());
     for (number, sample) in batch.samples.iter().enumerate() {
         let mut connector = Connector {
-            context: sample.context(job),
+            job,
             sample,
             camera: batch.camera.get(number),
             camera_sums: &batch.camera_sums,
@@ -67,7 +67,7 @@ struct Connection {
 
 /// Connects the camera subpath of a sample.
 struct Connector<'a> {
-    context: PathContext<'a>,
+    job: &'a Job<'a>,
     sample: &'a Sample,
     camera: Subpath<'a>,
     camera_sums: &'a RunningSums,
@@ -92,7 +92,7 @@ impl Connector<'_> {
             }
             return;
         };
-        let of_camera = self.context.job.guide.of_camera(y.cell());
+        let of_camera = self.job.guide.of_camera(y.cell());
         let (fours, others) = ends.as_chunks();
         for four in fours {
             self.offer_four(t, (y, of_camera), four);
@@ -124,7 +124,7 @@ impl Connector<'_> {
         };
         // Written out, so that lanes stay in registers.
         let z = [z(0), z(1), z(2), z(3)];
-        let count = |lane: usize| self.context.count_from(t, of_camera, z[lane].cell()) as f32;
+        let count = |lane: usize| self.job.count_from(t, of_camera, z[lane].cell()) as f32;
         let connections = y.connect(z, [count(0), count(1), count(2), count(3)]);
         let root_visibility = z.map(|z| of_camera.root_visibility(z.cell()));
         let is_plain = |end: &LightEnd| end.place.is_diffuse || end.place.s == 0;
@@ -152,7 +152,7 @@ impl Connector<'_> {
         if !(is_zero | is_offered).all() {
             return self.offer_each(t, four, connections, root_visibility);
         }
-        let means = values.abs_means(self.context.job.scene.color());
+        let means = values.abs_means(self.job.lanes);
         let scores = means * Vec4::from_array(root_visibility);
         let (contributions, weights) = (contributions.each(), connections.weights.to_array());
         let y = (self.camera.first + t - 1) as u32;
@@ -200,15 +200,15 @@ impl Connector<'_> {
         let Some(y) = self.camera_sums.diffuse(self.camera.first + t - 1) else {
             return self.offer_general(t, end, Some(e));
         };
-        let (vertex, context) = (&self.camera.vertices[t - 1], &self.context);
+        let (vertex, job) = (&self.camera.vertices[t - 1], self.job);
         let x0 = &self.light.vertices()[end.place.z as usize];
         let segment = vertex.segment_to(x0);
-        if let Some((contribution, weight)) = y.next_event(context, t, (x0, e), &segment) {
+        if let Some((contribution, weight)) = y.next_event(job, t, (x0, e), &segment) {
             let connection = Connection {
                 contribution,
                 transmittance: Spectrum::ONE,
                 weight,
-                root_visibility: context.root_visibility(x0, vertex),
+                root_visibility: job.root_visibility(x0, vertex),
             };
             self.offer(t, end, connection);
         }
@@ -227,7 +227,7 @@ impl Connector<'_> {
         let (z, s) = (end.place.z as usize, usize::from(end.place.s));
         let light = &self.light.vertices()[z + 1 - s..=z];
         let mut path = JoinedPath::connection(light, &self.camera.vertices[..t]);
-        let contribution = path.contribution(&self.context);
+        let contribution = path.contribution(self.job);
         if contribution == Spectrum::ZERO {
             return None;
         }
@@ -240,25 +240,25 @@ impl Connector<'_> {
             next_event,
         };
         let (z, y) = (path.z(), path.y());
-        let mut root_visibility = self.context.root_visibility(z, y);
-        let scene = self.context.job.scene;
+        let mut root_visibility = self.job.root_visibility(z, y);
+        let scene = self.job.scene;
         let mut transmittance = Spectrum::ONE;
         if !scene.is_clear(&z.locus, &y.locus) {
-            let (a, b, wavelengths) = (&z.locus, &y.locus, &self.context.wavelengths);
+            let (a, b, lanes) = (&z.locus, &y.locus, self.job.lanes);
             let edge = if scene.foresees_media() {
-                let edge = scene.foreseen_edge(a, b, wavelengths)?;
+                let edge = scene.foreseen_edge(a, b, lanes)?;
                 transmittance = edge.transmittance;
                 edge
             } else {
-                scene.guessed_edge(a, b, wavelengths)
+                scene.guessed_edge(a, b, lanes)
             };
             path.pass(&edge);
-            root_visibility *= scene.color().mean(edge.transmittance);
+            root_visibility *= self.job.lanes.mean(edge.transmittance);
         }
         Some(Connection {
             contribution,
             transmittance,
-            weight: self.weights.weight(&self.context, &path, &sums),
+            weight: self.weights.weight(self.job, &path, &sums),
             root_visibility,
         })
     }
@@ -272,7 +272,7 @@ impl Connector<'_> {
         }
         let mut term = end.term(t, connection.contribution * end.share, connection.weight);
         let value = term.value();
-        let mean = self.context.job.scene.color().mean(value.map(f32::abs));
+        let mean = self.job.lanes.mean(value.map(f32::abs));
         term.contribution *= connection.transmittance;
         let y = (self.camera.first + t - 1) as u32;
         let candidate = end.candidate(term, mean * connection.root_visibility, y);

@@ -14,9 +14,7 @@ use crate::bsdf::TransportMode;
 use crate::contribution::Term;
 use crate::light::LightSample;
 use crate::locus::Locus;
-use crate::path::{
-    Arrival, Job, PathContext, Segment, Turn, Vertex, next_event_pdf, sample_next_event,
-};
+use crate::path::{Arrival, Job, Segment, Turn, Vertex, next_event_pdf, sample_next_event};
 use crate::sampler::{Dimension, Purpose};
 use crate::spectrum::Spectrum;
 use crate::stats::Stage;
@@ -35,16 +33,15 @@ pub(in super::super) fn direct(job: &Job<'_>, batch: &mut Batch) {
         ..
     } = batch;
     for (number, sample) in samples.iter().enumerate() {
-        let context = sample.context(job);
         let walk = camera.get(number);
         for (i, vertex) in walk.vertices.iter().enumerate().skip(1) {
             if let Some(arrival) = Arrival::at(vertex)
-                && let Some(term) = hit(&context, &walk.vertices[..i], &arrival)
+                && let Some(term) = hit(job, &walk.vertices[..i], &arrival)
             {
                 enter(entries, stats, (number, sample), term, Link::Walk);
             }
-            let connects = i + 2 <= context.job.settings.max_vertices() && !vertex.is_delta();
-            if connects && let Some(found) = next_event(&context, sample, vertex, i) {
+            let connects = i + 2 <= job.settings.max_vertices() && !vertex.is_delta();
+            if connects && let Some(found) = next_event(job, sample, vertex, i) {
                 let (term, ends, passage) = found;
                 let link = Link::Connection(ends);
                 let entry = enter(entries, stats, (number, sample), term, link);
@@ -52,8 +49,8 @@ pub(in super::super) fn direct(job: &Job<'_>, batch: &mut Batch) {
             }
         }
         let escape = walk.escape.into_iter();
-        for arrival in escape.flat_map(|escape| Arrival::of_escape(context.job.scene, escape)) {
-            if let Some(term) = hit(&context, walk.vertices, &arrival) {
+        for arrival in escape.flat_map(|escape| Arrival::of_escape(job.scene, escape)) {
+            if let Some(term) = hit(job, walk.vertices, &arrival) {
                 enter(entries, stats, (number, sample), term, Link::Walk);
             }
         }
@@ -63,8 +60,8 @@ pub(in super::super) fn direct(job: &Job<'_>, batch: &mut Batch) {
 }
 
 /// The term of the light that the walk came upon after the vertices `before`. None: it is zero.
-fn hit(context: &PathContext<'_>, before: &[Vertex], arrival: &Arrival) -> Option<Term> {
-    let contribution = arrival.contribution(context);
+fn hit(job: &Job<'_>, before: &[Vertex], arrival: &Arrival) -> Option<Term> {
+    let contribution = arrival.contribution(job);
     if contribution == Spectrum::ZERO {
         return None;
     }
@@ -73,8 +70,8 @@ fn hit(context: &PathContext<'_>, before: &[Vertex], arrival: &Arrival) -> Optio
     let weight = if before.len() == 1 || from.went_by_delta {
         1.0
     } else {
-        let q = next_event_pdf(context, from, arrival.light, &arrival.at);
-        context.job.settings.mis.weight_of_two(arrival.pdf, q)
+        let q = next_event_pdf(job, from, arrival.light, &arrival.at);
+        job.settings.mis.weight_of_two(arrival.pdf, q)
     };
     Some(Term {
         strategy: Strategy::new(0, before.len() + 1),
@@ -88,7 +85,7 @@ fn hit(context: &PathContext<'_>, before: &[Vertex], arrival: &Arrival) -> Optio
 /// and the media between them.
 /// None: it is zero.
 fn next_event(
-    context: &PathContext<'_>,
+    job: &Job<'_>,
     sample: &Sample,
     vertex: &Vertex,
     i: usize,
@@ -97,31 +94,31 @@ fn next_event(
     let u_light = || sample.points.get_1d(at(Purpose::NextEventLight));
     let u = sample.points.get_2d(at(Purpose::NextEventPosition));
     let u_depth = || sample.points.get_1d(at(Purpose::NextEventDepth));
-    let (light, x0) = sample_next_event(context, vertex, u_light, u, u_depth)?;
+    let (light, x0) = sample_next_event(job, vertex, u_light, u, u_depth)?;
     let mut ends = [x0.at.locus, vertex.locus];
-    if context.job.scene.has_media() {
-        ends[0].media = context.job.scene.light_media(light);
+    if job.scene.has_media() {
+        ends[0].media = job.scene.light_media(light);
     }
     let mut segment = Segment::between(&ends[0], &ends[1]);
     let turn = vertex.turn(vertex.wo, -segment.w, TransportMode::Radiance);
-    let contribution = arriving(context, &turn, light, &x0, &segment);
+    let contribution = arriving(job, &turn, light, &x0, &segment);
     if contribution == Spectrum::ZERO {
         return None;
     }
-    let passage = ShadowPassage::between(context, || ends);
+    let passage = ShadowPassage::between(job, || ends);
     if let Some(edge) = passage.edge() {
         segment.pass(edge);
     }
-    let p = if context.job.scene.light(light).is_delta() {
+    let p = if job.scene.light(light).is_delta() {
         0.0
     } else {
-        turn.pdf(context) * segment.to_a
+        turn.pdf(job) * segment.to_a
     };
     let term = Term {
         strategy: Strategy::new(1, i + 1),
         light,
         contribution,
-        weight: context.job.settings.mis.weight_of_two(x0.pdf, p),
+        weight: job.settings.mis.weight_of_two(x0.pdf, p),
     };
     Some((term, ends, passage))
 }
@@ -130,7 +127,7 @@ fn next_event(
 /// vertex of `turn`, before weight and visibility.
 #[inline]
 fn arriving(
-    context: &PathContext<'_>,
+    job: &Job<'_>,
     turn: &Turn<'_>,
     light: u32,
     x0: &LightSample,
@@ -140,9 +137,9 @@ fn arriving(
     if factor == 0.0 {
         return Spectrum::ZERO;
     }
-    let emitted = context.emitted(light, &x0.at, segment.w);
+    let emitted = job.emitted(light, &x0.at, segment.w);
     if emitted.is_black() {
         return Spectrum::ZERO;
     }
-    emitted * turn.scatter(context) * turn.vertex().beta * factor
+    emitted * turn.scatter(job) * turn.vertex().beta * factor
 }

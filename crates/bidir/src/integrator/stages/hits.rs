@@ -3,7 +3,7 @@
 use super::super::batch::enter;
 use super::super::{Batch, Link};
 use crate::contribution::Term;
-use crate::path::{Arrival, EndSums, Job, JoinedPath, PathContext, PathSums, Vertex, Weights};
+use crate::path::{Arrival, EndSums, Job, JoinedPath, PathSums, Vertex, Weights};
 use crate::spectrum::Spectrum;
 use crate::stats::Stage;
 use crate::strategy::Strategy;
@@ -21,7 +21,6 @@ pub(in super::super) fn hits(job: &Job<'_>, batch: &mut Batch) {
         ..
     } = batch;
     for (number, sample) in samples.iter().enumerate() {
-        let context = sample.context(job);
         let walk = camera.get(number);
         let mut add = |camera: &[Vertex], arrival: &Arrival| {
             let sums = PathSums {
@@ -29,7 +28,7 @@ pub(in super::super) fn hits(job: &Job<'_>, batch: &mut Batch) {
                 camera: camera_sums.at(walk.first + camera.len() - 1),
                 next_event: None,
             };
-            if let Some(term) = hit(&context, camera, arrival, weights, &sums) {
+            if let Some(term) = hit(job, camera, arrival, weights, &sums) {
                 enter(entries, stats, (number, sample), term, Link::Walk);
             }
         };
@@ -39,7 +38,7 @@ pub(in super::super) fn hits(job: &Job<'_>, batch: &mut Batch) {
             }
         }
         let escape = walk.escape.into_iter();
-        for arrival in escape.flat_map(|escape| Arrival::of_escape(context.job.scene, escape)) {
+        for arrival in escape.flat_map(|escape| Arrival::of_escape(job.scene, escape)) {
             add(walk.vertices, &arrival);
         }
     }
@@ -48,25 +47,25 @@ pub(in super::super) fn hits(job: &Job<'_>, batch: &mut Batch) {
 
 /// The term of the path from `camera` to the light that was hit. None: it is zero.
 fn hit(
-    context: &PathContext<'_>,
+    job: &Job<'_>,
     camera: &[Vertex],
     arrival: &Arrival,
     weights: &mut Weights,
     sums: &PathSums<'_>,
 ) -> Option<Term> {
     let strategy = Strategy::new(0, camera.len() + 1);
-    if !context.takes(0, camera.len() + 1) {
+    if !job.takes(0, camera.len() + 1) {
         return None;
     }
-    let contribution = arrival.contribution(context);
+    let contribution = arrival.contribution(job);
     (contribution != Spectrum::ZERO).then(|| {
-        let x0 = arrival.vertex(context);
+        let x0 = arrival.vertex(job);
         let path = JoinedPath::hit(&x0, camera);
         Term {
             strategy,
             light: arrival.light,
             contribution,
-            weight: weights.weight(context, &path, sums),
+            weight: weights.weight(job, &path, sums),
         }
     })
 }

@@ -23,9 +23,8 @@ pub(in super::super) fn own_light(job: &Job<'_>, batch: &mut Batch) {
     } = batch;
     let settings = job.settings;
     for (number, sample) in samples.iter().enumerate() {
-        let context = sample.context(job);
         let subpath = light.get(first + number);
-        let mut pairs = Pairs::new(&context, &sample.camera);
+        let mut pairs = Pairs::new(job, &sample.camera);
         for (t, y) in (2..).zip(camera.get(number).vertices.iter().skip(1)) {
             let longest = subpath.vertices.len().min(settings.max_vertices() - t);
             let longest = if y.is_delta() { 0 } else { longest };
@@ -43,7 +42,7 @@ pub(in super::super) fn own_light(job: &Job<'_>, batch: &mut Batch) {
                     number: s as u32 - 1,
                     share,
                 };
-                light_ends.write(end, usize::from(connects && context.takes(s, t)));
+                light_ends.write(end, usize::from(connects && job.takes(s, t)));
             }
             light_ends_end.push(light_ends.len());
         }
@@ -67,7 +66,6 @@ pub(in super::super) fn draw_cached(job: &Job<'_>, batch: &mut Batch, counts: Ca
     } = batch;
     let takes_all = job.settings.strategies.is_all();
     for (number, sample) in samples.iter().enumerate() {
-        let context = sample.context(job);
         for (t, y) in (2..).zip(camera.get(number).vertices.iter().skip(1)) {
             // s vertices at most.
             let longest = job.settings.max_vertices().saturating_sub(t);
@@ -88,7 +86,7 @@ pub(in super::super) fn draw_cached(job: &Job<'_>, batch: &mut Batch, counts: Ca
                             number: entry as u32 + 1,
                             share,
                         };
-                        taken += usize::from(s <= longest && (takes_all || context.takes(s, t)));
+                        taken += usize::from(s <= longest && (takes_all || job.takes(s, t)));
                     });
                     taken
                 });

@@ -10,8 +10,8 @@ use crate::film::SplatPlace;
 use crate::locus::Locus;
 use crate::math::Vec2;
 use crate::path::{
-    DiffuseEnd, EndSums, Job, JoinedPath, PathContext, PathSums, RunningSums, Scattering, Segment,
-    Vertex, Weights,
+    DiffuseEnd, EndSums, Job, JoinedPath, PathSums, RunningSums, Scattering, Segment, Vertex,
+    Weights,
 };
 use crate::sampler::{Dimension, Purpose};
 use crate::spectrum::Spectrum;
@@ -42,22 +42,21 @@ pub(in super::super) fn light_image(job: &Job<'_>, batch: &mut Batch, weighting:
         ..
     } = batch;
     for (number, sample) in samples.iter().enumerate() {
-        let context = sample.context(job);
         let walk = light.get(first + number);
         for s in 1..=walk.vertices.len() {
-            if weighting == Weighting::Combined && !context.takes(s, 1) {
+            if weighting == Weighting::Combined && !job.takes(s, 1) {
                 continue;
             }
-            let lens = lens_vertex(&context, sample, s);
-            let Some(image) = LightImage::new(&context, &walk.vertices[..s], &lens) else {
+            let lens = lens_vertex(job, sample, s);
+            let Some(image) = LightImage::new(job, &walk.vertices[..s], &lens) else {
                 continue;
             };
             let sums = match weighting {
                 Weighting::Alone => None,
                 Weighting::Combined => Some((&*light_sums, walk.first + s - 1)),
             };
-            if let Some((term, passage)) = image.weighted_term(&context, sums, weights) {
-                let link = image.link(&context, sample);
+            if let Some((term, passage)) = image.weighted_term(job, sums, weights) {
+                let link = image.link(job, sample);
                 let entry = enter(splats, stats, (number, sample), term, link);
                 passage.settle(entry, stats);
             }
@@ -68,15 +67,11 @@ pub(in super::super) fn light_image(job: &Job<'_>, batch: &mut Batch, weighting:
 }
 
 /// The lens point for light vertex number `s`.
-pub(in super::super) fn lens_vertex(
-    context: &PathContext<'_>,
-    sample: &Sample,
-    s: usize,
-) -> Vertex {
+pub(in super::super) fn lens_vertex(job: &Job<'_>, sample: &Sample, s: usize) -> Vertex {
     let at = Dimension::at(s, Purpose::LightImageLens);
-    let camera = context.job.view.camera();
+    let camera = job.view.camera();
     let lens = camera.sample_lens(|| sample.light.get_2d(at));
-    Vertex::camera(&lens, context.job.medium)
+    Vertex::camera(&lens, job.medium)
 }
 
 /// A light vertex and the lens point that sees it, before visibility.
@@ -90,10 +85,10 @@ struct LightImage<'a> {
 
 impl<'a> LightImage<'a> {
     /// The last vertex of a light subpath, as a lens point sees it. None: its image is not on the film.
-    fn new(context: &PathContext<'_>, light: &'a [Vertex], lens: &'a Vertex) -> Option<Self> {
+    fn new(job: &Job<'_>, light: &'a [Vertex], lens: &'a Vertex) -> Option<Self> {
         let end = light.last()?;
         // The image of a Dirac light itself would be a Dirac distribution: such lights are invisible.
-        if matches!(end.scattering, Scattering::Light) && end.is_on_delta_light(context) {
+        if matches!(end.scattering, Scattering::Light) && end.is_on_delta_light(job) {
             return None;
         }
         if lens.locus.is_infinite() && end.locus.is_infinite() {
@@ -105,8 +100,8 @@ impl<'a> LightImage<'a> {
         } else {
             lens.locus.point
         };
-        let raster = context.job.view.camera().raster(on_ray, -segment.w)?;
-        reaches_film(context, raster).then_some(Self {
+        let raster = job.view.camera().raster(on_ray, -segment.w)?;
+        reaches_film(job, raster).then_some(Self {
             light,
             lens,
             segment,
@@ -119,20 +114,20 @@ impl<'a> LightImage<'a> {
     #[inline]
     fn weighted_term(
         &self,
-        context: &PathContext<'_>,
+        job: &Job<'_>,
         sums: Option<(&RunningSums, usize)>,
         weights: &mut Weights,
     ) -> Option<(Term, ShadowPassage)> {
         let Some((sums, z)) = sums else {
-            return self.of_any(context, |_| 1.0);
+            return self.of_any(job, |_| 1.0);
         };
         let light = sums.at(z);
         let is_plain = |end: &&DiffuseEnd| !end.is_turned(self.segment.w);
         if let Some(end) = sums.diffuse(z).filter(is_plain) {
             let of_walk = (self.light.len(), self.end(), light);
-            let found = end.light_image(context, of_walk, self.lens, &self.segment);
+            let found = end.light_image(job, of_walk, self.lens, &self.segment);
             let (contribution, weight) = found?;
-            let term = self.term(context, contribution, weight)?;
+            let term = self.term(job, contribution, weight)?;
             // Diffuse ends are those whose rays go through no medium.
             return Some((term, ShadowPassage::Clear));
         }
@@ -141,19 +136,19 @@ impl<'a> LightImage<'a> {
             camera: &EndSums::NONE,
             next_event: None,
         };
-        self.of_any(context, |path| weights.weight(context, path, &sums))
+        self.of_any(job, |path| weights.weight(job, path, &sums))
     }
 
     /// The same for any vertex and any weight, which is not asked for where nothing arrives.
     fn of_any(
         &self,
-        context: &PathContext<'_>,
+        job: &Job<'_>,
         weight: impl FnOnce(&JoinedPath<'_>) -> f32,
     ) -> Option<(Term, ShadowPassage)> {
         let lens = std::slice::from_ref(self.lens);
         let mut path = JoinedPath::connection_by(self.light, lens, self.segment);
-        let mut term = self.term(context, path.contribution(context), 0.0)?;
-        let passage = ShadowPassage::between(context, || self.ends(context));
+        let mut term = self.term(job, path.contribution(job), 0.0)?;
+        let passage = ShadowPassage::between(job, || self.ends(job));
         if let Some(edge) = passage.edge() {
             path.pass(edge);
         }
@@ -164,9 +159,8 @@ impl<'a> LightImage<'a> {
     }
 
     /// The term with contribution `c`, scaled to the number of light subpaths in a pass. None: it is zero.
-    fn term(&self, context: &PathContext<'_>, c: Spectrum, weight: f32) -> Option<Term> {
-        let share =
-            context.job.view.film().light_paths() as f64 / context.job.counts.light_subpaths;
+    fn term(&self, job: &Job<'_>, c: Spectrum, weight: f32) -> Option<Term> {
+        let share = job.view.film().light_paths() as f64 / job.counts.light_subpaths;
         let contribution = c * share as f32;
         (contribution != Spectrum::ZERO).then_some(Term {
             strategy: Strategy::new(self.light.len(), 1),
@@ -182,35 +176,35 @@ impl<'a> LightImage<'a> {
     }
 
     /// The ends of its shadow ray.
-    fn ends(&self, context: &PathContext<'_>) -> [Locus; 2] {
+    fn ends(&self, job: &Job<'_>) -> [Locus; 2] {
         let end = self.end();
-        [end.locus, camera_end(context, self.lens, end)]
+        [end.locus, camera_end(job, self.lens, end)]
     }
 
     /// The link to the film, with the ends of its shadow ray.
-    fn link(&self, context: &PathContext<'_>, sample: &Sample) -> Link {
+    fn link(&self, job: &Job<'_>, sample: &Sample) -> Link {
         let at = Dimension::at(self.light.len(), Purpose::LightImagePixel);
         let place = SplatPlace {
             raster: self.raster,
             u: sample.light.get_2d(at),
         };
-        Link::LightImage(self.ends(context), place)
+        Link::LightImage(self.ends(job), place)
     }
 }
 
 /// The point that a camera sees the vertex `end` from: the lens point, or the place of a parallel ray on the
 /// camera's plane, behind which nothing is in its way.
-fn camera_end(context: &PathContext<'_>, lens: &Vertex, end: &Vertex) -> Locus {
+fn camera_end(job: &Job<'_>, lens: &Vertex, end: &Vertex) -> Locus {
     if !lens.locus.is_infinite() {
         return lens.locus;
     }
-    let depth = context.job.view.camera().depth(end.locus.point);
+    let depth = job.view.camera().depth(end.locus.point);
     Locus::in_space(end.locus.point + lens.locus.point * depth)
 }
 
 /// True where the filter of some pixel of the crop may reach `raster`.
-fn reaches_film(context: &PathContext<'_>, raster: Vec2) -> bool {
-    let film = context.job.view.film();
+fn reaches_film(job: &Job<'_>, raster: Vec2) -> bool {
+    let film = job.view.film();
     let corner = |c: [u32; 2]| Vec2::new(c[0] as f32, c[1] as f32);
     let margin = film.filter.radius();
     let (min, max) = (

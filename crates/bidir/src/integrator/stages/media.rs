@@ -7,7 +7,7 @@
 
 use super::super::{Batch, Entry, Fate};
 use crate::locus::Locus;
-use crate::path::{Job, JoinedPath, PathContext, PathSums};
+use crate::path::{Job, JoinedPath, PathSums};
 use crate::scene::Edge;
 use crate::stats::Stats;
 
@@ -22,11 +22,8 @@ pub(in super::super) enum ShadowPassage {
 impl ShadowPassage {
     /// The passage between two ends.
     #[inline]
-    pub(in super::super) fn between(
-        context: &PathContext<'_>,
-        ends: impl FnOnce() -> [Locus; 2],
-    ) -> Self {
-        let scene = context.job.scene;
+    pub(in super::super) fn between(job: &Job<'_>, ends: impl FnOnce() -> [Locus; 2]) -> Self {
+        let scene = job.scene;
         if !scene.has_media() {
             return Self::Clear;
         }
@@ -34,7 +31,7 @@ impl ShadowPassage {
         if scene.is_clear(&a, &b) {
             return Self::Clear;
         }
-        Self::Traced(scene.edge([&a, &b], &context.wavelengths, context.job.stop))
+        Self::Traced(scene.edge([&a, &b], job.lanes, job.stop))
     }
 
     /// The media, where there are any and something arrives.
@@ -73,7 +70,6 @@ impl ShadowPassage {
 /// Traces the shadow rays of the chosen candidates that may go through media, one by one, and weighs their terms again.
 pub(super) fn settle_chosen(job: &Job<'_>, batch: &mut Batch) {
     let Batch {
-        samples,
         camera,
         light,
         camera_sums,
@@ -87,9 +83,8 @@ pub(super) fn settle_chosen(job: &Job<'_>, batch: &mut Batch) {
     } = batch;
     let first = entries.len() - chosen.len();
     for (entry, chosen) in entries[first..].iter_mut().zip(&*chosen) {
-        let context = samples[entry.sample as usize].context(job);
         let passage = match entry.shadow_ray() {
-            Some(ends) => ShadowPassage::between(&context, || *ends),
+            Some(ends) => ShadowPassage::between(job, || *ends),
             None => ShadowPassage::Clear,
         };
         passage.settle(entry, stats);
@@ -112,6 +107,6 @@ pub(super) fn settle_chosen(job: &Job<'_>, batch: &mut Batch) {
             next_event: None,
         };
         path.pass(edge);
-        entry.contribution.term.weight = weights.weight(&context, &path, &sums);
+        entry.contribution.term.weight = weights.weight(job, &path, &sums);
     }
 }

@@ -3,7 +3,7 @@
 use super::super::batch::{LightEnd, NextEvent};
 use super::super::{Batch, CandidateCount, Sample};
 use crate::math::ONE_MINUS_EPSILON;
-use crate::path::{Job, LightPointChoice, PathContext, Subpaths, Vertex, sample_next_event};
+use crate::path::{Job, LightPointChoice, Subpaths, Vertex, sample_next_event};
 use crate::sampler::{Dimension, Purpose, kronecker_number, kronecker_point};
 use crate::spectrum::Spectrum;
 
@@ -22,18 +22,17 @@ pub(in super::super) fn next_events(job: &Job<'_>, batch: &mut Batch, counts: Ca
         ..
     } = batch;
     for (index, sample) in samples.iter().enumerate() {
-        let context = sample.context(job);
         let walk = camera.get(index);
         let longest = walk.vertices.len().min(job.settings.max_vertices() - 1);
         for t in 2..=longest {
             let y = &walk.vertices[t - 1];
-            if y.is_delta() || !context.takes(1, t) {
+            if y.is_delta() || !job.takes(1, t) {
                 continue;
             }
             let count = counts.at(t);
             for k in 0..count {
                 let part = [k, count];
-                if let Some((end, pdf)) = add_point(light, &context, sample, (t, y), part) {
+                if let Some((end, pdf)) = add_point(light, job, sample, (t, y), part) {
                     next_events.push(NextEvent {
                         sample: index as u32,
                         t: t as u32,
@@ -50,7 +49,7 @@ pub(in super::super) fn next_events(job: &Job<'_>, batch: &mut Batch, counts: Ca
 /// its density. None: there is no light point.
 fn add_point(
     light: &mut Subpaths,
-    context: &PathContext<'_>,
+    job: &Job<'_>,
     sample: &Sample,
     (t, y): (usize, &Vertex),
     [k, count]: [u16; 2],
@@ -61,8 +60,8 @@ fn add_point(
     let u = sample.points.get_2d(at(Purpose::NextEventPosition));
     let u_depth = || kronecker_number(sample.points.get_1d(at(Purpose::NextEventDepth)), k);
     let point = kronecker_point(u, k);
-    let (number, drawn) = sample_next_event(context, y, u_light, point, u_depth)?;
-    let mut x0 = Vertex::light(context, number, &drawn.at);
+    let (number, drawn) = sample_next_event(job, y, u_light, point, u_depth)?;
+    let mut x0 = Vertex::light(job, number, &drawn.at);
     x0.beta = Spectrum::splat(drawn.coverage / (drawn.pdf * f32::from(count)));
     let z = light.add_point(&x0);
     Some((LightEnd::point(z, number), drawn.pdf))

@@ -9,7 +9,7 @@
 //! the length alone, and a connection counts 1/π: the estimate keeps its expectation. The choice is
 //! systematic \[Madow49\]: one number places evenly spaced pointers over the sum of all π.
 
-use crate::path::PathContext;
+use crate::path::Job;
 use crate::sampler::{Dimension, Purpose, SampleStream};
 
 /// N. Usual limits of length are below.
@@ -23,9 +23,9 @@ pub(super) struct Pairs {
 
 impl Pairs {
     /// The choice of a sample with the numbers `camera`.
-    pub(super) fn new(context: &PathContext<'_>, camera: &SampleStream) -> Self {
+    pub(super) fn new(job: &Job<'_>, camera: &SampleStream) -> Self {
         let at = Dimension::at(0, Purpose::Pairs);
-        let has_choice = context.job.settings.max_vertices() > ALL_UP_TO;
+        let has_choice = job.settings.max_vertices() > ALL_UP_TO;
         Self {
             pointer: if has_choice {
                 camera.get_1d(at).into()

@@ -3,7 +3,7 @@
 use super::super::{Batch, Sample};
 use crate::camera::CameraRay;
 use crate::math::Vec2;
-use crate::path::{Job, PathContext, camera_subpath, light_subpath};
+use crate::path::{Job, camera_subpath, light_subpath};
 use crate::sampler::{Dimension, Purpose};
 use crate::stats::Stage;
 
@@ -17,9 +17,8 @@ pub(in super::super) fn walk_camera(job: &Job<'_>, batch: &mut Batch) {
         ..
     } = batch;
     for sample in &*samples {
-        let context = sample.context(job);
-        let (ray, weight) = camera_ray(&context, sample);
-        camera_subpath(&context, &sample.camera, &ray, weight, camera, stats);
+        let (ray, weight) = camera_ray(job, sample);
+        camera_subpath(job, &sample.camera, &ray, weight, camera, stats);
     }
     batch.stopwatch.end(Stage::Walk);
 }
@@ -34,7 +33,7 @@ pub(in super::super) fn walk_light(job: &Job<'_>, batch: &mut Batch) {
         ..
     } = batch;
     for sample in &*samples {
-        light_subpath(&sample.context(job), &sample.light, light, stats);
+        light_subpath(job, &sample.light, light, stats);
     }
     batch.stopwatch.end(Stage::Walk);
 }
@@ -43,9 +42,9 @@ pub(in super::super) fn walk_light(job: &Job<'_>, batch: &mut Batch) {
 #[inline(never)]
 pub(in super::super) fn sum_camera(job: &Job<'_>, batch: &mut Batch) {
     if batch.weights.uses_sums() {
-        for (i, sample) in batch.samples.iter().enumerate() {
+        for i in 0..batch.samples.len() {
             let walk = batch.camera.get(i);
-            batch.camera_sums.add_camera(&sample.context(job), &walk);
+            batch.camera_sums.add_camera(job, &walk);
         }
     }
     batch.stopwatch.end(Stage::Walk);
@@ -56,20 +55,20 @@ pub(in super::super) fn sum_camera(job: &Job<'_>, batch: &mut Batch) {
 pub(in super::super) fn sum_light(job: &Job<'_>, batch: &mut Batch) {
     if batch.weights.uses_sums() {
         let first = batch.first_light();
-        for (i, sample) in batch.samples.iter().enumerate() {
+        for i in 0..batch.samples.len() {
             let walk = batch.light.get(first + i);
-            batch.light_sums.add_light(&sample.context(job), &walk);
+            batch.light_sums.add_light(job, &walk);
         }
     }
     batch.stopwatch.end(Stage::Walk);
 }
 
 /// The ray of a camera sample, and the weight of its film position.
-pub(crate) fn camera_ray(context: &PathContext<'_>, sample: &Sample) -> (CameraRay, f32) {
+pub(crate) fn camera_ray(job: &Job<'_>, sample: &Sample) -> (CameraRay, f32) {
     let get = |purpose| sample.camera.get_2d(Dimension::at(0, purpose));
-    let (offset, weight) = context.job.view.film().filter.sample(get(Purpose::Film));
+    let (offset, weight) = job.view.film().filter.sample(get(Purpose::Film));
     let raster = Vec2::new(sample.pixel[0] as f32, sample.pixel[1] as f32) + 0.5 + offset;
-    let camera = context.job.view.camera();
+    let camera = job.view.camera();
     let ray = camera.sample_ray(raster, || get(Purpose::Lens));
     (ray, weight)
 }

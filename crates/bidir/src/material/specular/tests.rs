@@ -4,7 +4,7 @@ use super::*;
 use crate::bsdf::{FacetScattering, TransportMode, Wall};
 use crate::material::{Anisotropy, ConductorIndex};
 use crate::math::{ONE_MINUS_EPSILON, Vec2, Vec3};
-use crate::spectrum::{ColorModel, Wavelengths};
+use crate::spectrum::Lanes;
 use crate::texture::{
     Beyond, Change, ColorTexture, FloatTexture, Image, ImageFilter, ImageMap, Mapping,
     TexturePoint, Wrap,
@@ -110,9 +110,8 @@ fn draws_find_dirac(material: &Material) -> bool {
         let uv = (Vec2::new((i % 64) as f32, (i / 64) as f32) + 0.5) / 64.0;
         let at = TexturePoint::of_parameters(uv);
         numbers().any(|part| {
-            let wavelengths: Wavelengths = ColorModel::default().sample_wavelengths(0.5);
             let part = material.choose(&at, || part);
-            let bsdf = part.bsdf(&at, ColorModel::default(), &wavelengths);
+            let bsdf = part.bsdf(&at, Lanes::Rgb);
             [0.9f32, 0.2, -0.9, -0.2].into_iter().any(|z| {
                 let wo = Vec3::new((1.0 - z * z).sqrt(), 0.0, z);
                 numbers().any(|u_lobe| {

@@ -62,9 +62,8 @@ fn collision(scene: &Scene, stream: &SampleStream) -> Option<Vec3> {
     let ray = Ray::new(START, Vec3::Z);
     let chances = Chances::new(stream, 1);
     let medium = scene.medium_at(START);
-    let Interaction::Medium(locus, _) = scene
-        .advance(&ray, medium, chances, &Wavelengths::default())
-        .interaction
+    let Interaction::Medium(locus, _) =
+        scene.advance(&ray, medium, chances, Lanes::Rgb).interaction
     else {
         return None;
     };
@@ -83,7 +82,7 @@ fn density(scene: &Scene, t: f32) -> f32 {
         return 0.0;
     }
     let end = Locus::in_medium(point, here);
-    let edge = scene.edge([&start, &end], &Wavelengths::default(), Stop::NEVER);
+    let edge = scene.edge([&start, &end], Lanes::Rgb, Stop::NEVER);
     edge.map_or(0.0, |edge| edge.to_b)
 }
 
@@ -92,7 +91,7 @@ fn density(scene: &Scene, t: f32) -> f32 {
 fn stopped_rays_go_through_no_media() {
     let (scene, flag) = (ball_in_fog(), AtomicBool::new(true));
     let ends = [START, -START].map(Locus::in_space);
-    let edge = |stop| scene.edge([&ends[0], &ends[1]], &Wavelengths::default(), stop);
+    let edge = |stop| scene.edge([&ends[0], &ends[1]], Lanes::Rgb, stop);
     assert!(edge(Stop::NEVER).is_some() && edge(Stop::when(&flag)).is_none());
 }
 
@@ -182,12 +181,12 @@ fn right_guesses_are_known_as_such() {
         ("smoke", smoke(), [Vec3::ZERO, Vec3::Z], false),
     ] {
         let [a, b] = [from, to].map(|point| Locus::in_medium(point, scene.medium_at(point)));
-        let (ends, wavelengths) = ([&a, &b], Wavelengths::default());
+        let (ends, lanes) = ([&a, &b], Lanes::Rgb);
         let edge = scene
-            .edge(ends, &wavelengths, Stop::NEVER)
+            .edge(ends, lanes, Stop::NEVER)
             .expect("nothing is opaque");
         assert_eq!(edge.is_guessed, expected, "{case}");
-        let guess = scene.guessed_edge(&a, &b, &wavelengths);
+        let guess = scene.guessed_edge(&a, &b, lanes);
         let numbers = |edge: &Edge| {
             let lanes = (0..3).map(|lane| edge.transmittance[lane]);
             lanes

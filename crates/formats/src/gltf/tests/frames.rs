@@ -5,10 +5,10 @@ use crate::image::encode_png;
 use crate::import::Loaded;
 use bidir::bsdf::TransportMode;
 use bidir::math::{Vec2, Vec3};
-use bidir::path::{Job, PathContext, PathSettings, Vertex};
+use bidir::path::{Job, PathSettings, Vertex};
 use bidir::sampler::{Domain, Sampler, SamplerKind};
 use bidir::scene::Chances;
-use bidir::spectrum::{Spectrum, Wavelengths};
+use bidir::spectrum::Spectrum;
 use serde_json::{Value, json};
 
 /// Texture coordinates of the corners from the lower left, counter-clockwise.
@@ -64,22 +64,16 @@ fn normal(x: f32, y: f32, z: f32) -> [f32; 3] {
 /// f cosθ between `wo`, towards the camera, and `wi` near the centre of the plate.
 fn scattered(loaded: &Loaded, wo: Vec3, wi: Vec3) -> f32 {
     let settings = PathSettings::default();
-    let context = PathContext {
-        job: Job::of_own_subpaths(&loaded.scene, &loaded.view, &settings),
-        wavelengths: Wavelengths::default(),
-    };
+    let job = Job::of_own_subpaths(&loaded.scene, &loaded.view, &settings);
     let stream = Sampler::new(SamplerKind::Independent, 1).stream(Domain::Camera, 0, 0);
-    let space = context.job.scene.space().from_world();
+    let space = job.scene.space().from_world();
     let centre = space.transform_point3(glam::DVec3::new(0.1, 0.05, 0.0));
     let origin = centre.as_vec3() + wo * 0.01;
-    let hit = context
-        .job
-        .scene
-        .intersect(origin, -wo, Chances::new(&stream, 1));
+    let hit = job.scene.intersect(origin, -wo, Chances::new(&stream, 1));
     let hit = hit.expect("the plate is there");
-    let vertex = Vertex::surface(&context, &hit, wo, Spectrum::ONE, || 0.5);
+    let vertex = Vertex::surface(&job, &hit, wo, Spectrum::ONE, || 0.5);
     let turn = vertex.turn(wo, wi, TransportMode::Radiance);
-    turn.scatter(&context)[0] * vertex.locus.n_g.dot(wi).abs()
+    turn.scatter(&job)[0] * vertex.locus.n_g.dot(wi).abs()
 }
 
 /// Pairs of directions above the plate.

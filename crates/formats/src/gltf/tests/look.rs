@@ -14,7 +14,7 @@ use bidir::light::{Light, LightPoint};
 use bidir::locus::Locus;
 use bidir::material::{Bitangent, Material, PrincipledMaterial, Relief};
 use bidir::math::{Vec2, Vec3};
-use bidir::spectrum::{ColorModel, Wavelengths};
+use bidir::spectrum::Lanes;
 use bidir::texture::TexturePoint;
 use serde_json::{Value, json};
 
@@ -55,7 +55,7 @@ fn white_metal(roughness: f32) -> f32 {
     let loaded = draft.load().unwrap();
     let at = TexturePoint::of_parameters(Vec2::ZERO);
     let material = &loaded.scene.materials()[0];
-    let bsdf = material.bsdf(&at, ColorModel::Rgb, &Wavelengths::default());
+    let bsdf = material.bsdf(&at, Lanes::Rgb);
     let n = 40_000u16;
     let value = |i: u16| {
         let cos = (f32::from(i) + 0.5) / f32::from(n);

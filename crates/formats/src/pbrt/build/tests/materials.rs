@@ -4,7 +4,7 @@ use bidir::material::Material;
 use bidir::math::{Vec2, Vec3};
 use bidir::sampler::{Domain, Sampler, SamplerKind};
 use bidir::scene::{Chances, Scene};
-use bidir::spectrum::{ColorModel, Wavelengths};
+use bidir::spectrum::Lanes;
 use bidir::texture::TexturePoint;
 
 /// Returns the BSDF of the last material; `u` chooses a part of a mixture.
@@ -14,7 +14,7 @@ fn bsdf(text: &str, u: f32) -> Bsdf {
     let material = scene.materials().last().expect("there is a material");
     let at = TexturePoint::of_parameters(Vec2::ZERO);
     let chosen = material.choose(&at, || u);
-    chosen.bsdf(&at, ColorModel::Rgb, &Wavelengths::default())
+    chosen.bsdf(&at, Lanes::Rgb)
 }
 
 /// Checks that two ways to write a material are equal.

@@ -4,7 +4,7 @@ use super::*;
 use bidir::light::Light;
 use bidir::math::Vec3;
 use bidir::medium::MediumId;
-use bidir::spectrum::Wavelengths;
+use bidir::spectrum::Lanes;
 
 const FOG: &str = "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\"";
 
@@ -17,7 +17,7 @@ fn extinction(parameters: &str) -> [f32; 3] {
     let [medium] = scene.media() else {
         panic!("{} media", scene.media().len())
     };
-    let lanes = medium.extinction(Vec3::ZERO, scene.color(), &Wavelengths::default());
+    let lanes = medium.extinction(Vec3::ZERO, Lanes::Rgb);
     [lanes[0], lanes[1], lanes[2]]
 }
 
@@ -54,7 +54,7 @@ fn coefficients_follow_the_unit_of_a_small_scene() {
                 Shape \"sphere\" \"float radius\" 1e-6";
     let scene = load_text(text, &STRICT).scene;
     let unit = scene.space().unit as f32;
-    let found = scene.media()[0].extinction(Vec3::ZERO, scene.color(), &Wavelengths::default())[0];
+    let found = scene.media()[0].extinction(Vec3::ZERO, Lanes::Rgb)[0];
     assert!(
         (found / (2e6 * unit) - 1.0).abs() < 1e-5,
         "{found}, unit {unit}"
@@ -183,7 +183,7 @@ fn extinctions<const N: usize>(medium: &str, points: [[f32; 3]; N]) -> [[f32; 3]
     };
     points.map(|point| {
         let point = Vec3::from_array(point);
-        let lanes = medium.extinction(point, scene.color(), &Wavelengths::default());
+        let lanes = medium.extinction(point, Lanes::Rgb);
         [lanes[0], lanes[1], lanes[2]].map(|lane| (lane * 1e4).round() / 1e4)
     })
 }
@@ -385,7 +385,7 @@ fn files_of_smoke_are_read() {
     assert_eq!(kinds, ["volume"]);
     // Cell (2, 3, 4) of the leaf, along y, z and x of the world.
     let at = Vec3::new(10.0 + 0.5 * 4.0, 0.5 * -6.0, 3.0 + 0.5 * 123.0);
-    let lanes = scene.media()[0].extinction(at, scene.color(), &Wavelengths::default());
+    let lanes = scene.media()[0].extinction(at, Lanes::Rgb);
     assert_eq!([0, 1, 2].map(|i| lanes[i].round() as i32), [282, 564, 846]);
     let hot = scene.media()[0].emission(at);
     assert!(hot[0] <= 0.0 && hot[1] > 100.0 * hot[2], "{hot:?}");
@@ -409,7 +409,7 @@ fn subsurface(parameters: &str) -> [i32; 3] {
         panic!("{} media", scene.media().len())
     };
     assert_ne!(scene.medium_at(Vec3::ZERO), MediumId::VACUUM);
-    let lanes = medium.extinction(Vec3::ZERO, scene.color(), &Wavelengths::default());
+    let lanes = medium.extinction(Vec3::ZERO, Lanes::Rgb);
     [lanes[0], lanes[1], lanes[2]].map(|lane| (lane * 1e3).round() as i32)
 }
 
