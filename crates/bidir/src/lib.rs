@@ -101,4 +101,4 @@ pub(crate) mod testing;
 /// Raise it with every change after which the same scene, settings and passes have other bits, be it
 /// in an estimator, in random numbers, in the intersector, or in what readers make of a scene. The
 /// version of the program is not enough: people build what is between two of them.
-pub const ESTIMATOR_VERSION: u32 = 39;
+pub const ESTIMATOR_VERSION: u32 = 40;

@@ -5,6 +5,8 @@
 //! weights and selection never ask. Only three edges convert: emission, texture look-up and film development.
 
 mod four;
+#[cfg(test)]
+pub(crate) mod permuted;
 
 pub(crate) use four::FourSpectra;
 
@@ -166,6 +168,9 @@ pub enum Lanes {
     /// Linear Rec. 709 red, green and blue; the fourth lane is zero in all light.
     #[default]
     Rgb,
+    /// The same lanes in another order.
+    #[cfg(test)]
+    Permuted(permuted::Order),
 }
 
 impl Lanes {
@@ -174,6 +179,8 @@ impl Lanes {
     pub fn albedo(self, [r, g, b]: Rgb) -> Spectrum {
         match self {
             Self::Rgb => Spectrum([r, g, b, 0.0]),
+            #[cfg(test)]
+            Self::Permuted(order) => order.of_rgb(Self::Rgb.albedo([r, g, b])),
         }
     }
 
@@ -183,6 +190,8 @@ impl Lanes {
         match self {
             // The unused lane must stay harmless under division: it repeats blue.
             Self::Rgb => Spectrum([r, g, b, b]),
+            #[cfg(test)]
+            Self::Permuted(order) => order.of_rgb(Self::Rgb.unbounded([r, g, b])),
         }
     }
 
@@ -191,6 +200,8 @@ impl Lanes {
     pub fn illuminant(self, [r, g, b]: Rgb) -> Spectrum {
         match self {
             Self::Rgb => Spectrum([r, g, b, 0.0]),
+            #[cfg(test)]
+            Self::Permuted(order) => order.of_rgb(Self::Rgb.illuminant([r, g, b])),
         }
     }
 
@@ -199,7 +210,21 @@ impl Lanes {
     pub fn mean(self, spectrum: Spectrum) -> f32 {
         match self {
             Self::Rgb => (spectrum[0] + spectrum[1] + spectrum[2]) * (1.0 / 3.0),
+            #[cfg(test)]
+            Self::Permuted(order) => Self::Rgb.mean(order.to_rgb(spectrum)),
         }
+    }
+
+    /// The lanes that carry light.
+    #[inline]
+    pub fn carrying(self) -> impl ExactSizeIterator<Item = usize> + Clone {
+        let rgb = [0, 1, 2];
+        let lanes = match self {
+            Self::Rgb => rgb,
+            #[cfg(test)]
+            Self::Permuted(order) => rgb.map(|lane| order.lane(lane)),
+        };
+        lanes.into_iter()
     }
 
     /// One of the lanes that carry light, each as likely as others, by `u` in `[0, 1)`.
@@ -207,6 +232,8 @@ impl Lanes {
     pub fn pick_lane(self, u: f32) -> usize {
         match self {
             Self::Rgb => (u * 3.0) as usize,
+            #[cfg(test)]
+            Self::Permuted(order) => order.lane(Self::Rgb.pick_lane(u)),
         }
     }
 
@@ -215,6 +242,8 @@ impl Lanes {
     pub fn to_rgb(self, light: Spectrum) -> Rgb {
         match self {
             Self::Rgb => [light[0], light[1], light[2]],
+            #[cfg(test)]
+            Self::Permuted(order) => Self::Rgb.to_rgb(order.to_rgb(light)),
         }
     }
 

@@ -82,6 +82,13 @@ MATERIALS = [
         unit("a_varnish_reflects"),
     ),
     (
+        "a lane without light in the mean of a layer's tables",
+        "crates/bidir/src/material/coated.rs",
+        "lanes.carrying().map(|lane| filled[lane])",
+        "filled.iter().copied()",
+        unit("a_grey_haze_is_that"),
+    ),
+    (
         "what a layer scatters before it reaches the base forgotten",
         "crates/bidir/src/bsdf/coated_diffuse.rs",
         "if !self.thrown.is_black() {",

@@ -32,6 +32,35 @@ PATHS = [
         "1.0",
         PATH,
     ),
+    # --- what lanes mean ------------------------------------------------------------------
+    (
+        "light subpaths with the lanes of another group",
+        "crates/bidir/src/driver/session.rs",
+        "self.walk_light(&job, places.clone(), pass, (batch, BATCH), keep);",
+        "self.walk_light(&self.job(0, job.stop), places.clone(), pass, (batch, BATCH), keep);",
+        unit("groups_may_have_lanes"),
+    ),
+    (
+        "a sample made again with the lanes of another group",
+        "crates/bidir/src/driver/session.rs",
+        "self.job(place, Stop::NEVER)",
+        "self.job(0, Stop::NEVER)",
+        unit("replays_have_the_lanes"),
+    ),
+    (
+        "distances in media by a lane of red, green and blue",
+        "crates/bidir/src/scene/passage.rs",
+        "lane: lanes.pick_lane(u_lane),",
+        "lane: Lanes::Rgb.pick_lane(u_lane),",
+        unit("nothing_between_the_edges"),
+    ),
+    (
+        "light that is added as red, green and blue, whatever its lanes",
+        "crates/bidir/src/driver/deposit.rs",
+        "view.film().sensor.respond(lanes.to_rgb(value))",
+        "view.film().sensor.respond(crate::spectrum::Lanes::Rgb.to_rgb(value))",
+        unit("nothing_between_the_edges"),
+    ),
     # --- path: densities and weights ------------------------------------------------------
     (
         "forward and reverse density swapped",

@@ -50,14 +50,15 @@ impl Filling {
 
 impl CoatedDiffuse {
     /// A base of `reflectance` under an interface of `ggx`, tabulated as `layer`; `filled` has the
-    /// tables of each lane.
-    pub fn new(layer: &Layer, ggx: Ggx, filled: &[Filled; 4], reflectance: Spectrum) -> Self {
+    /// tables of each lane, and `mean` those of lanes that carry light in the mean.
+    pub fn new(
+        layer: &Layer,
+        ggx: Ggx,
+        filled: &[Filled; 4],
+        mean: &Filled,
+        reflectance: Spectrum,
+    ) -> Self {
         let lanes = |value: fn(&Filled) -> f32| Spectrum(filled.each_ref().map(value));
-        let mean = if filled.iter().all(|lane| lane == &filled[0]) {
-            filled[0]
-        } else {
-            Filled::mixed(filled.iter().map(|&lane| (0.25, lane)))
-        };
         let crossing = (lanes(|lane| lane.depth), mean.length);
         let coat = Coat::new(layer, ggx, layer.ratio, crossing);
         let trips = lanes(|lane| lane.internal);
@@ -170,13 +171,10 @@ impl CoatedDiffuse {
             let ggx = Ggx::new(x, y);
             let layer = Layer::new(eta, ggx.mean_alpha());
             let filled = Slab::new(&layer, thickness, 0.3).tables(&layer, &albedo);
+            let mean = Filled::mean(filled.iter().copied());
+            let filled = std::array::from_fn(|i| filled[i]);
             let reflectance = Spectrum([0.9, 0.5, 0.05, 1.0]);
-            Self::new(
-                &layer,
-                ggx,
-                &std::array::from_fn(|i| filled[i]),
-                reflectance,
-            )
+            Self::new(&layer, ggx, &filled, &mean, reflectance)
         };
         let clear = [0.0; 4];
         [

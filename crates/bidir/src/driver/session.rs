@@ -464,3 +464,6 @@ fn selector(settings: &Settings, training: Option<&Training>) -> Box<dyn Selecto
     let mean = training.map_or(0.0, |training| training.mean_luminance);
     settings.shadow_rays.selector(mean)
 }
+
+#[cfg(test)]
+mod tests;

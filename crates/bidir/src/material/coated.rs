@@ -240,7 +240,8 @@ impl CoatedDiffuseMaterial {
         let alpha = ggx.mean_alpha();
         let layer = self.layers.at(alpha);
         let filled = self.fillings.at(self.layers.axis.locate(alpha), &filling);
-        Bsdf::CoatedDiffuse(CoatedDiffuse::new(&layer, ggx, &filled, reflectance))
+        let mean = Filled::mean(lanes.carrying().map(|lane| filled[lane]));
+        Bsdf::CoatedDiffuse(CoatedDiffuse::new(&layer, ggx, &filled, &mean, reflectance))
     }
 }
 
@@ -320,8 +321,10 @@ pub const CLEAR: ColorTexture = ColorTexture::Constant([0.0; 3]);
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::bsdf::TransportMode;
     use crate::bsdf::microfacet::Ggx;
-    use crate::math::Vec3;
+    use crate::material::RoughnessMapping;
+    use crate::math::{Vec2, Vec3};
     use crate::spectrum::Spectrum;
 
     #[test]
@@ -331,6 +334,37 @@ mod tests {
         assert_eq!(axis.locate(0.5), (1, 2, 1.0 / 3.0));
         assert_eq!(axis.locate(3.0), (2, 2, 0.0));
         assert_eq!(Axis(vec![0.3]).locate(0.3), (0, 0, 0.0));
+    }
+
+    /// The lane that carries no light changes nothing in others.
+    #[test]
+    fn a_grey_haze_is_that_of_each_lane_alone() {
+        let grey = [0.6; 3];
+        let coat = CoatSettings {
+            eta: 1.5,
+            roughness: Roughness {
+                u: FloatTexture::Constant(0.3),
+                v: FloatTexture::Constant(0.3),
+                mapping: RoughnessMapping::Identity,
+            },
+            thickness: FloatTexture::Constant(1.0),
+            albedo: ColorTexture::Constant(grey),
+            g: FloatTexture::Constant(0.2),
+        };
+        let material = CoatedDiffuseMaterial::new(coat, ColorTexture::Constant(grey));
+        let at = TexturePoint::of_parameters(Vec2::ZERO);
+        let rgb = material.bsdf(&at, Lanes::Rgb);
+        let (layer, ggx) = (material.layers.at(0.3), Ggx::new(0.3, 0.3));
+        let filling = material.coat.filling(&at, Lanes::Rgb);
+        let filled = material.fillings.at((0, 0, 0.0), &filling)[0];
+        let alike = Spectrum::splat(grey[0]);
+        let alike = CoatedDiffuse::new(&layer, ggx, &[filled; 4], &filled, alike);
+        let alike = Bsdf::CoatedDiffuse(alike);
+        for [z_o, z_i] in [[1.0, 0.9], [0.9, 0.2], [0.3, 0.3], [0.1, 0.6]] {
+            let [wo, wi] = [z_o, z_i].map(|z: f32| Vec3::new((1.0 - z * z).sqrt(), 0.0, z));
+            let value = |bsdf: &Bsdf| bsdf.eval(wo, wi, TransportMode::Radiance).f;
+            assert_eq!(value(&rgb).0[..3], value(&alike).0[..3]);
+        }
     }
 
     #[test]
@@ -354,7 +388,7 @@ mod tests {
             let [between, exact] = coats.map(|(layer, filled)| {
                 let ggx = Ggx::new(alpha, alpha);
                 let white = Spectrum::ONE;
-                let bsdf = CoatedDiffuse::new(&layer, ggx, &[filled; 4], white);
+                let bsdf = CoatedDiffuse::new(&layer, ggx, &[filled; 4], &filled, white);
                 Bsdf::CoatedDiffuse(bsdf).albedo(Vec3::Z)[0]
             });
             let error = (between - exact).abs();

@@ -49,6 +49,13 @@ impl FourSpectra {
                 let [r, g, b, _] = self.0.map(Vec4::abs);
                 (r + g + b) * (1.0 / 3.0)
             }
+            #[cfg(test)]
+            Lanes::Permuted(_) => {
+                let means = self
+                    .each()
+                    .map(|spectrum| lanes.mean(spectrum.map(f32::abs)));
+                Vec4::from_array(means)
+            }
         }
     }
 }

@@ -54,6 +54,16 @@ impl Filled {
         shape: Curve::NONE,
     };
 
+    /// The mean of tables that count alike.
+    pub fn mean(mut parts: impl ExactSizeIterator<Item = Self> + Clone) -> Self {
+        let weight = 1.0 / parts.len() as f32;
+        let all = parts.clone();
+        match parts.next() {
+            Some(first) if parts.all(|part| part == first) => first,
+            _ => Self::mixed(all.map(|part| (weight, part))),
+        }
+    }
+
     /// The mean of tables by their weights, which sum to 1.
     pub fn mixed(mut parts: impl Iterator<Item = (f32, Self)>) -> Self {
         let Some((first_weight, first)) = parts.next() else {

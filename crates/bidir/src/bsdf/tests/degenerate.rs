@@ -75,7 +75,7 @@ fn coated() -> Vec<Bsdf> {
                 let white = Spectrum::ONE;
                 let slab = Slab::new(&layer, thickness, -1.0);
                 let filled = slab.tables(&layer, &[albedo])[0];
-                let varnished = CoatedDiffuse::new(&layer, ggx, &[filled; 4], white);
+                let varnished = CoatedDiffuse::new(&layer, ggx, &[filled; 4], &filled, white);
                 all.push(Bsdf::CoatedDiffuse(varnished));
                 let metal = CoatedMetal {
                     eta: Spectrum::ZERO,

@@ -129,7 +129,7 @@ fn varnish([eta, alpha]: [f32; 2], rho: f32, filling: &Filling) -> Bsdf {
     let slab = Slab::new(&layer, filling.thickness, filling.g);
     let filled = slab.tables(&layer, &[filling.albedo[0]])[0];
     let rho = Spectrum::splat(rho);
-    Bsdf::CoatedDiffuse(CoatedDiffuse::new(&layer, ggx, &[filled; 4], rho))
+    Bsdf::CoatedDiffuse(CoatedDiffuse::new(&layer, ggx, &[filled; 4], &filled, rho))
 }
 
 /// A metal of `index`, relative to the layer.
