@@ -1,8 +1,9 @@
 //! Four lanes of light.
 //!
 //! Everything that travels along a path is a [`Spectrum`]: four `f32` lanes, multiplied and added
-//! lane by lane. [`Lanes`] hold the meaning of the lanes, which belongs to all samples that are joined; BSDFs, paths,
-//! weights and selection never ask. Only three edges convert: emission, texture look-up and film development.
+//! lane by lane. [`Lanes`] has the meaning of the lanes, which all samples of a group share. Three edges convert:
+//! emission, texture look-up and film development. Between them code asks only which lanes carry light: for means,
+//! and for the lane by which a walk draws its distance.
 
 mod four;
 #[cfg(test)]
@@ -162,13 +163,12 @@ where
     0.2126 * r + 0.7152 * g + 0.0722 * b
 }
 
-/// The meaning of the four lanes of a [`Spectrum`], which all samples of a group share: those that join walks.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+/// The meaning of the four lanes of a [`Spectrum`]. All samples of a group share it, so that their walks can be joined.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Lanes {
     /// Linear Rec. 709 red, green and blue; the fourth lane is zero in all light.
-    #[default]
     Rgb,
-    /// The same lanes in another order.
+    /// The same lanes in another order; the empty one repeats red, but in light.
     #[cfg(test)]
     Permuted(permuted::Order),
 }
@@ -180,7 +180,7 @@ impl Lanes {
         match self {
             Self::Rgb => Spectrum([r, g, b, 0.0]),
             #[cfg(test)]
-            Self::Permuted(order) => order.of_rgb(Self::Rgb.albedo([r, g, b])),
+            Self::Permuted(order) => order.of_rgb(Spectrum([r, g, b, r])),
         }
     }
 
@@ -191,7 +191,7 @@ impl Lanes {
             // The unused lane must stay harmless under division: it repeats blue.
             Self::Rgb => Spectrum([r, g, b, b]),
             #[cfg(test)]
-            Self::Permuted(order) => order.of_rgb(Self::Rgb.unbounded([r, g, b])),
+            Self::Permuted(order) => order.of_rgb(Spectrum([r, g, b, r])),
         }
     }
 
@@ -215,7 +215,7 @@ impl Lanes {
         }
     }
 
-    /// The lanes that carry light.
+    /// Lists the lanes that carry light.
     #[inline]
     pub fn carrying(self) -> impl ExactSizeIterator<Item = usize> + Clone {
         let rgb = [0, 1, 2];

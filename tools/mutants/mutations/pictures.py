@@ -60,6 +60,13 @@ PICTURES = [
         layers("features"),
     ),
     (
+        "albedos as red, green and blue, whatever their lanes",
+        "crates/bidir/src/driver/features.rs",
+        "albedo: job.lanes.to_rgb(albedo),",
+        "albedo: crate::spectrum::Lanes::Rgb.to_rgb(albedo),",
+        unit("nothing_between_the_edges"),
+    ),
+    (
         "depth as the distance from the lens",
         "crates/bidir/src/driver/features.rs",
         "space.world_length(job.view.camera().depth(surface.locus.point))",

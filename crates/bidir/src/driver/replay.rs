@@ -6,7 +6,7 @@
 
 use crate::contribution::{Contribution, Term};
 use crate::film::{FilmSettings, SplatPlace};
-use crate::integrator::{Batch, Entry, Fate, Link, Sample};
+use crate::integrator::{Batch, Entry, Fate, Link};
 use crate::locus::Locus;
 use crate::path::{Job, Strategy, Subpath};
 use crate::select::Selector;
@@ -50,8 +50,8 @@ pub struct ReplayedTerm {
 /// How a candidate was chosen from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Selection {
-    /// The score that candidates are compared by: the luminance of the weighted contribution, times √V̂ if
-    /// visibility is learned.
+    /// The score that candidates are compared by: the mean of the lanes of the weighted contribution, times a guess at
+    /// that of T, and times √V̂ if visibility is learned.
     pub score: f32,
     /// The probability π of being traced.
     pub prob: f64,
@@ -98,11 +98,6 @@ impl Replay {
         };
         replay.zeros = replay.zeros(job);
         replay
-    }
-
-    /// The sample.
-    pub fn sample(&self) -> &Sample {
-        &self.batch.samples[0]
     }
 
     /// The sum of the terms that it adds to its own pixel.

@@ -29,7 +29,7 @@ struct Estimate {
 }
 
 impl Estimate {
-    /// What is true but for one case in a million, and for rounding.
+    /// Returns the mean less and plus five standard errors, and rounding.
     fn bounds(&self) -> [f64; 2] {
         let noise = 5.0 * self.error + 1e-4;
         [self.mean - noise, self.mean + noise]
@@ -69,11 +69,12 @@ fn no_draw_gains_energy() {
         assert!(largest <= bound, "{name}: weight {largest}");
         for (lane, part) in sum.into_iter().enumerate() {
             // Weights of more than one lobe differ, so that their mean is known less well.
-            let least = if is_multiple {
-                scattered_often(&bsdf, wo, lane, &name).bounds()[0]
+            let [least, most] = if is_multiple {
+                scattered_often(&bsdf, wo, lane, &name).bounds()
             } else {
-                part
+                [part; 2]
             };
+            assert!(most - least < 0.03, "{name}: {least} to {most} is blind");
             assert!(part >= 0.0 && least <= 1.0 + 1e-4, "{name}: {least}");
         }
     }
