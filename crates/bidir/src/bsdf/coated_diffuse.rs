@@ -49,8 +49,8 @@ impl Filling {
 }
 
 impl CoatedDiffuse {
-    /// A base of `reflectance` under an interface of `ggx`, tabulated as `layer`; `filled` has the
-    /// tables of each lane, and `mean` those of lanes that carry light in the mean.
+    /// Makes a base of `reflectance` under an interface of `ggx`, tabulated as `layer`. `filled` has the
+    /// table of each lane, and `mean` the mean over lanes that carry light.
     pub fn new(
         layer: &Layer,
         ggx: Ggx,
@@ -170,9 +170,9 @@ impl CoatedDiffuse {
         let coated = |eta, [x, y]: [f32; 2], thickness, albedo: [f32; 4]| {
             let ggx = Ggx::new(x, y);
             let layer = Layer::new(eta, ggx.mean_alpha());
-            let filled = Slab::new(&layer, thickness, 0.3).tables(&layer, &albedo);
-            let mean = Filled::mean(filled.iter().copied());
-            let filled = std::array::from_fn(|i| filled[i]);
+            let tables = Slab::new(&layer, thickness, 0.3).tables(&layer, &albedo);
+            let filled: [Filled; 4] = std::array::from_fn(|i| tables[i]);
+            let mean = Filled::mean(filled.into_iter());
             let reflectance = Spectrum([0.9, 0.5, 0.05, 1.0]);
             Self::new(&layer, ggx, &filled, &mean, reflectance)
         };

@@ -1,4 +1,4 @@
-//! One pass after another: threads take runs of pixels, each sample is a pure function of its pixel
+//! One pass after another: threads take groups of pixels, each sample is a pure function of its pixel
 //! and pass, and the film gets the pass when all of it is done. A pass that was stopped leaves no
 //! trace. No clock is looked at but the host's, where it gives one.
 
@@ -85,7 +85,7 @@ pub struct Session<'a> {
     training: Option<Training>,
     film: Film,
     order: Order,
-    /// The meaning of lanes, for one group after another in turn; red, green and blue serve all.
+    /// The meaning of lanes of each group; groups take the elements in turn.
     lanes: Vec<Lanes>,
     /// The medium around the camera.
     medium: MediumId,
@@ -200,7 +200,7 @@ impl<'a> Session<'a> {
             let mut batch = batch
                 .lock()
                 .unwrap_or_else(std::sync::PoisonError::into_inner);
-            if !this.render_runs(pass, &next, &mut batch, progress) {
+            if !this.render_groups(pass, &next, &mut batch, progress) {
                 given_up.store(true, Ordering::Relaxed);
             }
         });
@@ -233,8 +233,8 @@ impl<'a> Session<'a> {
         (stats, stage_times)
     }
 
-    /// Renders runs of pixels until none is left. False: one was given up.
-    fn render_runs(
+    /// Renders groups of pixels until none is left. False: one was given up.
+    fn render_groups(
         &self,
         pass: u64,
         next: &AtomicU64,
@@ -253,7 +253,7 @@ impl<'a> Session<'a> {
                 let keep = |batch: &mut Batch| self.deposit(&job).take_splats(batch);
                 self.walk_light(&job, places.clone(), pass, (batch, BATCH), keep);
             }
-            if !self.render_run(&job, places.clone(), pass, (batch, progress)) {
+            if !self.render_group(&job, places.clone(), pass, (batch, progress)) {
                 return false;
             }
             progress.advance(places.end - places.start);
@@ -269,7 +269,7 @@ impl<'a> Session<'a> {
         }
     }
 
-    /// What the samples of the group of `place` have in common.
+    /// Returns the data that samples of the group of `place` share.
     fn job<'j>(&'j self, place: u64, stop: Stop<'j>) -> Job<'j> {
         Job {
             scene: &self.scene,
@@ -303,7 +303,7 @@ impl<'a> Session<'a> {
 
     /// Takes the samples at `places` batch by batch, and keeps what they found. False: it was asked to stop, and they
     /// are given up.
-    fn render_run(
+    fn render_group(
         &self,
         job: &Job<'_>,
         mut places: Range<u64>,

@@ -94,12 +94,13 @@ impl ConductorIndex {
     /// Real and imaginary part.
     #[inline]
     fn eval(&self, at: &TexturePoint, lanes: Lanes) -> (Spectrum, Spectrum) {
-        let unbounded = |rgb: Rgb| lanes.unbounded(rgb);
         match self {
-            Self::Complex { eta, k } => (unbounded(eta.eval(at)), unbounded(k.eval(at))),
+            Self::Complex { eta, k } => {
+                (lanes.unbounded(eta.eval(at)), lanes.unbounded(k.eval(at)))
+            }
             Self::Reflectance(r) => {
                 let k = unit(r.eval(at)).map(absorption_of_reflectance);
-                (Spectrum::ONE, unbounded(k))
+                (Spectrum::ONE, lanes.unbounded(k))
             }
         }
     }

@@ -104,7 +104,7 @@ impl PathSettings {
     }
 }
 
-/// The data that all samples of a group have in common: those that may be joined with each other.
+/// The data that all samples of a group share. Only samples of one group are joined.
 #[derive(Clone, Copy)]
 pub struct Job<'a> {
     /// The scene.

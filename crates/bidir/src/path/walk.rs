@@ -235,9 +235,8 @@ impl Walker<'_> {
         let mut segment = Segment::along(from, &to, step.direction);
         let mut beta = step.beta;
         if let Some(transmittance) = transmittance {
-            let Self { job, .. } = self;
-            let (scene, lanes) = (job.scene, job.lanes);
-            let edge = scene.edge_of(transmittance, [from, &to], lanes);
+            let job = self.job;
+            let edge = job.scene.edge_of(transmittance, [from, &to], job.lanes);
             segment.pass(&edge);
             beta *= edge.walked();
         }

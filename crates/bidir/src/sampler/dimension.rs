@@ -8,7 +8,7 @@ pub enum Purpose {
     Film,
     /// Position on the lens (vertex 0 of a camera subpath).
     Lens,
-    /// Wavelengths of a group; red, green and blue need none.
+    /// Wavelengths of a group. Nothing draws them for red, green and blue; later purposes keep their numbers by it.
     Wavelengths,
     /// Which light a light subpath starts on.
     Light,

@@ -228,7 +228,7 @@ impl Span {
     }
 }
 
-/// Draws the depth where a walk stops.
+/// Draws the lane and the optical depth at which a walk stops.
 fn draw(chances: Chances<'_>, lanes: Lanes) -> Drawn {
     let [u_lane, u_depth] = chances.flight();
     Drawn {

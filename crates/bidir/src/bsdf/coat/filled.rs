@@ -54,7 +54,7 @@ impl Filled {
         shape: Curve::NONE,
     };
 
-    /// The mean of tables that count alike.
+    /// Returns the mean of tables that count alike.
     pub fn mean(mut parts: impl ExactSizeIterator<Item = Self> + Clone) -> Self {
         let weight = 1.0 / parts.len() as f32;
         let all = parts.clone();

@@ -7,23 +7,23 @@ use crate::spectrum::Lanes;
 use crate::stats::{Stage, Stats};
 use std::ops::Range;
 
-/// How many samples a group has that share no light subpaths.
-const RUN: u64 = 256;
+/// The samples of a group that shares no light subpaths.
+const UNSHARED: u64 = 256;
 
 impl Session<'_> {
-    /// How many samples a group has.
+    /// Returns the number of samples of a group.
     pub(super) fn group_size(&self) -> u64 {
         if self.method.shares_light() {
             group_size(self.view.film().crop.area())
         } else {
-            RUN
+            UNSHARED
         }
     }
 
-    /// The meaning of the lanes of the group of `place`.
+    /// Finds the meaning of lanes in the group of `place`.
     pub(super) fn lanes(&self, place: u64) -> Lanes {
         let group = place / self.group_size();
-        self.lanes[group as usize % self.lanes.len()]
+        self.lanes[(group % self.lanes.len() as u64) as usize]
     }
 
     /// How many samples there are for one light subpath.
@@ -35,7 +35,7 @@ impl Session<'_> {
         }
     }
 
-    /// The places of the group of `place`.
+    /// Finds the places of the group of `place`.
     pub(super) fn group(&self, place: u64) -> Range<u64> {
         let size = self.group_size();
         let begin = place / size * size;
