@@ -6,8 +6,8 @@ use crate::exit::Failure;
 use crate::progress::write_openjd;
 use crate::scene_io::{FilmHeader, LoadedScene};
 use crate::signals::Signals;
-use bidir::driver::{Effort, Resources, Session, SessionError, Settings, Stop};
-use std::sync::Arc;
+use bidir::driver::{Effort, Resources, SessionError, Settings, Stop};
+use formats::film::Render;
 use std::time::{Duration, Instant};
 
 /// The time after which a message says that training is running.
@@ -37,17 +37,16 @@ impl TrainingLimits {
     }
 }
 
-/// Creates and trains the session of a render. None: a signal or the end of the time came first.
-pub(crate) fn session(
+/// Begins and trains a render. None: a signal or the end of the time came first.
+pub(crate) fn render(
     args: &RenderArgs,
     loaded: &LoadedScene,
     settings: &Settings,
     signals: &Signals,
     limits: TrainingLimits,
     console: Console,
-) -> Result<Option<Box<Session<'static>>>, Failure> {
-    let (scene, view) = (Arc::clone(&loaded.scene), loaded.view.clone());
-    let settings = settings.clone();
+) -> Result<Option<Box<Render<'static>>>, Failure> {
+    let (subject, settings) = (loaded.subject.clone(), settings.clone());
     let (resources, stop) = (resources(args), signals.stop_flag());
     let train = move || {
         let effort = Effort {
@@ -55,7 +54,7 @@ pub(crate) fn session(
             is_late: &|| limits.end.is_some_and(|end| Instant::now() >= end),
             stop: Stop::when(&stop),
         };
-        Session::with_effort(scene, &view, settings, &resources, effort).map(Box::new)
+        subject.begin(&settings, &resources, effort).map(Box::new)
     };
     let (begun, mut is_said) = (Instant::now(), false);
     let tick = || {
@@ -64,15 +63,15 @@ pub(crate) fn session(
             say_training(display(args, console));
         }
     };
-    let session = match signals.wait_for(train, tick) {
+    let render = match signals.wait_for(train, tick) {
         Some(Err(SessionError::Stopped)) | None => return Ok(None),
-        Some(session) => session,
+        Some(render) => render,
     };
-    let session = session.map_err(|error| failure(loaded, &error))?;
-    if let Some(shortage) = session.shortage() {
+    let render = render.map_err(|error| failure(loaded, &error))?;
+    if let Some(shortage) = render.session.shortage() {
         console.warning(shortage);
     }
-    Ok(Some(session))
+    Ok(Some(render))
 }
 
 /// Returns the form of progress. A replay as JSON has stdout to itself.

@@ -4,9 +4,9 @@ use crate::args::LongArgs;
 use crate::exit::{Exit, Failure};
 use crate::film;
 use crate::lock::{self, FilmLock};
-use crate::scene_io::{self, FilmFile, FilmHeader, Stopping};
-use bidir::driver::Session;
+use crate::scene_io::{self, FilmFile, FilmHeader};
 use bidir::film::{Film, PassSet};
+use formats::film::Render;
 use std::ffi::OsStr;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -159,86 +159,47 @@ fn check_existing(path: &Path, args: &LongArgs) -> Result<(), Failure> {
 }
 
 /// Writes the film file of a running render, if it has one.
-pub(crate) struct CheckpointWriter {
-    checkpoint: Option<Checkpoint>,
-    header: FilmHeader,
-    /// The header of the film that the render continues.
-    earlier: Option<FilmHeader>,
-    start: Instant,
-}
+pub(crate) struct CheckpointWriter(Option<Checkpoint>);
 
 impl CheckpointWriter {
-    /// Adds the film to continue from to `session`, whose header is `header` and whose training began at
-    /// `start`.
+    /// Adds the film to continue from to `render`.
     ///
     /// Errors: the film belongs to another render.
     pub(crate) fn new(
         mut checkpoint: Option<Checkpoint>,
-        header: FilmHeader,
-        session: &mut Session<'_>,
-        start: Instant,
+        render: &mut Render<'_>,
     ) -> Result<Self, Failure> {
-        let mut earlier = None;
         if let Some(checkpoint) = &mut checkpoint
             && let Some(file) = checkpoint.film.take()
         {
-            checkpoint.check_render(&header, &file.header)?;
-            let FilmFile { header, film } = file;
-            session
-                .add_film(film)
-                .map_err(|error| Failure::new(Exit::FilmMismatch, error.to_string()))?;
-            earlier = Some(header);
+            checkpoint.check_render(render.empty(), &file.header)?;
+            let added = render.add(file);
+            added.map_err(|error| Failure::new(Exit::FilmMismatch, error.to_string()))?;
         }
-        Ok(Self {
-            checkpoint,
-            header,
-            earlier,
-            start,
-        })
+        Ok(Self(checkpoint))
     }
 
     /// Returns the name of the film file as given by --checkpoint. None: there is none.
     pub(crate) fn path(&self) -> Option<&Path> {
-        Some(&self.checkpoint.as_ref()?.name)
+        Some(&self.0.as_ref()?.name)
     }
 
     /// Returns true if the interval between checkpoints has passed.
     pub(crate) fn is_due(&self) -> bool {
         let is_due = |file: &Checkpoint| file.written.elapsed() >= file.every;
-        self.checkpoint.as_ref().is_some_and(is_due)
+        self.0.as_ref().is_some_and(is_due)
     }
 
-    /// Returns the header of the film of `session`, for film file and image. Time and counts are those of
-    /// all runs, `stopping` is that of the last.
-    pub(crate) fn header(&self, session: &Session<'_>, stopping: Stopping) -> FilmHeader {
-        if let Some(earlier) = self.unchanged(session) {
-            return earlier.clone();
-        }
-        let now = formats::film::of_run(&self.header, session, self.start.elapsed());
-        let earlier = self.earlier.as_ref();
-        let all = earlier.map_or(now.clone(), |earlier| now.joined(earlier));
-        FilmHeader { stopping, ..all }.of(session.film())
-    }
-
-    /// Returns the header of the film that the render continues if no pass was added, so that its file
-    /// stays valid.
-    fn unchanged(&self, session: &Session<'_>) -> Option<&FilmHeader> {
-        let passes = session.film().passes();
-        let earlier = self.earlier.as_ref();
-        earlier.filter(|earlier| earlier.passes == *passes)
-    }
-
-    /// Writes the film of `session` with this header, unless it is unchanged.
+    /// Writes the film of `render` with this header, unless it is unchanged.
     pub(crate) fn write(
         &mut self,
-        session: &Session<'_>,
+        render: &Render<'_>,
         header: &FilmHeader,
     ) -> Result<(), Failure> {
-        if self.unchanged(session).is_some() {
-            return Ok(());
+        match &mut self.0 {
+            Some(file) if !render.is_unchanged() => file.write(header, render.session.film()),
+            _ => Ok(()),
         }
-        let checkpoint = self.checkpoint.as_mut();
-        checkpoint.map_or(Ok(()), |file| file.write(header, session.film()))
     }
 }
 

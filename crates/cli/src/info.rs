@@ -102,7 +102,7 @@ pub(crate) fn run(args: &InfoArgs, console: Console) -> Result<Exit, Failure> {
 
 impl Info {
     fn new(name: String, loaded: &LoadedScene) -> Self {
-        let scene = &loaded.scene;
+        let scene = &loaded.subject.scene;
         let bounds = scene.bvh().bounds();
         let corners = [bounds.min, bounds.max];
         let corners = corners.map(|p| scene.space().world_point(p).as_vec3().to_array());
@@ -112,8 +112,8 @@ impl Info {
         });
         Self {
             scene: name,
-            film: FilmInfo::new(&loaded.view, loaded.output.as_deref()),
-            camera: loaded.view.camera().kind(),
+            film: FilmInfo::new(&loaded.subject.view, loaded.output.as_deref()),
+            camera: loaded.subject.view.camera().kind(),
             settings: SettingsText::from(&loaded.settings),
             spp: loaded.spp,
             shapes: count(scene.shapes(), Shape::kind),
@@ -280,7 +280,7 @@ impl FilmInfo {
 }
 
 fn blind_spots_of(loaded: &LoadedScene, integrator: IntegratorKind) -> Vec<BlindSpotInfo> {
-    let spots = blind_spots(&loaded.scene, &loaded.view, integrator).into_iter();
+    let spots = blind_spots(&loaded.subject.scene, &loaded.subject.view, integrator).into_iter();
     let info = |spot: BlindSpot| BlindSpotInfo {
         missing: spot.is_missing(),
         paths: spot.description(),

@@ -13,7 +13,7 @@ use crate::signals::Signals;
 use crate::threads;
 use bidir::driver::{Budget, Resources, SessionError};
 use bidir::film::PixelRect;
-use lab::reference::{self, Error, FILMS, Host, Plan, Provenance, Reference, Subject};
+use lab::reference::{self, Error, FILMS, Host, Plan, Provenance, Reference};
 use std::path::Path;
 use std::time::Instant;
 
@@ -33,7 +33,7 @@ pub(crate) fn run(args: &ReferenceArgs, console: Console) -> Result<Exit, Failur
     };
     loaded.print_warnings(&args.scene, 0, console)?;
     if let Some(earlier) = &earlier {
-        let same = earlier.check(&folder, &loaded.digest, loaded.view.film());
+        let same = earlier.check(&folder, &loaded.subject.digest, loaded.subject.view.film());
         same.map_err(failure)?;
     }
     let plan = plan(args, earlier.as_ref(), &loaded)?;
@@ -151,13 +151,7 @@ struct Job<'a> {
 
 impl Job<'_> {
     fn run(&self) -> Result<Exit, Failure> {
-        let name = self.args.scene.scene.display().to_string();
-        let subject = Subject {
-            name: &name,
-            digest: &self.loaded.digest,
-            scene: &self.loaded.scene,
-            view: &self.loaded.view,
-        };
+        let subject = &self.loaded.subject;
         let resources = Resources {
             threads: self.args.threads.count.into(),
             ..Resources::default()
@@ -169,7 +163,7 @@ impl Job<'_> {
             should_end: &|| self.signals.exit().is_some(),
             found: &|samples| reporter.add_earlier(samples),
         };
-        let made = reference::make(self.folder, &subject, &self.plan, &resources, host);
+        let made = reference::make(self.folder, subject, &self.plan, &resources, host);
         if let Ok(Some(_)) = made {
             reporter.complete();
         }
@@ -206,7 +200,7 @@ impl Job<'_> {
                 passes: Some(self.plan.rounded_spp().saturating_mul(2)),
                 ..Budget::default()
             },
-            samples_per_pass: self.loaded.view.film().crop.area(),
+            samples_per_pass: self.loaded.subject.view.film().crop.area(),
             start,
             first_pass: start,
         }

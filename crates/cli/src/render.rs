@@ -19,6 +19,7 @@ use crate::threads;
 use bidir::analysis::blind_spots;
 use bidir::driver::{Budget, Limit, Session, Settings, Spent};
 use bidir::integrator::IntegratorKind;
+use formats::film::Render;
 use std::time::{Duration, Instant};
 use viewer::web::Server;
 use viewer::{RenderMonitor, RequestQueue, Status};
@@ -46,7 +47,7 @@ pub(crate) fn run(args: &RenderArgs, console: Console) -> Result<Exit, Failure> 
     let load = start.elapsed();
     let mut settings = args.estimator.apply(&loaded.settings);
     let own = loaded.settings.layers.aovs();
-    settings.layers = args.layers.layers(loaded.scene.group_names(), own);
+    settings.layers = args.layers.layers(loaded.subject.scene.group_names(), own);
     let unused = settings::warn_unused(args, &settings, console);
     let lost = settings::check_strategies("--strategies", &loaded, &settings, console)?;
     let missing = settings::warn_missing(&loaded, &settings, console);
@@ -54,15 +55,15 @@ pub(crate) fn run(args: &RenderArgs, console: Console) -> Result<Exit, Failure> 
     if let Some(target) = args.replay {
         replay::check_apart(args, &loaded.inputs)?;
         let limits = TrainingLimits::new(None, None);
-        let session = begin::session(args, &loaded, &settings, &signals, limits, console)?;
-        let ended = session.map(|session| replay::run(args, session, target, &signals));
+        let render = begin::render(args, &loaded, &settings, &signals, limits, console)?;
+        let ended = render.map(|render| replay::run(args, render.session, target, &signals));
         return ended.unwrap_or_else(|| Ok(exit_of(&signals)));
     }
     let outputs = Outputs::new(args, loaded.output.as_deref())?;
     outputs.check(args, &loaded.inputs)?;
     let first = || {
-        let name = args.scene.scene.display().to_string();
-        Status::preparing(&name, loaded.view.film())
+        let subject = &loaded.subject;
+        Status::preparing(&subject.name, subject.view.film())
     };
     let server = listener.map(|listener| serve::start(listener, first(), &loaded.warnings));
     let server = server.transpose()?;
@@ -114,10 +115,10 @@ impl Job<'_> {
         server: Option<(Server, RequestQueue)>,
     ) -> Result<Exit, Failure> {
         let budget = settings::budget(&self.args.budget, &self.args.long, self.loaded.spp)?;
-        let name = self.args.scene.scene.display().to_string();
-        let header = |training| self.loaded.header(&name, self.settings, training);
+        let subject = &self.loaded.subject;
         if let Some(checkpoint) = &checkpoint {
-            checkpoint.check(&header(None), budget.range())?;
+            let header = subject.header(self.settings, None);
+            checkpoint.check(&header, budget.range())?;
         }
         let is_resumed = checkpoint.as_ref().is_some_and(Checkpoint::is_resumed);
         let earlier = checkpoint.as_ref().and_then(Checkpoint::earlier);
@@ -126,7 +127,7 @@ impl Job<'_> {
         if let Some(time) = budget.time {
             self.signals.set_alarm(time)?;
         }
-        let started = begin::session(
+        let started = begin::render(
             self.args,
             self.loaded,
             self.settings,
@@ -134,54 +135,54 @@ impl Job<'_> {
             limits,
             self.console,
         );
-        let Some(mut session) = started? else {
+        let Some(mut render) = started? else {
             return match (self.signals.exit(), budget.time) {
                 (None, Some(time)) => Err(Self::no_pass(time, is_resumed, None)),
                 _ => Ok(stopped(self.signals, is_resumed, self.console)),
             };
         };
-        session.start_at(budget.first);
-        let header = header(session.training());
-        let mut writer = CheckpointWriter::new(checkpoint, header, &mut session, start)?;
-        let tev = serve::display(self.args.display_server.as_ref(), &name)?;
+        render.session.start_at(budget.first);
+        let mut writer = CheckpointWriter::new(checkpoint, &mut render)?;
+        let tev = serve::display(self.args.display_server.as_ref(), &subject.name)?;
         let mut show = Show::new(server, tev, |queue| {
-            RenderMonitor::new(queue, &session, self.settings, budget.passes)
+            RenderMonitor::new(queue, &render.session, self.settings, budget.passes)
         });
         let clock = Clock {
             budget,
-            samples_per_pass: self.loaded.view.film().crop.area(),
+            samples_per_pass: self.loaded.subject.view.film().crop.area(),
             start,
             first_pass: Instant::now(),
         };
-        let (end, pass_time) = self.render(&mut session, clock, &mut writer, &mut show);
+        let (end, pass_time) = self.render(&mut render, clock, &mut writer, &mut show);
         let course = Course {
             load,
             render: start.elapsed(),
             stopping: end.stopping(),
         };
         match end {
-            End::Signal(_) if session.film().passes().is_empty() => {
+            End::Signal(_) if render.session.film().passes().is_empty() => {
                 return Ok(stopped(self.signals, false, self.console));
             }
             End::NoPass(time) => return Err(Self::no_pass(time, is_resumed, pass_time)),
             End::Signal(_) | End::Limit(_) => {}
         }
-        let header = writer.header(&session, course.stopping);
-        let saved = writer.write(&session, &header);
-        let report = Report::new(name, &session, budget, course);
-        let written = self.write(&session, &header, &report);
-        show.leave(&session, self.console);
+        let header = render.header(course.render, course.stopping);
+        let saved = writer.write(&render, &header);
+        let session = &render.session;
+        let report = Report::new(subject.name.clone(), session, budget, course);
+        let written = self.write(session, &header, &report);
+        show.leave(session, self.console);
         saved?;
         written?;
         let summary = || {
-            let mut summary = Summary::new(&session, budget, course);
+            let mut summary = Summary::new(session, budget, course);
             let is_part = output::is_part(self.args);
             summary.part = is_part.then(|| session.film().passes().to_string());
             summary.is_denoised = self.filter.is_some();
             summary
         };
         // One without a light was warned of before it was rendered.
-        let is_lit = !self.loaded.scene.lights().is_empty();
+        let is_lit = !self.loaded.subject.scene.lights().is_empty();
         let blank = session.blank_warning().filter(|_| is_lit);
         if let Some(warning) = &blank {
             self.console.warning(warning);
@@ -220,14 +221,14 @@ impl Job<'_> {
     /// that is known.
     fn render(
         &self,
-        session: &mut Session<'_>,
+        render: &mut Render<'_>,
         clock: Clock,
         writer: &mut CheckpointWriter,
         show: &mut Show,
     ) -> (End, Option<Duration>) {
         let budget = clock.budget;
         let display = self.console.display(self.args.output.talk);
-        let before = (session.next_pass() - budget.first) * clock.samples_per_pass;
+        let before = (render.session.next_pass() - budget.first) * clock.samples_per_pass;
         let reporter = Reporter::new(display, self.signals, clock).after(before);
         let mut rendered = 0_u64;
         let end = loop {
@@ -237,7 +238,7 @@ impl Job<'_> {
                 rendering: clock.first_pass.elapsed(),
             };
             // A signal has no effect on a render that is complete.
-            if let Some(limit) = budget.reached(session, spent) {
+            if let Some(limit) = budget.reached(&render.session, spent) {
                 break End::Limit(limit);
             }
             if let Some(exit) = self.signals.exit() {
@@ -246,16 +247,18 @@ impl Job<'_> {
             // The alarm may ring a little late.
             let is_late = budget.time.is_some_and(|time| spent.total >= time);
             let begun = Instant::now();
-            if is_late && rendered == 0 || !session.step(&reporter) {
+            if is_late && rendered == 0 || !render.session.step(&reporter) {
                 break self.broken_off(budget, rendered);
             }
             rendered += 1;
-            show.add_pass(session, begun.elapsed(), &|| {
-                writer.header(session, Stopping::Time)
+            show.add_pass(&render.session, begun.elapsed(), &|| {
+                render.header(clock.start.elapsed(), Stopping::Time)
             });
-            self.write_if_due(session, writer);
+            self.write_if_due(render, clock.start, writer);
         };
-        show.end(session, &|| writer.header(session, end.stopping()));
+        show.end(&render.session, &|| {
+            render.header(clock.start.elapsed(), end.stopping())
+        });
         match end {
             End::Limit(_) => reporter.complete(),
             End::Signal(_) => reporter.say_stop(),
@@ -276,15 +279,15 @@ impl Job<'_> {
 
     /// Writes the film file if it is due, and also the image if a signal requests it. The render continues
     /// after a failure, as a later attempt may succeed.
-    fn write_if_due(&self, session: &Session<'_>, writer: &mut CheckpointWriter) {
+    fn write_if_due(&self, render: &Render<'_>, start: Instant, writer: &mut CheckpointWriter) {
         let is_requested = self.signals.take_write_request();
         if !is_requested && !writer.is_due() {
             return;
         }
-        let header = writer.header(session, Stopping::Time);
-        let saved = writer.write(session, &header);
+        let header = render.header(start.elapsed(), Stopping::Time);
+        let saved = writer.write(render, &header);
         let written = if is_requested {
-            self.write_image(session, &header)
+            self.write_image(&render.session, &header)
         } else {
             Ok(())
         };
@@ -358,7 +361,7 @@ impl Job<'_> {
         let own = self.loaded.settings.integrator;
         self.args.estimator.integrator.is_none()
             && own == IntegratorKind::Path
-            && !blind_spots(&self.loaded.scene, &self.loaded.view, own).is_empty()
+            && !blind_spots(&self.loaded.subject.scene, &self.loaded.subject.view, own).is_empty()
     }
 }
 

@@ -32,7 +32,7 @@ pub(crate) fn check_apart(args: &RenderArgs, inputs: &[PathBuf]) -> Result<(), F
 /// Repeats a sample and prints its report, unless a signal ends that.
 pub(crate) fn run(
     args: &RenderArgs,
-    session: Box<Session<'static>>,
+    session: Session<'static>,
     target: ReplayTarget,
     signals: &Signals,
 ) -> Result<Exit, Failure> {

@@ -4,11 +4,11 @@ use crate::args::{FilmArgs, SceneArgs};
 use crate::console::Console;
 use crate::exit::{Exit, Failure};
 use crate::signals::Signals;
-use bidir::driver::{Settings, Training};
+use bidir::driver::Settings;
 use bidir::film::{FilmError, FilmSettings};
 use bidir::scene::Scene;
 use bidir::view::View;
-use formats::film::SceneIdentity;
+use formats::film::Subject;
 use formats::image::{ExrImage, ExrLayer, Format};
 use formats::outputs::Output;
 use formats::scene::{Crop, Lamp, LoadOptions, Summary};
@@ -29,10 +29,8 @@ const SMALLER: &str =
 
 /// A scene that was read, with the settings of its file.
 pub(crate) struct LoadedScene {
-    /// The scene.
-    pub(crate) scene: Arc<Scene>,
-    /// The view of the file, or the one that flags ask for.
-    pub(crate) view: View,
+    /// The scene, with the view of the file or the one that flags ask for.
+    pub(crate) subject: Subject,
     /// The file's settings, over the defaults.
     pub(crate) settings: Settings,
     /// The file's number of samples per pixel.
@@ -49,8 +47,6 @@ pub(crate) struct LoadedScene {
     film_place: Option<FilePlace>,
     /// The parts of the scene.
     pub(crate) summary: Summary,
-    /// A hash of all that was read.
-    pub(crate) digest: String,
     /// The files that the scene reads or names, which no output may replace.
     pub(crate) inputs: Vec<PathBuf>,
 }
@@ -69,8 +65,12 @@ pub(crate) fn load(args: &SceneArgs, film: Option<&FilmArgs>) -> Result<LoadedSc
     warnings.extend(film.and_then(|film| crop_warning(film, &loaded.view)));
     warnings.extend(light_warning(&loaded.scene));
     Ok(LoadedScene {
-        scene: Arc::new(loaded.scene),
-        view: loaded.view,
+        subject: Subject {
+            name: args.scene.display().to_string(),
+            digest: loaded.digest.to_string(),
+            scene: Arc::new(loaded.scene),
+            view: loaded.view,
+        },
         settings: loaded.settings.render_settings(),
         spp: loaded.settings.samples_per_pixel.into(),
         output: loaded.settings.output.map(PathBuf::from),
@@ -79,7 +79,6 @@ pub(crate) fn load(args: &SceneArgs, film: Option<&FilmArgs>) -> Result<LoadedSc
         lamps: loaded.lamps,
         film_place: loaded.film_place,
         summary: loaded.summary,
-        digest: loaded.digest.to_string(),
         inputs: loaded.inputs,
     })
 }
@@ -96,24 +95,9 @@ pub(crate) fn load_until(
 }
 
 impl LoadedScene {
-    /// Returns the header of an empty film of this scene, whose file is `name`.
-    pub(crate) fn header(
-        &self,
-        name: &str,
-        settings: &Settings,
-        training: Option<&Training>,
-    ) -> FilmHeader {
-        let scene = SceneIdentity {
-            name,
-            digest: &self.digest,
-            film: self.view.film(),
-        };
-        scene.header(settings, training)
-    }
-
     /// Returns the failure of a film that is too large, at the place that gives its size.
     pub(crate) fn too_large(&self, error: &FilmError) -> Failure {
-        let [width, height] = self.view.film().resolution;
+        let [width, height] = self.subject.view.film().resolution;
         let message = format!("a film of {width} x {height} pixels is too large: {error}");
         match &self.film_place {
             Some(place) => {

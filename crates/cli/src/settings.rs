@@ -37,7 +37,12 @@ pub(crate) fn check_strategies(
     console: Console,
 ) -> Result<usize, Failure> {
     let path = &settings.path;
-    let Some(lost) = lost_light(&loaded.scene, &loaded.view, settings.integrator, path) else {
+    let Some(lost) = lost_light(
+        &loaded.subject.scene,
+        &loaded.subject.view,
+        settings.integrator,
+        path,
+    ) else {
         return Ok(0);
     };
     let message = format!("{flag} {} {lost}", path.strategies);
@@ -68,7 +73,12 @@ pub(crate) fn check_strategies(
 /// warnings.
 pub(crate) fn warn_missing(loaded: &LoadedScene, settings: &Settings, console: Console) -> usize {
     let integrator = settings.integrator;
-    let missing = missing_light(&loaded.scene, &loaded.view, integrator, &settings.path);
+    let missing = missing_light(
+        &loaded.subject.scene,
+        &loaded.subject.view,
+        integrator,
+        &settings.path,
+    );
     for &spot in &missing {
         let (paths, remedy) = (spot.description(), spot.remedy());
         let lamps = lamps(loaded, spot);
@@ -82,7 +92,7 @@ pub(crate) fn warn_missing(loaded: &LoadedScene, settings: &Settings, console: C
 /// Names the lamps whose light is missing, as the end of a clause: the place of the first, the number of
 /// the others. Empty if the light of every lamp is missing.
 fn lamps(loaded: &LoadedScene, spot: BlindSpot) -> String {
-    let lights = loaded.scene.lights();
+    let lights = loaded.subject.scene.lights();
     let is_concerned = |lamp: &&Lamp| spot.concerns(&lights[lamp.light as usize]);
     let first = loaded.lamps.iter().find(is_concerned);
     let Some(first) = first.filter(|_| spot != BlindSpot::SeenBySpecular) else {

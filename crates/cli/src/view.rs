@@ -37,7 +37,7 @@ pub(crate) fn run(args: &ViewArgs, console: Console) -> Result<Exit, Failure> {
     let missing = settings::warn_missing(&loaded, &settings, console);
     loaded.print_warnings(&args.scene, lost + missing, console)?;
     let name = args.scene.scene.display().to_string();
-    let first = Status::interactive(&name, loaded.view.film());
+    let first = Status::interactive(&name, loaded.subject.view.film());
     let (server, queue) = serve::start(listener, first, &loaded.warnings)?;
     let render = interactive_settings(args, loaded, settings);
     let render = InteractiveRender::open(render, queue).map_err(|error| serve::failed(&error))?;
@@ -85,10 +85,7 @@ fn interactive_settings(
     settings: Settings,
 ) -> InteractiveSettings {
     InteractiveSettings {
-        name: args.scene.scene.display().to_string(),
-        digest: loaded.digest,
-        scene: loaded.scene,
-        view: loaded.view,
+        subject: loaded.subject,
         settings,
         roulette: args.estimator.path_roulette,
         threads: args.threads.count.into(),

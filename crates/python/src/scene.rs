@@ -5,7 +5,7 @@ use crate::film::{Inputs, absolute};
 use crate::wait::wait_silently;
 use bidir::driver::Settings;
 use bidir::film::FilmError;
-use bidir::view::View;
+use formats::film::Subject;
 use formats::scene::{Crop, Files, InMemory, LoadOptions, Summary, load_from};
 use formats::{ErrorKind, FilePlace};
 use pyo3::prelude::*;
@@ -16,14 +16,10 @@ use std::sync::Arc;
 /// A scene in memory, with the settings of its file.
 #[pyclass(frozen, module = "bidir._bidir")]
 pub(crate) struct Scene {
-    pub(crate) shared: Arc<bidir::scene::Scene>,
-    /// The camera of the file, and its film.
-    pub(crate) view: View,
+    /// The scene as it was named, with the view of its file.
+    pub(crate) subject: Subject,
     /// The settings of the file, over the defaults.
     pub(crate) settings: Settings,
-    /// The file, as it was named.
-    pub(crate) name: String,
-    pub(crate) digest: String,
     spp: u64,
     warnings: Vec<String>,
     summary: Summary,
@@ -69,7 +65,7 @@ pub(crate) fn in_memory(files: Vec<MemoryFile>) -> InMemory {
 impl Scene {
     /// Makes the error of a film that is too large, at the place that gives its size.
     pub(crate) fn too_large(&self, py: Python<'_>, error: &FilmError) -> PyErr {
-        let [width, height] = self.view.film().resolution;
+        let [width, height] = self.subject.view.film().resolution;
         let message = format!("a film of {width} x {height} pixels is too large: {error}");
         let text = match &self.film_place {
             Some(place) => place.error(ErrorKind::Memory, message).to_string(),
@@ -101,10 +97,12 @@ impl Scene {
         let loaded = loaded.map_err(|error| of_file(py, &error))?;
         Ok(Self {
             settings: loaded.settings.render_settings(),
-            shared: Arc::new(loaded.scene),
-            view: loaded.view,
-            name: path.display().to_string(),
-            digest: loaded.digest.to_string(),
+            subject: Subject {
+                name: path.display().to_string(),
+                digest: loaded.digest.to_string(),
+                scene: Arc::new(loaded.scene),
+                view: loaded.view,
+            },
             spp: loaded.settings.samples_per_pixel.into(),
             warnings: loaded.warnings,
             summary: loaded.summary,
@@ -117,13 +115,13 @@ impl Scene {
     /// Returns the hash of everything read.
     #[getter]
     fn digest(&self) -> &str {
-        &self.digest
+        &self.subject.digest
     }
 
     /// Returns the file, as it was named.
     #[getter]
     fn name(&self) -> &str {
-        &self.name
+        &self.subject.name
     }
 
     /// Returns the samples per pixel that the file sets.
@@ -147,20 +145,20 @@ impl Scene {
     /// Returns width and height of the whole film.
     #[getter]
     fn resolution(&self) -> [u32; 2] {
-        self.view.film().resolution
+        self.subject.view.film().resolution
     }
 
     /// Returns left, top, right, bottom of the rendered rectangle.
     #[getter]
     fn crop(&self) -> [u32; 4] {
-        let crop = self.view.film().crop;
+        let crop = self.subject.view.film().crop;
         [crop.min[0], crop.min[1], crop.max[0], crop.max[1]]
     }
 
     /// Returns the names of the light groups.
     #[getter]
     fn light_groups(&self) -> Vec<String> {
-        self.shared.group_names().to_vec()
+        self.subject.scene.group_names().to_vec()
     }
 
     /// Returns the settings of the file by name.

@@ -7,9 +7,8 @@ use crate::settings::{Requested, resolve, threads_of, warn};
 use crate::wait::{Stop, wait_silently};
 use bidir::driver::{self, Budget, Effort, Progress, Resources, Spent};
 use bidir::film::FilmError;
-use formats::film::{FilmFile, FilmHeader, SceneIdentity, Stopping, of_run};
+use formats::film::{ContinueError, FilmFile, Render, Stopping};
 use pyo3::prelude::*;
-use serde_json::Value;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
@@ -49,17 +48,11 @@ fn deadline(left: Option<f64>) -> Option<Instant> {
 }
 
 struct State {
-    session: driver::Session<'static>,
-    /// The header of an empty film.
-    header: FilmHeader,
-    /// The joined header of added films.
-    earlier: Option<FilmHeader>,
+    render: Render<'static>,
     /// The files read for the scene and for added films.
     inputs: Inputs,
     /// The render time since the film was last taken.
     time: Duration,
-    /// True if a film that was taken counts the rays of training.
-    is_training_counted: bool,
 }
 
 /// Supplies the clock of a pass, and stops it on request.
@@ -77,23 +70,6 @@ impl Progress for Watcher<'_> {
 
     fn nanoseconds(&self) -> u64 {
         self.begin.elapsed().as_nanos() as u64
-    }
-}
-
-impl State {
-    /// Makes the header of the current film, with time and counts of all runs.
-    fn header(&self) -> FilmHeader {
-        let mut now = of_run(&self.header, &self.session, self.time);
-        if self.is_training_counted
-            && let Some(training) = now.counts.pointer_mut("/rays/training")
-        {
-            *training = Value::from(0);
-        }
-        let all = match &self.earlier {
-            Some(earlier) => now.joined(earlier),
-            None => now,
-        };
-        all.of(self.session.film())
     }
 }
 
@@ -135,16 +111,16 @@ impl Session {
         };
         let begin = Instant::now();
         let part = time.map(|time| time / f64::from(Effort::PART));
-        let (shared, view, own) = (scene.shared.clone(), &scene.view, settings.clone());
-        let session = wait_silently(py, deadline(left), |stop| {
+        let subject = &scene.subject;
+        let render = wait_silently(py, deadline(left), |stop| {
             let effort = Effort {
                 samples: training.unwrap_or(u64::MAX),
                 is_late: &|| part.is_some_and(|part| begin.elapsed().as_secs_f64() >= part),
                 stop: driver::Stop::when(stop.flag()),
             };
-            driver::Session::with_effort(shared, view, own, &resources, effort)
+            subject.begin(&settings, &resources, effort)
         })?;
-        let session = session.map_err(|error| match &error {
+        let render = render.map_err(|error| match &error {
             driver::SessionError::NoPath { .. } => raise(py, "SettingsError", &error.to_string()),
             driver::SessionError::Film(error) => scene.too_large(py, error),
             driver::SessionError::Stopped => {
@@ -153,24 +129,15 @@ impl Session {
                 raise(py, "RenderError", text)
             }
         })?;
-        if let Some(shortage) = session.shortage() {
+        if let Some(shortage) = render.session.shortage() {
             warn(py, &shortage.to_string())?;
         }
-        let identity = SceneIdentity {
-            name: &scene.name,
-            digest: &scene.digest,
-            film: scene.view.film(),
-        };
-        let header = identity.header(&settings, session.training());
         Ok(Self {
-            threads: session.threads(),
+            threads: render.session.threads(),
             state: Mutex::new(State {
-                header,
-                session,
-                earlier: None,
+                render,
                 inputs: scene.inputs.clone(),
                 time: begin.elapsed(),
-                is_training_counted: false,
             }),
         })
     }
@@ -183,7 +150,7 @@ impl Session {
             let mut state = self.lock();
             let begin = Instant::now();
             let watcher = Watcher { stop, begin };
-            let is_done = state.session.step(&watcher);
+            let is_done = state.render.session.step(&watcher);
             state.time += begin.elapsed();
             is_done
         })
@@ -191,39 +158,29 @@ impl Session {
 
     /// Skips the passes before `first`.
     fn start_at(&self, py: Python<'_>, first: u64) {
-        self.with(py, |state| state.session.start_at(first));
+        self.with(py, |state| state.render.session.start_at(first));
     }
 
     /// Adds a film of the same render; its passes are not rendered again.
     fn add_film(&self, py: Python<'_>, film: &Film) -> PyResult<()> {
         let added = self.with(py, |state| {
             let inputs = film.inputs();
-            let FilmFile { header, film } = film.file();
-            if let Some(difference) = state.header.difference(header) {
-                return Err(format!("the film of another render: {difference}"));
-            }
-            let added = state.session.add_film(film.clone());
-            added.map_err(|error| error.to_string())?;
-            let earlier = state.earlier.take();
-            state.earlier = Some(earlier.map_or(header.clone(), |other| other.joined(header)));
+            state.render.add(film.file().clone())?;
             state.inputs.extend(inputs.iter().cloned());
             Ok(())
         });
-        added.map_err(|message| raise(py, "FilmError", &message))
+        added.map_err(|error: ContinueError| raise(py, "FilmError", &error.to_string()))
     }
 
     /// Copies the film, with the given stopping rule.
     fn film(&self, py: Python<'_>, stopping: &str) -> PyResult<Film> {
         let stopping = stopping_of(py, stopping)?;
-        if let Some(blank) = self.with(py, |state| state.session.blank_warning()) {
+        if let Some(blank) = self.with(py, |state| state.render.session.blank_warning()) {
             warn(py, &blank)?;
         }
         let film = self.with(py, |state| {
-            let header = FilmHeader {
-                stopping,
-                ..state.header()
-            };
-            let film = state.session.film().try_clone()?;
+            let header = state.render.header(state.time, stopping);
+            let film = state.render.session.film().try_clone()?;
             Ok(Film::new(header, film, state.inputs.clone()))
         });
         film.map_err(|error| no_memory(py, &error))
@@ -232,10 +189,8 @@ impl Session {
     /// Takes the film; the session continues with an empty one.
     fn take_film(&self, py: Python<'_>) -> PyResult<Film> {
         let film = self.with(py, |state| {
-            let header = state.header();
-            let (film, _) = state.session.take_film()?;
-            (state.earlier, state.time) = (None, Duration::ZERO);
-            state.is_training_counted = true;
+            let FilmFile { header, film } = state.render.take(state.time, Stopping::Fixed)?;
+            state.time = Duration::ZERO;
             Ok(Film::new(header, film, state.inputs.clone()))
         });
         film.map_err(|error| no_memory(py, &error))
@@ -244,21 +199,21 @@ impl Session {
     /// Returns the pass that `step` renders next.
     #[getter]
     fn next_pass(&self, py: Python<'_>) -> u64 {
-        self.with(py, |state| state.session.next_pass())
+        self.with(py, |state| state.render.session.next_pass())
     }
 
     /// Returns the finished passes, each range with its exclusive end.
     #[getter]
     fn passes(&self, py: Python<'_>) -> Vec<(u64, u64)> {
         self.with(py, |state| {
-            crate::film::ranges(state.session.film().passes())
+            crate::film::ranges(state.render.session.film().passes())
         })
     }
 
     /// Returns the estimated relative error of the image.
     #[getter]
     fn noise(&self, py: Python<'_>) -> f64 {
-        self.with(py, |state| state.session.noise())
+        self.with(py, |state| state.render.session.noise())
     }
 
     /// Returns the rule that ends a render with these limits before its next pass; None if there is one.
@@ -281,7 +236,7 @@ impl Session {
             total: duration(seconds),
             rendering: duration(seconds),
         };
-        let limit = self.with(py, |state| budget.reached(&state.session, spent));
+        let limit = self.with(py, |state| budget.reached(&state.render.session, spent));
         limit.map(|limit| Stopping::from(limit).name())
     }
 
@@ -294,13 +249,15 @@ impl Session {
     /// Returns every setting of the estimator by name, including automatic choices.
     #[getter]
     fn settings(&self, py: Python<'_>) -> crate::settings::Texts {
-        self.with(py, |state| lab::experiment::texts(state.session.settings()))
+        self.with(py, |state| {
+            lab::experiment::texts(state.render.session.settings())
+        })
     }
 
     /// Returns the hash of everything that the bits depend on, except the passes.
     #[getter]
     fn identity(&self, py: Python<'_>) -> String {
-        self.with(py, |state| state.header.identity.clone())
+        self.with(py, |state| state.render.empty().identity.clone())
     }
 }
 

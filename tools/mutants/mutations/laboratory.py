@@ -62,7 +62,7 @@ LABORATORY = [
     (
         "records of another experiment gone on from",
         "crates/lab/src/experiment/identity.rs",
-        "            loaded.digest,\n",
+        "            loaded.subject.digest,\n",
         "            0,\n",
         experiment("another_experiment"),
     ),

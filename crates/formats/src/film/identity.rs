@@ -7,9 +7,11 @@ use super::settings::{SettingsText, flag, text};
 use crate::image::MetadataValue;
 use bidir::ESTIMATOR_VERSION;
 use bidir::driver::{Session, Settings, Training};
-use bidir::film::FilmSettings;
+use bidir::scene::Scene;
+use bidir::view::View;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
+use std::sync::Arc;
 use std::time::Duration;
 
 /// The version of the program.
@@ -21,22 +23,24 @@ const TRAINING: &str = "training";
 /// The plan of `auto`, known only after training.
 const PLAN: &str = "plan";
 
-/// The scene of a film.
-#[derive(Clone, Copy, Debug)]
-pub struct SceneIdentity<'a> {
+/// A scene that is rendered, with the view of it.
+#[derive(Clone, Debug)]
+pub struct Subject {
     /// The name of the scene file as it was given.
-    pub name: &'a str,
+    pub name: String,
     /// The hash of all files that were read for the scene, as text.
-    pub digest: &'a str,
-    /// The geometry of the film.
-    pub film: &'a FilmSettings,
+    pub digest: String,
+    /// The scene.
+    pub scene: Arc<Scene>,
+    /// The view of it.
+    pub view: View,
 }
 
-impl SceneIdentity<'_> {
+impl Subject {
     /// Returns the header of an empty film of this scene. `training` is None before training, and for
     /// renders that need none.
     pub fn header(&self, settings: &Settings, training: Option<&Training>) -> FilmHeader {
-        new(self.name, self.all_settings(settings, training))
+        new(&self.name, self.all_settings(settings, training))
     }
 
     /// Returns everything except the passes that the bits of the picture depend on, by name.
@@ -45,14 +49,14 @@ impl SceneIdentity<'_> {
         settings: &Settings,
         training: Option<&Training>,
     ) -> BTreeMap<String, String> {
-        let film = self.film;
+        let film = self.view.film();
         let mut settings = SettingsText::from(settings).by_flag();
         let [width, height] = film.resolution;
         let ([left, top], [right, bottom]) = (film.crop.min, film.crop.max);
         let own = [
             ("version", VERSION.to_owned()),
             ("estimator-version", ESTIMATOR_VERSION.to_string()),
-            ("scene-digest", self.digest.to_owned()),
+            ("scene-digest", self.digest.clone()),
             ("size", format!("{width} x {height}")),
             ("crop", format!("{left},{top},{right},{bottom}")),
         ];
@@ -77,7 +81,7 @@ pub fn program() -> String {
     format!("bidir {VERSION}")
 }
 
-fn new(name: &str, settings: BTreeMap<String, String>) -> FilmHeader {
+pub(super) fn new(name: &str, settings: BTreeMap<String, String>) -> FilmHeader {
     FilmHeader::new(&program(), name.to_owned(), settings)
 }
 
@@ -121,7 +125,7 @@ fn counts(session: &Session<'_>) -> Value {
 }
 
 /// Returns the header with the time and the counts of this run.
-pub fn of_run(header: &FilmHeader, session: &Session<'_>, time: Duration) -> FilmHeader {
+pub(super) fn of_run(header: &FilmHeader, session: &Session<'_>, time: Duration) -> FilmHeader {
     FilmHeader {
         seconds: time.as_secs_f64(),
         counts: counts(session),

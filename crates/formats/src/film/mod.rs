@@ -32,16 +32,16 @@ mod developed;
 mod header;
 mod identity;
 mod layers;
+mod render;
 mod settings;
 #[cfg(test)]
 mod tests;
 
 pub use developed::Developed;
 pub use header::{FilmHeader, Stopping};
-pub use identity::{
-    SceneIdentity, counts_by_name, metadata, of_run, program, training_samples, untrained,
-};
+pub use identity::{Subject, counts_by_name, metadata, program, training_samples, untrained};
 pub use layers::{LayerNames, StrategyImagesName};
+pub use render::{ContinueError, Render};
 pub use settings::SettingsText;
 
 use crate::bytes;

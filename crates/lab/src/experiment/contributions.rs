@@ -14,6 +14,7 @@ use bidir::integrator::{Batch, Method, Sample};
 use bidir::path::Job;
 use bidir::sampler::{Domain, Sampler};
 use bidir::select::ShadowRays;
+use formats::film::Subject;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
@@ -95,7 +96,7 @@ fn of_method(
         passes.iter().map(pass).collect()
     };
     let [weighted, unweighted] = [sorted(|term| term[1]), sorted(|term| term[0])];
-    let samples = loaded.view.film().crop.area() as f64;
+    let samples = loaded.subject.view.film().crop.area() as f64;
     let both = weighted.iter().zip(&unweighted);
     let pass = |(weighted, unweighted): (&Vec<f64>, &Vec<f64>)| {
         let numbers = [weighted, unweighted].map(|values| figures(values, samples));
@@ -141,7 +142,7 @@ fn figures(values: &[f64], samples: f64) -> [f64; FIGURES.len() / 2] {
 
 /// Takes one sample of every pixel; returns the terms of its connections, without and with weight.
 fn terms(loaded: &LoadedScene<'_>, settings: &Settings, pass: u64) -> Vec<[f64; 2]> {
-    let LoadedScene { scene, view, .. } = loaded;
+    let Subject { scene, view, .. } = &loaded.subject;
     let film = view.film();
     let sampler = Sampler::new(settings.sampler, settings.seed);
     let job = Job::of_own_subpaths(scene, view, &settings.path);

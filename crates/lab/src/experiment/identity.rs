@@ -27,7 +27,7 @@ pub(super) fn identity(
             text,
             "scene {:?} {} {:?} {reference}",
             loaded.spec.name,
-            loaded.digest,
+            loaded.subject.digest,
             loaded.size(),
         );
         for method in experiment.methods_in(&loaded.spec.name) {

@@ -7,19 +7,17 @@ use crate::results::SceneInfo;
 use bidir::driver::{Effort, Resources, Session, SessionError, Settings, Stop};
 use bidir::film::Layers;
 use bidir::integrator::IntegratorKind;
-use bidir::scene::Scene;
-use bidir::view::View;
+use formats::film::Subject;
 use formats::scene::{Files, LoadOptions};
 use std::path::PathBuf;
+use std::sync::Arc;
 
 /// A scene in memory, with the settings of its file.
 pub(super) struct LoadedScene<'a> {
     pub(super) spec: &'a SceneSpec,
-    pub(super) scene: Scene,
-    pub(super) view: View,
+    pub(super) subject: Subject,
     /// The settings of the file, over the defaults.
     pub(super) settings: Settings,
-    pub(super) digest: String,
     /// Warnings about the file.
     pub(super) warnings: Vec<String>,
     /// All files read for it.
@@ -62,15 +60,18 @@ impl<'a> LoadedScene<'a> {
         let loaded = loaded.map_err(|error| Place::of_named(spec.file_place.as_ref(), error))?;
         Ok(Self {
             spec,
-            scene: loaded.scene,
-            view: loaded.view,
+            subject: Subject {
+                name: spec.file.clone(),
+                digest: loaded.digest.to_string(),
+                scene: Arc::new(loaded.scene),
+                view: loaded.view,
+            },
             // The experiment sets the seeds, and needs no layers.
             settings: Settings {
                 seed: 0,
                 layers: Layers::default(),
                 ..loaded.settings.render_settings()
             },
-            digest: loaded.digest.to_string(),
             warnings: loaded.warnings,
             files: loaded.files,
             inputs: loaded.inputs,
@@ -126,8 +127,8 @@ impl<'a> LoadedScene<'a> {
             stop,
             ..Effort::WHOLE
         };
-        let (scene, view) = (&self.scene, &self.view);
-        match Session::with_effort(scene, view, settings, &resources, effort) {
+        let Subject { scene, view, .. } = &self.subject;
+        match Session::with_effort(&**scene, view, settings, &resources, effort) {
             Ok(session) => Ok(Some(session)),
             Err(SessionError::Stopped) => Ok(None),
             Err(error) => Err(ExperimentError::Render {
@@ -139,7 +140,7 @@ impl<'a> LoadedScene<'a> {
 
     /// Returns width and height of the images. Unit: pixels.
     pub(super) fn size(&self) -> [usize; 2] {
-        let crop = self.view.film().crop;
+        let crop = self.subject.view.film().crop;
         [crop.width() as usize, crop.height() as usize]
     }
 
@@ -147,7 +148,7 @@ impl<'a> LoadedScene<'a> {
         SceneInfo {
             name: self.spec.name.clone(),
             file: self.spec.file.clone(),
-            digest: self.digest.clone(),
+            digest: self.subject.digest.clone(),
             size: self.size(),
             reference: reference.words.clone(),
             reference_image: reference.image.clone(),

@@ -130,7 +130,7 @@ impl PyramidRun<'_> {
         if longest <= pyramid::TILE {
             return self.render(observer);
         }
-        let resolution = self.scene.view.film().resolution;
+        let resolution = self.scene.subject.view.film().resolution;
         let small = |side: u32| (u64::from(side) * pyramid::TILE as u64 / longest as u64).max(1);
         let spec = SceneSpec {
             size: Some(resolution.map(|side| small(side) as u32)),

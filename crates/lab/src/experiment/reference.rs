@@ -9,7 +9,7 @@ use super::run_set::{Ready, Setup};
 use super::settings::texts;
 use super::{Absent, Experiment, Presence, ReferenceRecipe, ReferenceSpec};
 use crate::image::Pixels;
-use crate::reference::{self as references, Host, Plan, Subject};
+use crate::reference::{self as references, Host, Plan};
 use crate::seal::sha256;
 use bidir::ESTIMATOR_VERSION;
 use bidir::driver::{Progress, Resources, Stop};
@@ -154,7 +154,7 @@ pub(super) fn written(loaded: &LoadedScene<'_>, setup: &Setup) -> Vec<PathBuf> {
 fn load(loaded: &LoadedScene<'_>, folder: &Path, name: Option<&str>) -> Result<Reference> {
     let of_scene = |error| failed(loaded, error);
     let reference = references::Reference::load(folder).map_err(of_scene)?;
-    let checked = reference.check(&loaded.digest, loaded.view.film());
+    let checked = reference.check(&loaded.subject.digest, loaded.subject.view.film());
     checked.map_err(of_scene)?;
     new(loaded, reference, name)
 }
@@ -248,7 +248,7 @@ fn folder(loaded: &LoadedScene<'_>, plan: &Plan) -> String {
     let [width, height] = loaded.size();
     let identity = format!(
         "{ESTIMATOR_VERSION} {} {width}x{height} {} {settings:?}",
-        loaded.digest, plan.spp
+        loaded.subject.digest, plan.spp
     );
     let hash = sha256(identity.as_bytes());
     format!(
@@ -270,12 +270,6 @@ fn make(
     if let Ok(reference) = load(loaded, &path, Some(&name)) {
         return Ok(Some(reference));
     }
-    let subject = Subject {
-        name: &loaded.spec.file,
-        digest: &loaded.digest,
-        scene: &loaded.scene,
-        view: &loaded.view,
-    };
     let resources = Resources {
         threads,
         ..Resources::default()
@@ -286,7 +280,7 @@ fn make(
         should_end: &|| watch.should_end(),
         found: &|samples| watch.advance(samples),
     };
-    let made = references::make(&path, &subject, plan, &resources, host);
+    let made = references::make(&path, &loaded.subject, plan, &resources, host);
     let Some(reference) = made.map_err(|error| failed(loaded, error))? else {
         return Ok(None);
     };
@@ -309,7 +303,7 @@ impl<'a> Watch<'a> {
     fn new(loaded: &'a LoadedScene<'_>, plan: &Plan, observer: &'a mut dyn Observer) -> Self {
         Self {
             scene: &loaded.spec.name,
-            samples_per_pass: loaded.view.film().crop.area().max(1),
+            samples_per_pass: loaded.subject.view.film().crop.area().max(1),
             passes: 2 * plan.rounded_spp(),
             samples: AtomicU64::new(0),
             flag: observer.stop_flag(),

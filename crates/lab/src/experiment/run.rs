@@ -82,7 +82,7 @@ impl Run<'_> {
             }
             BudgetKind::Rays => {
                 let rays = rays(session);
-                let target = self.budget.amount * self.scene.view.film().crop.area() as f64;
+                let target = self.budget.amount * self.scene.subject.view.film().crop.area() as f64;
                 let now = rays.total() as f64;
                 let is_nearer = |next: f64| (next - target).abs() < (now - target).abs();
                 another(passes, now, rays.training as f64, is_nearer)

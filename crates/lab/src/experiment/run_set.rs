@@ -204,7 +204,12 @@ fn check_strategies(
 fn loss(method: &MethodSpec, loaded: &LoadedScene<'_>) -> Result<Option<String>> {
     let settings = method.request.apply(&loaded.settings);
     let path = &settings.path;
-    let Some(lost) = lost_light(&loaded.scene, &loaded.view, settings.integrator, path) else {
+    let Some(lost) = lost_light(
+        &loaded.subject.scene,
+        &loaded.subject.view,
+        settings.integrator,
+        path,
+    ) else {
         return Ok(None);
     };
     let text = format!("strategies {} {lost}", path.strategies);

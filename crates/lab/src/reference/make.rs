@@ -12,10 +12,8 @@ use bidir::driver::{Progress, Resources, Settings};
 use bidir::film::{Aov, Layers};
 use bidir::integrator::IntegratorKind;
 use bidir::sampler::SamplerKind;
-use bidir::scene::Scene;
 use bidir::settings::Request;
-use bidir::view::View;
-use formats::film::{Developed, FilmHeader, SceneIdentity, SettingsText, metadata};
+use formats::film::{Developed, FilmHeader, SettingsText, Subject, metadata};
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::io::ErrorKind;
@@ -35,29 +33,6 @@ pub struct Host<'a> {
     pub should_end: &'a dyn Fn() -> bool,
     /// Receives the number of samples in existing films.
     pub found: &'a dyn Fn(u64),
-}
-
-/// The scene of a reference.
-#[derive(Clone, Copy)]
-pub struct Subject<'a> {
-    /// The scene file, as it was named.
-    pub name: &'a str,
-    /// The hash of everything read for it, as text.
-    pub digest: &'a str,
-    /// The scene.
-    pub scene: &'a Scene,
-    /// The view of it; the reference has its film.
-    pub view: &'a View,
-}
-
-impl Subject<'_> {
-    pub(super) fn identity(&self) -> SceneIdentity<'_> {
-        SceneIdentity {
-            name: self.name,
-            digest: self.digest,
-            film: self.view.film(),
-        }
-    }
 }
 
 /// The settings of a reference.
@@ -123,7 +98,7 @@ impl Plan {
 /// has more passes than requested; a render cannot start.
 pub fn make(
     folder: &Path,
-    subject: &Subject<'_>,
+    subject: &Subject,
     plan: &Plan,
     resources: &Resources,
     host: Host<'_>,
@@ -180,7 +155,7 @@ pub fn clear(folder: &Path) -> Result<(), Error> {
 /// Compares the replicates of both estimators, and writes images and provenance.
 fn finish(
     folder: &Path,
-    subject: &Subject<'_>,
+    subject: &Subject,
     plan: &Plan,
     made: [&Replicates; 2],
 ) -> Result<Reference, Error> {
@@ -206,8 +181,8 @@ fn finish(
         format: FORMAT,
         program: formats::film::program(),
         estimator_version: ESTIMATOR_VERSION,
-        scene: subject.name.to_owned(),
-        scene_digest: subject.digest.to_owned(),
+        scene: subject.name.clone(),
+        scene_digest: subject.digest.clone(),
         resolution: header.resolution,
         crop: header.crop,
         estimators: [0, 1].map(|i| record(&plan.estimators[i], i as u64, &made[i].header)),

@@ -36,13 +36,14 @@ mod replicate;
 mod tests;
 
 pub use agreement::Agreement;
-pub use make::{Host, Plan, Subject, clear, files, make};
+pub use make::{Host, Plan, clear, files, make};
 pub use provenance::{EstimatorRecord, FORMAT, Provenance};
 
 use crate::image::{Pixels, digest};
 use crate::statistics::Estimated;
 use bidir::driver::SessionError;
 use bidir::film::{FilmSettings, MergeError};
+use formats::film::ContinueError;
 use std::path::{Path, PathBuf};
 use thiserror::Error;
 
@@ -136,6 +137,16 @@ impl Error {
         Self::Damaged {
             path: path.to_owned(),
             reason: reason.into(),
+        }
+    }
+
+    fn continued(path: &Path, error: ContinueError) -> Self {
+        match error {
+            ContinueError::OtherRender(difference) => Self::OtherRender {
+                path: path.to_owned(),
+                difference,
+            },
+            ContinueError::Merge(error) => Self::merge(path, &error),
         }
     }
 

@@ -1,11 +1,11 @@
 //! The replicates of an estimator: rendering, writing and continuing their films.
 
-use super::make::{Host, Subject};
+use super::make::Host;
 use super::{Error, FILMS, REPLICATES};
 use crate::image::Pixels;
-use bidir::driver::{Effort, Resources, Session, SessionError, Settings};
+use bidir::driver::{Effort, Resources, SessionError, Settings};
 use bidir::film::{Film, PassSet};
-use formats::film::{FilmFile, FilmHeader, Stopping};
+use formats::film::{FilmFile, FilmHeader, Render, Stopping, Subject};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -15,7 +15,7 @@ const WRITE_EVERY: Duration = Duration::from_secs(300);
 /// An estimator that renders replicates.
 pub(super) struct Estimator<'a> {
     pub(super) folder: &'a Path,
-    pub(super) subject: &'a Subject<'a>,
+    pub(super) subject: &'a Subject,
     /// The settings of the first replicate; the seeds of the others follow its seed.
     pub(super) settings: Settings,
     /// The prefix of the names of its films.
@@ -84,7 +84,7 @@ impl Estimator<'_> {
         settings: &Settings,
         host: Host<'_>,
     ) -> Result<Option<FilmFile>, Error> {
-        let untrained = self.subject.identity().header(settings, None);
+        let untrained = self.subject.header(settings, None);
         let earlier = self.earlier(path, &untrained)?;
         if let Some(file) = &earlier {
             let area = self.subject.view.film().crop.area();
@@ -117,21 +117,6 @@ impl Estimator<'_> {
         })
     }
 
-    /// Starts the session of a replicate. None: the host asked to stop in training.
-    fn session(&self, settings: &Settings, host: Host<'_>) -> Result<Option<Session<'_>>, Error> {
-        let Subject { scene, view, .. } = self.subject;
-        let effort = Effort {
-            stop: host.progress.stop(),
-            ..Effort::WHOLE
-        };
-        let settings = settings.clone();
-        match Session::with_effort(*scene, view, settings, self.resources, effort) {
-            Ok(session) => Ok(Some(session)),
-            Err(SessionError::Stopped) => Ok(None),
-            Err(error) => Err(error.into()),
-        }
-    }
-
     fn render(
         &self,
         path: &Path,
@@ -141,40 +126,42 @@ impl Estimator<'_> {
     ) -> Result<Option<FilmFile>, Error> {
         let start = host.progress.nanoseconds();
         let since = |start| Duration::from_nanos(host.progress.nanoseconds().saturating_sub(start));
-        let Some(mut session) = self.session(settings, host)? else {
-            return Ok(None);
+        let effort = Effort {
+            stop: host.progress.stop(),
+            ..Effort::WHOLE
         };
-        let header = self.subject.identity();
-        let header = header.header(settings, session.training());
-        let before = earlier.as_ref().map(|file| file.header.clone());
+        let begun = self.subject.begin(settings, self.resources, effort);
+        let mut render = match begun {
+            Err(SessionError::Stopped) => return Ok(None),
+            begun => begun?,
+        };
         if let Some(file) = earlier {
-            check(path, &header, &file.header)?;
-            let added = session.add_film(file.film);
-            added.map_err(|error| Error::merge(path, &error))?;
+            let continued = render.add(file);
+            continued.map_err(|error| Error::continued(path, error))?;
         }
-        let write = |session: &Session<'_>, stopping| {
-            let run = formats::film::of_run(&header, session, since(start));
-            let all = before.as_ref().map_or(run.clone(), |old| run.joined(old));
-            let header = FilmHeader { stopping, ..all }.of(session.film());
-            formats::film::write(path, &header, session.film()).map(|()| header)
-        };
         let mut written = start;
-        while session.next_pass() < self.passes {
-            if (host.should_end)() || !session.step(host.progress) {
-                if !session.film().passes().is_empty() {
-                    write(&session, Stopping::Time)?;
+        while render.session.next_pass() < self.passes {
+            if (host.should_end)() || !render.session.step(host.progress) {
+                if !render.session.film().passes().is_empty() {
+                    write(path, &render, since(start))?;
                 }
                 return Ok(None);
             }
             if since(written) >= WRITE_EVERY {
-                write(&session, Stopping::Time)?;
+                write(path, &render, since(start))?;
                 written = host.progress.nanoseconds();
             }
         }
-        let header = write(&session, Stopping::Fixed)?;
-        let film = session.into_film();
-        Ok(Some(FilmFile { header, film }))
+        let file = render.into_file(since(start), Stopping::Fixed);
+        formats::film::write(path, &file.header, &file.film)?;
+        Ok(Some(file))
     }
+}
+
+/// Writes the film of a render that may be interrupted, which took `time` so far.
+fn write(path: &Path, render: &Render<'_>, time: Duration) -> Result<(), Error> {
+    let header = render.header(time, Stopping::Time);
+    Ok(formats::film::write(path, &header, render.session.film())?)
 }
 
 /// Returns the path of a replicate's film in `folder`; `name` is the estimator's prefix.

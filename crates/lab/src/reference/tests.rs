@@ -5,9 +5,11 @@ use bidir::driver::{Progress, Resources, Settings};
 use bidir::integrator::IntegratorKind;
 use bidir::path::LightPointChoice;
 use bidir::sampler::SamplerKind;
+use formats::film::Subject;
 use formats::pbrt::{LoadOptions, Loaded, build, parse_text};
 use std::cell::Cell;
 use std::fs;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use tempfile::TempDir;
 
@@ -33,6 +35,16 @@ fn scene(text: &str) -> Loaded {
     build(&description, &LoadOptions::default()).unwrap()
 }
 
+fn subject(text: &str) -> Subject {
+    let loaded = scene(text);
+    Subject {
+        name: "room.pbrt".to_owned(),
+        digest: loaded.digest.to_string(),
+        scene: Arc::new(loaded.scene),
+        view: loaded.view,
+    }
+}
+
 /// A host without progress and clock, which never stops.
 const SILENT: Host<'static> = Host {
     progress: &(),
@@ -43,17 +55,14 @@ const SILENT: Host<'static> = Host {
 /// A temporary folder and a scene.
 struct Workplace {
     folder: TempDir,
-    loaded: Loaded,
-    digest: String,
+    subject: Subject,
 }
 
 impl Workplace {
     fn new() -> Self {
-        let loaded = scene(SCENE);
         Self {
             folder: tempfile::tempdir().unwrap(),
-            digest: loaded.digest.to_string(),
-            loaded,
+            subject: subject(SCENE),
         }
     }
 
@@ -62,17 +71,11 @@ impl Workplace {
     }
 
     fn made(&self, name: &str, plan: &Plan, host: Host<'_>) -> Result<Option<Reference>, Error> {
-        let subject = Subject {
-            name: "room.pbrt",
-            digest: &self.digest,
-            scene: &self.loaded.scene,
-            view: &self.loaded.view,
-        };
         let resources = Resources {
             threads: 1,
             ..Resources::default()
         };
-        make(&self.path(name), &subject, plan, &resources, host)
+        make(&self.path(name), &self.subject, plan, &resources, host)
     }
 
     #[track_caller]
@@ -113,7 +116,7 @@ fn estimators_that_agree_make_a_reference() {
     assert!(crate::image::identical(&loaded.variance, &made.variance));
     assert_eq!(loaded.provenance.estimators, made.provenance.estimators);
     loaded
-        .check(&place.digest, place.loaded.view.film())
+        .check(&place.subject.digest, place.subject.view.film())
         .unwrap();
     for (record, light) in made.provenance.estimators.iter().zip([true, false]) {
         assert_eq!((record.spp, record.replicates), (256, REPLICATES));
@@ -243,16 +246,16 @@ fn another_scene_and_another_film_are_refused() {
     };
     let changed = refused(&SCENE.replace("9 8 7", "9 8 8"));
     assert!(changed.contains("one that has changed since"), "{changed}");
-    let mut film = place.loaded.view.film().clone();
+    let mut film = place.subject.view.film().clone();
     film.crop.max[1] = 7;
-    let error = reference.check(&place.digest, &film).unwrap_err();
+    let error = reference.check(&place.subject.digest, &film).unwrap_err();
     assert!(
         error
             .to_string()
             .contains("another crop: 0,0,12,8, not 0,0,12,7")
     );
     film.resolution = [24, 16];
-    let error = reference.check(&place.digest, &film).unwrap_err();
+    let error = reference.check(&place.subject.digest, &film).unwrap_err();
     assert!(error.to_string().contains("of 12 x 8 pixels, not 24 x 16"));
 }
 
@@ -266,8 +269,7 @@ fn films_of_another_render_are_refused() {
     let expected =
         "picture-00.film is the film of another render: sampler is sobol here and independent";
     assert!(error.contains(expected), "{error}");
-    place.loaded = scene(&SCENE.replace("9 8 7", "9 8 8"));
-    place.digest = place.loaded.digest.to_string();
+    place.subject = subject(&SCENE.replace("9 8 7", "9 8 8"));
     let error = place.made("a", &plan(32), SILENT).unwrap_err().to_string();
     assert!(error.contains("scene-digest is"), "{error}");
 }

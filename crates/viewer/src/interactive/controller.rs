@@ -7,15 +7,13 @@ use super::slot::{RenderSlot, without_training};
 use crate::shared::{Request, RequestQueue};
 use crate::status::{LaneId, State, Status};
 use crate::view::{Course, RenderView};
-use bidir::driver::{Effort, Resources, Session, SessionError, Settings};
+use bidir::driver::{Effort, Resources, SessionError, Settings};
 use bidir::film::{Aov, Layers};
 use bidir::path::PathRoulette;
-use bidir::scene::Scene;
 use bidir::settings::Choice;
 use bidir::view::View;
-use formats::film::{FilmHeader, SceneIdentity, program};
+use formats::film::Subject;
 use std::ops::ControlFlow;
-use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 /// The least time between two statuses, however short passes are.
@@ -26,9 +24,8 @@ const NAP: Duration = Duration::from_secs(60);
 /// The state of the thread.
 pub(super) struct RenderController {
     pub(super) queue: RequestQueue,
-    name: String,
-    digest: String,
-    scene: Arc<Scene>,
+    /// The scene, with its own view.
+    subject: Subject,
     resources: Resources,
     target: Option<u64>,
     pub(super) roulette: Option<Choice<PathRoulette>>,
@@ -52,10 +49,8 @@ impl RenderController {
         first.layers = with_inspected(&first.layers);
         Self {
             queue,
-            camera: CameraControl::new(&settings.scene, settings.view),
-            name: settings.name,
-            digest: settings.digest,
-            scene: settings.scene,
+            camera: CameraControl::new(&settings.subject.scene, settings.subject.view.clone()),
+            subject: settings.subject,
             resources: Resources {
                 threads: settings.threads,
                 ..Resources::default()
@@ -214,41 +209,33 @@ impl RenderController {
         } else {
             wanted.clone()
         };
-        let scene = Arc::clone(&self.scene);
         let effort = Effort {
             stop: self.queue.interrupts().stop(),
             ..Effort::WHOLE
         };
-        let session = Session::with_effort(scene, view, settings.clone(), &self.resources, effort)?;
+        let subject = Subject {
+            view: view.clone(),
+            ..self.subject.clone()
+        };
+        let render = subject.begin(&settings, &self.resources, effort)?;
         Ok(RenderSlot {
-            header: self.header(&settings, &session),
-            session,
+            // A view of its own is a setting like any other.
+            render: match self.camera.text() {
+                Some(text) => render.identified_by("view", text),
+                None => render,
+            },
             view: RenderView::new(lane, course, wanted),
             blank: None,
         })
-    }
-
-    /// The header of an empty film: a view of its own is a setting like any other.
-    fn header(&self, wanted: &Settings, session: &Session<'_>) -> FilmHeader {
-        let identity = SceneIdentity {
-            name: &self.name,
-            digest: &self.digest,
-            film: session.view().film(),
-        };
-        let header = identity.header(wanted, session.training());
-        let Some(view) = self.camera.text() else {
-            return header;
-        };
-        let mut settings = header.settings;
-        settings.insert("view".to_owned(), view);
-        FilmHeader::new(&program(), header.scene, settings)
     }
 
     /// Replaces the status that clients see.
     fn publish(&mut self) {
         self.published = Instant::now();
         let slots = self.slots.iter();
-        let lanes: Vec<_> = slots.map(|slot| slot.view.status(&slot.session)).collect();
+        let lanes: Vec<_> = slots
+            .map(|slot| slot.view.status(&slot.render.session))
+            .collect();
         let blank = self.slots.iter().find_map(|slot| slot.blank.clone());
         self.queue.state().update(|before| Status {
             state: self.state,
@@ -271,7 +258,7 @@ impl RenderController {
 
     fn log_begin(&self) {
         let names = self.slots.iter().map(|slot| {
-            let status = slot.view.status(&slot.session);
+            let status = slot.view.status(&slot.render.session);
             format!("{} {}", status.integrator, status.shadow_rays)
         });
         let names: Vec<_> = names.collect();

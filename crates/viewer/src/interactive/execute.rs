@@ -146,9 +146,9 @@ impl RenderController {
 
     fn save(&mut self, name: &str, lane: LaneId) -> Result<String, String> {
         let slot = self.slots.get(lane.index());
-        let slot = slot.filter(|slot| !slot.session.film().passes().is_empty());
+        let slot = slot.filter(|slot| !slot.render.session.film().passes().is_empty());
         let slot = slot.ok_or("nothing is saved: no pass is done yet")?;
-        let film = slot.session.film();
+        let film = slot.render.session.film();
         self.saved.save(name, |path| {
             let metadata = metadata(&slot.header());
             let written = Developed::new(film).write_exr(path, film.settings(), &metadata);

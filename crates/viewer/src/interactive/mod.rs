@@ -14,25 +14,17 @@ mod slot;
 use crate::shared::{ClientHandle, RequestQueue};
 use bidir::driver::Settings;
 use bidir::path::PathRoulette;
-use bidir::scene::Scene;
 use bidir::settings::Choice;
-use bidir::view::View;
 use controller::RenderController;
+use formats::film::Subject;
 use std::path::PathBuf;
-use std::sync::Arc;
 use std::thread::JoinHandle;
 
 /// The first settings of a lane, and those that stay as they are.
 #[derive(Debug)]
 pub struct InteractiveSettings {
-    /// The name of the scene file.
-    pub name: String,
-    /// The digest of the scene.
-    pub digest: String,
-    /// The scene.
-    pub scene: Arc<Scene>,
-    /// Its own view.
-    pub view: View,
+    /// The scene, with its own view.
+    pub subject: Subject,
     /// The settings of the first lane.
     pub settings: Settings,
     /// Russian roulette for any estimator. None: the default of each.

@@ -2,19 +2,17 @@
 
 use crate::shared::{Interrupts, Query, SharedState, Subject};
 use crate::view::RenderView;
-use bidir::driver::{Progress, Session, Settings, Stop};
+use bidir::driver::{Progress, Settings, Stop};
 use bidir::integrator::IntegratorKind;
 use bidir::path::PathRoulette;
 use bidir::settings::{Choice, Request};
-use formats::film::{FilmHeader, Stopping, of_run};
+use formats::film::{FilmHeader, Render, Stopping};
 use std::time::{Duration, Instant};
 
 /// The render of a lane with its view.
 pub(super) struct RenderSlot {
-    pub(super) session: Session<'static>,
+    pub(super) render: Render<'static>,
     pub(super) view: RenderView,
-    /// The header of its empty film.
-    pub(super) header: FilmHeader,
     /// A warning that the image has no content.
     pub(super) blank: Option<String>,
 }
@@ -54,29 +52,29 @@ impl RenderSlot {
     ) -> Option<Duration> {
         let watch = Watch {
             interrupts,
-            is_patient: is_preview && self.session.film().passes().is_empty(),
+            is_patient: is_preview && self.render.session.film().passes().is_empty(),
             start: Instant::now(),
         };
-        let is_done = self.session.step(&watch);
+        let is_done = self.render.session.step(&watch);
         let time = watch.start.elapsed();
         if !is_done {
             return None;
         }
-        self.view.add_pass(&self.session, time, state);
+        self.view.add_pass(&self.render.session, time, state);
         // Now and then, as it develops the film.
-        if self.session.film().passes().len().is_power_of_two() {
-            self.blank = self.session.blank_warning();
+        if self.render.session.film().passes().len().is_power_of_two() {
+            self.blank = self.render.session.blank_warning();
         }
         Some(time)
     }
 
     pub(super) fn is_complete(&self) -> bool {
-        self.view.is_complete(&self.session)
+        self.view.is_complete(&self.render.session)
     }
 
     /// Shares the newest frame.
     pub(super) fn show(&mut self, state: &SharedState) {
-        self.view.show(&self.session, state);
+        self.view.show(&self.render.session, state);
     }
 
     /// The header of files of the passes so far.
@@ -86,14 +84,13 @@ impl RenderSlot {
         } else {
             Stopping::Time
         };
-        let header = of_run(&self.header, &self.session, self.view.rendered());
-        FilmHeader { stopping, ..header }.of(self.session.film())
+        self.render.header(self.view.rendered(), stopping)
     }
 
     pub(super) fn answer(&self, query: Query) {
         let header = || self.header();
         query(Some(&Subject {
-            session: &self.session,
+            session: &self.render.session,
             generation: self.view.generation(),
             header: &header,
         }));

@@ -5,6 +5,7 @@ use bidir::integrator::IntegratorKind;
 use bidir_viewer::interactive::{InteractiveRender, InteractiveSettings};
 use bidir_viewer::web::{Server, listen};
 use bidir_viewer::{Status, request_queue};
+use formats::film::Subject;
 use formats::scene::Loaded;
 use serde_json::Value;
 use std::fs;
@@ -91,10 +92,12 @@ impl Place {
         ));
         let server = Server::start(listener, client).unwrap();
         let render = InteractiveSettings {
-            name: "somewhere/room.pbrt".into(),
-            digest: loaded.digest.to_string(),
-            scene: loaded.scene.into(),
-            view: loaded.view,
+            subject: Subject {
+                name: "somewhere/room.pbrt".into(),
+                digest: loaded.digest.to_string(),
+                scene: loaded.scene.into(),
+                view: loaded.view,
+            },
             settings: settings(),
             roulette: None,
             threads: 1,
