@@ -86,7 +86,7 @@ MATERIALS = [
         "crates/bidir/src/material/coated.rs",
         "lanes.carrying().map(|lane| filled[lane])",
         "filled.iter().copied()",
-        unit("a_grey_haze_is_that"),
+        unit("a_haze_looks_the_same"),
     ),
     (
         "what a layer scatters before it reaches the base forgotten",
