@@ -18,14 +18,14 @@ impl Aabb {
         max: Vec3::NEG_INFINITY,
     };
 
-    /// The smallest box around `points`; [`Aabb::EMPTY`] if there are none.
+    /// Returns the smallest box around `points`; [`Aabb::EMPTY`] if there are none.
     pub fn around(points: &[Vec3]) -> Self {
         points.iter().fold(Self::EMPTY, |bounds, &p| {
             bounds.union(Self { min: p, max: p })
         })
     }
 
-    /// The smallest box that contains both.
+    /// Returns the smallest box that contains both.
     #[inline]
     #[must_use]
     pub fn union(self, other: Self) -> Self {
@@ -35,18 +35,18 @@ impl Aabb {
         }
     }
 
-    /// True if the box has at least one point (a flat box has) and only finite corners.
+    /// Returns true if the box has at least one point (a flat box has) and only finite corners.
     pub fn is_valid(&self) -> bool {
         self.min.is_finite() && self.max.is_finite() && self.min.cmple(self.max).all()
     }
 
-    /// True if every point of `other` is in this box, and for an empty `other`.
+    /// Returns true if every point of `other` is in this box, and for an empty `other`.
     pub fn contains(&self, other: &Self) -> bool {
         other.min.cmpgt(other.max).any()
             || (self.min.cmple(other.min).all() && self.max.cmpge(other.max).all())
     }
 
-    /// The middle. None of its intermediate results overflows.
+    /// Returns the middle. None of its intermediate results overflows.
     #[inline]
     pub fn center(&self) -> Vec3 {
         0.5 * self.min + 0.5 * self.max
@@ -58,13 +58,13 @@ impl Aabb {
         self.max - self.min
     }
 
-    /// Half of the surface area; 0 for an empty box.
+    /// Returns half of the surface area; 0 for an empty box.
     pub fn half_area(&self) -> f32 {
         half_area(self.extent().into())
     }
 }
 
-/// Half of the surface area of a box with these edge lengths, xy + yz + zx, in which negative ones are 0.
+/// Returns half of the surface area of a box with these edge lengths, xy + yz + zx, in which negative ones are 0.
 #[inline]
 pub(crate) fn half_area(extent: Vec3A) -> f32 {
     let extent = extent.max(Vec3A::ZERO);

@@ -54,7 +54,7 @@ pub(crate) struct Tree {
 }
 
 impl Tree {
-    /// The tree over the first `count` primitives, and over instances with these bounds where they are valid.
+    /// Returns the tree over the first `count` primitives, and over instances with these bounds where they are valid.
     pub(crate) fn build<P: Primitives + ?Sized>(
         primitives: &P,
         count: usize,
@@ -77,7 +77,7 @@ impl Tree {
         Ok(Self::over(primitives, references))
     }
 
-    /// The tree over primitives by at least one reference.
+    /// Returns the tree over primitives by at least one reference.
     fn over<P: Primitives + ?Sized>(primitives: &P, mut references: Vec<Reference>) -> Self {
         let totals = Totals::of(&references);
         let bounds = totals.bounds();
@@ -105,7 +105,7 @@ impl Tree {
         tree
     }
 
-    /// The node of a child that is one.
+    /// Returns the node of a child that is one.
     #[inline(always)]
     pub(crate) fn node(&self, index: usize) -> &Node {
         debug_assert!(index < self.nodes.len(), "node {index}");
@@ -140,7 +140,7 @@ impl Tree {
         memory::prefetch::<{ size_of::<Node>() }>(place);
     }
 
-    /// The triangle blocks of a child that is a leaf of them.
+    /// Returns the triangle blocks of a child that is a leaf of them.
     #[inline(always)]
     pub(crate) fn blocks(&self, first: usize, count: usize) -> &[TriangleBlock] {
         debug_assert!(first + count <= self.blocks.len(), "{count} from {first}");
@@ -148,7 +148,7 @@ impl Tree {
         unsafe { self.blocks.get_unchecked(first..first + count) }
     }
 
-    /// An empty tree with room for what so many triangles usually need.
+    /// Makes an empty tree with room for what so many triangles usually need.
     fn with_room(triangles: usize) -> Self {
         Self {
             nodes: Vec::with_capacity(triangles / 12),
@@ -220,7 +220,7 @@ impl Part {
     }
 }
 
-/// Levels of nodes that suffice for `count` primitives if groups are halved by count: three
+/// Returns the levels of nodes that suffice for `count` primitives if groups are halved by count: three
 /// halvings a level, down to at most eight primitives, which a node has room for.
 fn balanced_height(count: usize) -> usize {
     if count <= WIDTH {

@@ -113,7 +113,7 @@ impl Bvh {
         Ok(Self { isa, ..self })
     }
 
-    /// The hit of smallest `t` among those for which `accept` holds.
+    /// Returns the hit of smallest `t` among those for which `accept` holds.
     ///
     /// At equal `t` the lowest `(instance, primitive)` wins.
     /// `accept` must be a pure function of the hit: it is asked in any order, about any hits.
@@ -122,7 +122,7 @@ impl Bvh {
         self.until(Stop::NEVER).closest(ray, accept)
     }
 
-    /// True if there is any hit for which `accept` holds: the same as `closest(..).is_some()`,
+    /// Returns true if there is any hit for which `accept` holds: the same as `closest(..).is_some()`,
     /// but faster.
     #[inline]
     pub fn occluded<F: Fn(&Hit) -> bool>(&self, ray: &Ray, accept: F) -> bool {
@@ -131,7 +131,7 @@ impl Bvh {
         query.found
     }
 
-    /// True if there is any hit: the same as `occluded(ray, accept_all)`, but faster.
+    /// Returns true if there is any hit: the same as `occluded(ray, accept_all)`, but faster.
     #[inline]
     pub fn is_blocked(&self, ray: &Ray) -> bool {
         self.until(Stop::NEVER).is_blocked(ray)
@@ -154,39 +154,39 @@ impl Bvh {
         self.until(Stop::NEVER).each_hit(ray, found)
     }
 
-    /// A box around all primitives and instances; [`Aabb::EMPTY`] if there are none.
+    /// Returns a box around all primitives and instances; [`Aabb::EMPTY`] if there are none.
     pub fn bounds(&self) -> Aabb {
         self.tree.bounds
     }
 
-    /// The number of primitives it was built from, those of objects not counted.
+    /// Returns the number of primitives it was built from, those of objects not counted.
     pub fn primitive_count(&self) -> usize {
         self.primitive_count
     }
 
-    /// The objects that instances refer to.
+    /// Returns the objects that instances refer to.
     pub fn objects(&self) -> &[Arc<Self>] {
         &self.objects
     }
 
-    /// The number of instances.
+    /// Returns the number of instances.
     pub fn instance_count(&self) -> usize {
         self.placements.len()
     }
 
-    /// The index of the object of instance `i`, and the map that takes rays to the object's space.
+    /// Returns the index of the object of instance `i`, and the map that takes rays to the object's space.
     pub fn instance(&self, i: usize) -> (u32, &DAffine3) {
         let placement = &self.placements[i];
         (placement.object, placement.object_from_world())
     }
 
-    /// The instructions that rays are traced with.
+    /// Returns the instructions that rays are traced with.
     #[inline]
     pub fn isa(&self) -> Isa {
         self.isa
     }
 
-    /// Bytes of memory that the tree and its copy of the primitives take, with the instances and with
+    /// Returns the bytes of memory that the tree and its copy of the primitives take, with the instances and with
     /// every object once.
     pub fn memory_bytes(&self) -> usize {
         let of_objects: usize = self

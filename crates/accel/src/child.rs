@@ -62,25 +62,25 @@ impl Child {
         Self(kind << Self::KIND_SHIFT | length << Self::LENGTH_SHIFT | elements.start as u32)
     }
 
-    /// A child from the word that holds it.
+    /// Makes a child from the word that holds it.
     #[inline(always)]
     pub(crate) fn from_bits(bits: u32) -> Self {
         Self(bits)
     }
 
-    /// The index of the node that it is.
+    /// Returns the index of the node that it is.
     #[inline(always)]
     pub(crate) fn as_node(self) -> Option<usize> {
         (self.0 >> Self::KIND_SHIFT == 0).then_some(self.0 as usize)
     }
 
-    /// The first of the triangle blocks that it is, and how many they are.
+    /// Returns the first of the triangle blocks that it is, and how many they are.
     #[inline(always)]
     pub(crate) fn as_triangles(self) -> Option<(usize, usize)> {
         (self.0 >> Self::KIND_SHIFT == 1).then_some(self.elements())
     }
 
-    /// The first element of a leaf, and how many they are.
+    /// Returns the first element of a leaf, and how many they are.
     #[inline(always)]
     fn elements(self) -> (usize, usize) {
         let length = (self.0 >> Self::LENGTH_SHIFT) as usize % Self::MAX_LEAF + 1;

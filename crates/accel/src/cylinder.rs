@@ -26,7 +26,7 @@ pub struct Cylinder {
 }
 
 impl Cylinder {
-    /// A box that contains the cylinder; see [`Primitive::bounds`](crate::Primitive::bounds).
+    /// Returns a box that contains the cylinder; see [`Primitive::bounds`](crate::Primitive::bounds).
     pub(crate) fn bounds(&self) -> Aabb {
         let shape = [self.radius, self.z_min, self.z_max, self.phi_max];
         if !shape.iter().all(|x| x.is_finite()) {
@@ -87,7 +87,7 @@ impl CylinderTest {
         )
     }
 
-    /// `u` and `v` of a point on the cylinder. None: it is cut away.
+    /// Returns `u` and `v` of a point on the cylinder. None: it is cut away.
     pub(crate) fn parameters(&self, p: DVec3) -> Option<[f64; 2]> {
         let phi = azimuth(p);
         let inside = p.z >= self.z_min && p.z <= self.z_max && phi <= self.phi_max;

@@ -27,7 +27,7 @@ pub struct Disk {
 }
 
 impl Disk {
-    /// A box that contains the disk; see [`Primitive::bounds`](crate::Primitive::bounds).
+    /// Returns a box that contains the disk; see [`Primitive::bounds`](crate::Primitive::bounds).
     pub(crate) fn bounds(&self) -> Aabb {
         let shape = [self.height, self.radius, self.inner_radius, self.phi_max];
         if !shape.iter().all(|x| x.is_finite()) {
@@ -67,7 +67,7 @@ impl DiskTest {
         [(self.height - line.origin.z) / line.direction.z, f64::NAN]
     }
 
-    /// `u` and `v` of a point in the disk's plane. None: it is outside, or cut away.
+    /// Returns `u` and `v` of a point in the disk's plane. None: it is outside, or cut away.
     pub(crate) fn parameters(&self, p: DVec3) -> Option<[f64; 2]> {
         let distance = (p.x * p.x + p.y * p.y).sqrt();
         let phi = azimuth(p);

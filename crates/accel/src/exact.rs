@@ -55,7 +55,7 @@ pub(crate) fn pass_certain(triangle: [Vec3; 3], direction: Vec3, axis: usize) ->
     )
 }
 
-/// The three edge functions.
+/// Returns the three edge functions.
 #[inline(always)]
 fn weights(
     [a, b, c]: [Vec3; 3],
@@ -79,7 +79,7 @@ fn passage(weights: [f64; 3], [a, b, c]: [Vec3; 3], direction: Vec3, axis: usize
     }
 }
 
-/// `(a × b)·d` with the sign it has in exact arithmetic, 0 included.
+/// Returns `(a × b)·d` with the sign it has in exact arithmetic, 0 included.
 ///
 /// Assumes coordinates that are `f32` numbers: their products are exact, and products of three
 /// neither overflow nor underflow.
@@ -134,13 +134,13 @@ impl Expansion {
         self.len += 1;
     }
 
-    /// The sum, rounded; its sign is exact, since the largest part outweighs all others together.
+    /// Returns the sum, rounded; its sign is exact, since the largest part outweighs all others together.
     fn estimate(&self) -> f64 {
         self.parts[..self.len].iter().sum()
     }
 }
 
-/// The rounded sum of two numbers and what the rounding lost [Knuth97, §4.2.2].
+/// Returns the rounded sum of two numbers and what the rounding lost [Knuth97, §4.2.2].
 fn two_sum(a: f64, b: f64) -> (f64, f64) {
     let sum = a + b;
     let b_seen = sum - a;
@@ -153,7 +153,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// `(a × b)·d` of small integers, which neither overflows nor rounds.
+    /// Returns `(a × b)·d` of small integers, which neither overflows nor rounds.
     fn edge_of_integers(a: [i64; 3], b: [i64; 3], d: [i64; 3]) -> i64 {
         d[0] * (a[1] * b[2] - a[2] * b[1])
             + d[1] * (a[2] * b[0] - a[0] * b[2])

@@ -109,7 +109,7 @@ impl Placement {
         &self.object_from_world
     }
 
-    /// The ray in the object's space, with how it is seen from the world. `instance` is the number
+    /// Returns the ray in the object's space, with how it is seen from the world. `instance` is the number
     /// that hits get.
     #[inline(always)]
     pub(crate) fn view(&self, ray: &Ray, approach: &Approach, instance: u32) -> (Ray, Object) {
@@ -152,7 +152,7 @@ impl Approach {
         }
     }
 
-    /// The `t₀` at which the ray enters the ball.
+    /// Returns the `t₀` at which the ray enters the ball.
     #[inline(always)]
     fn entry(&self, placement: &Placement) -> f64 {
         let nearest = (placement.center - self.origin).dot(self.along);
@@ -160,7 +160,7 @@ impl Approach {
     }
 }
 
-/// The corners of a box around all `parts` in the place where `map` takes them.
+/// Returns the corners of a box around all `parts` in the place where `map` takes them.
 fn mapped(map: &DAffine3, parts: &[Aabb]) -> (DVec3, DVec3) {
     let none = (DVec3::INFINITY, DVec3::NEG_INFINITY);
     parts.iter().fold(none, |(min, max), part| {
@@ -171,7 +171,7 @@ fn mapped(map: &DAffine3, parts: &[Aabb]) -> (DVec3, DVec3) {
     })
 }
 
-/// How far rounding moves a local line within the ball: `e` of the module's page.
+/// Returns how far rounding moves a local line within the ball: `e` of the module's page.
 fn local_error(object_from_world: &DAffine3, local_center: DVec3, radius: f64) -> DVec3 {
     let rows = object_from_world.matrix3.transpose();
     let lengths = DVec3::new(
@@ -185,10 +185,10 @@ fn local_error(object_from_world: &DAffine3, local_center: DVec3, radius: f64) -
 
 /// The relation of hits in the space of a tree to hits in the world.
 pub(crate) trait Space {
-    /// Limits of local hits that are certainly within the world's.
+    /// Returns the limits of local hits that are certainly within the world's.
     fn sure_limits(&self, ray: &Ray) -> [f32; 2];
 
-    /// The world's hit for a local one. None: it is beyond the limits.
+    /// Returns the world's hit for a local one. None: it is beyond the limits.
     fn world_hit(&self, local: Hit) -> Option<Hit>;
 
     /// Lets `shorten` lower the limit of world hits, and lowers that of local hits to match.
@@ -230,7 +230,7 @@ pub(crate) struct Object {
 /// The relative distance by which limits are moved outward: `4ε`, with ε half of [`f32::EPSILON`].
 const OUTWARD: f64 = 2.0 * f32::EPSILON as f64;
 
-/// `world` - `t₀`, with `world` moved by `outward` times itself.
+/// Returns `world` - `t₀`, with `world` moved by `outward` times itself.
 #[inline(always)]
 fn moved(world: f32, start: f64, outward: f64) -> f32 {
     let world = f64::from(world);

@@ -25,13 +25,13 @@ impl Isa {
     /// All sets that have a name, from the narrowest to the newest.
     pub const ALL: [Self; 4] = [Self::Scalar, Self::Sse2, Self::Avx2, Self::Avx512];
 
-    /// The sets of this machine, from the narrowest to the newest.
+    /// Returns the sets of this machine, from the narrowest to the newest.
     pub fn supported() -> impl DoubleEndedIterator<Item = Self> {
         Self::ALL.into_iter().filter(|isa| isa.is_supported())
     }
 
-    /// The set that rays use where none is named: the fastest, but not AVX-512, which gains nothing over AVX2 in most
-    /// scenes (docs/performance.md).
+    /// Returns the set that rays use where none is named: the fastest, but not AVX-512, which gains nothing over AVX2
+    /// in most scenes (docs/performance.md).
     pub fn detect() -> Self {
         let mut by_speed = [Self::Avx2, Self::Sse2].into_iter();
         by_speed
@@ -39,7 +39,7 @@ impl Isa {
             .unwrap_or(Self::Scalar)
     }
 
-    /// True if this machine has the instructions.
+    /// Returns true if this machine has the instructions.
     #[cfg(target_arch = "x86_64")]
     pub fn is_supported(self) -> bool {
         macro_rules! has {
@@ -54,7 +54,7 @@ impl Isa {
         }
     }
 
-    /// True if this machine has the instructions.
+    /// Returns true if this machine has the instructions.
     #[cfg(not(target_arch = "x86_64"))]
     pub fn is_supported(self) -> bool {
         self == Self::Scalar
@@ -79,7 +79,7 @@ impl Isa {
         }
     }
 
-    /// The name in settings and reports.
+    /// Returns the name in settings and reports.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Scalar => "scalar",

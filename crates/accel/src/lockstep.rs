@@ -113,7 +113,8 @@ struct Waiting<'a> {
 }
 
 impl Waiting<'_> {
-    /// The next ray that may hit something, and the root on its stack. None: there is none, or nobody waits for it.
+    /// Returns the next ray that may hit something, and the root on its stack. None: there is none, or nobody waits for
+    /// it.
     #[inline(always)]
     fn start(&mut self, tree: &Tree, stack: &mut NodeStack) -> Option<ActiveRay> {
         stack.clear();
@@ -170,7 +171,7 @@ impl ActiveRay {
         leaves.push_all::<S>(met & are_leaves, children, place);
     }
 
-    /// True if the ray hits something in the leaf `child`.
+    /// Returns true if the ray hits something in the leaf `child`.
     #[inline(always)]
     fn is_blocked_in<S: Simd>(&self, (bvh, stop): (&Bvh, Stop<'_>), child: Child) -> bool {
         let (mut ray, mut query) = (self.ray, Anything { found: false });

@@ -30,8 +30,8 @@ pub(crate) fn prefetch<const BYTES: usize>(place: *const u8) {
     let _ = place;
 }
 
-/// An empty array with room for just so many elements. Where that is much, and the system can, it is in large pages:
-/// rays jump about in it, and each jump to a small page costs a search for that page.
+/// Returns an empty array with room for just so many elements. Where that is much, and the system can, it is in large
+/// pages: rays jump about in it, and each jump to a small page costs a search for that page.
 pub(crate) fn with_room<T>(count: usize) -> Vec<T> {
     let mut empty = Vec::with_capacity(count);
     if count * size_of::<T>() >= LARGE {

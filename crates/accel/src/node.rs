@@ -33,7 +33,7 @@ pub(crate) const WIDTH: usize = 8;
 /// `1 + 16ε`: the factor of an exit.
 const WIDENING: f32 = 1.0 + 8.0 * f32::EPSILON;
 
-/// The largest distance at which a box must still be entered to find all hits up to `t_max`. Beyond a
+/// Returns the largest distance at which a box must still be entered to find all hits up to `t_max`. Beyond a
 /// tenth of what a number can be, products on the way to a distance can overflow: no limit.
 #[inline(always)]
 pub(crate) fn widen(t_max: f32) -> f32 {
@@ -94,7 +94,7 @@ impl Node {
         }
     }
 
-    /// The children in use, each with its box.
+    /// Returns the children in use, each with its box.
     pub(crate) fn boxes(&self) -> Vec<(Aabb, Child)> {
         let slots = (0..WIDTH).filter(|&slot| self.children[slot] != Child::NOTHING);
         slots
@@ -140,7 +140,7 @@ pub(crate) struct BoxRay {
 }
 
 impl BoxRay {
-    /// `reach`: the largest magnitude of a coordinate of what can be hit.
+    /// Returns `reach`: the largest magnitude of a coordinate of what can be hit.
     #[inline(always)]
     pub(crate) fn new(ray: &Ray, reach: f32) -> Self {
         let (origin, direction) = (Vec3A::from(ray.origin), Vec3A::from(ray.direction));

@@ -22,7 +22,7 @@ pub enum Primitive {
 }
 
 impl Primitive {
-    /// A box that contains the primitive.
+    /// Returns a box that contains the primitive.
     ///
     /// Tight for triangles; curved primitives get the box of a whole sphere or disk (cut at
     /// `z_min` and `z_max`, but not at `phi_max`), a little widened against rounding.
@@ -42,7 +42,7 @@ impl Primitive {
 /// Numbered primitives. A tree asks for each of them twice, and keeps triangles in a form of its own: they need not all
 /// be in memory at once.
 pub trait Primitives: Sync {
-    /// The number of primitives. It is asked once for a tree.
+    /// Returns the number of primitives. It is asked once for a tree.
     fn count(&self) -> usize;
 
     /// Primitive `index`, below [`count`](Self::count): the same each time.
@@ -89,13 +89,13 @@ pub(crate) fn box_bounds(local_from_world: &glam::Affine3A, center: DVec3, half:
     padded(world_from_local.transform_point3(center), reach)
 }
 
-/// A bound of `|M p|` for `|p| ≤ extent`, without the translation.
+/// Returns a bound of `|M p|` for `|p| ≤ extent`, without the translation.
 pub(crate) fn abs_times(map: &DAffine3, extent: DVec3) -> DVec3 {
     let m = map.matrix3;
     m.x_axis.abs() * extent.x + m.y_axis.abs() * extent.y + m.z_axis.abs() * extent.z
 }
 
-/// The box of `center ± reach`, rounded outward after widening by a millionth of its size: more
+/// Returns the box of `center ± reach`, rounded outward after widening by a millionth of its size: more
 /// than what mapping a ray into local space loses, unless the map is close to singular.
 fn padded(center: DVec3, reach: DVec3) -> Aabb {
     let reach = reach + DVec3::splat(1e-6 * reach.max_element());
@@ -105,7 +105,7 @@ fn padded(center: DVec3, reach: DVec3) -> Aabb {
     }
 }
 
-/// `value` rounded upward where `direction` is 1, downward where it is -1.
+/// Returns `value` rounded upward where `direction` is 1, downward where it is -1.
 pub(crate) fn outward(value: f64, direction: f64) -> f32 {
     let rounded = value as f32;
     match direction * (f64::from(rounded) - value) {

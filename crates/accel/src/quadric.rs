@@ -114,20 +114,20 @@ pub(crate) fn to_f64(map: &glam::Affine3A) -> DAffine3 {
     )
 }
 
-/// The ends of a chord whose middle is at `t_middle`, by the square of its half length in `t`.
+/// Returns the ends of a chord whose middle is at `t_middle`, by the square of its half length in `t`.
 #[inline]
 pub(crate) fn chord(t_middle: f64, square: f64) -> Roots {
     let half = square.sqrt();
     [t_middle - half, t_middle + half]
 }
 
-/// The largest azimuth in `f64`; an angle that is 2π up to rounding becomes 2π, lest a seam remain open.
+/// Returns the largest azimuth in `f64`; an angle that is 2π up to rounding becomes 2π, lest a seam remain open.
 pub(crate) fn azimuth_limit(phi_max: f32) -> f64 {
     let phi_max = f64::from(phi_max);
     if phi_max > TAU - 1e-6 { TAU } else { phi_max }
 }
 
-/// The angle of `p` around the z axis from `+x` toward `+y`, in `[0, 2π]`.
+/// Returns the angle of `p` around the z axis from `+x` toward `+y`, in `[0, 2π]`.
 pub(crate) fn azimuth(p: DVec3) -> f64 {
     let phi = libm::atan2(p.y, p.x);
     if phi < 0.0 { phi + TAU } else { phi }

@@ -17,7 +17,7 @@ pub struct Ray {
 }
 
 impl Ray {
-    /// The whole half-line from `origin`: `t` in `[0, ∞)`.
+    /// Returns the whole half-line from `origin`: `t` in `[0, ∞)`.
     pub const fn new(origin: Vec3, direction: Vec3) -> Self {
         Self {
             origin,
@@ -56,7 +56,7 @@ impl Hit {
     }
 }
 
-/// The hit filter that lets every hit exist.
+/// Returns the hit filter that lets every hit exist.
 #[inline(always)]
 pub fn accept_all(_: &Hit) -> bool {
     true

@@ -22,23 +22,23 @@ use crate::node::WIDTH;
 pub(crate) trait F32x4:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self>
 {
-    /// All lanes equal to `value`.
+    /// Returns all lanes equal to `value`.
     fn splat(value: f32) -> Self;
     /// Lanes from memory.
     fn load(values: &[f32; 4]) -> Self;
     /// Lanes to memory.
     fn to_array(self) -> [f32; 4];
-    /// `self < other ? self : other`: a NaN in either operand selects `other`.
+    /// Returns `self < other ? self : other`: a NaN in either operand selects `other`.
     fn min(self, other: Self) -> Self;
-    /// `self > other ? self : other`: a NaN in either operand selects `other`.
+    /// Returns `self > other ? self : other`: a NaN in either operand selects `other`.
     fn max(self, other: Self) -> Self;
     /// Magnitudes.
     fn abs(self) -> Self;
-    /// `self·factor + term`, the product rounded or not.
+    /// Returns `self·factor + term`, the product rounded or not.
     fn mul_add(self, factor: Self, term: Self) -> Self;
-    /// `self·factor - term`, the product rounded or not.
+    /// Returns `self·factor - term`, the product rounded or not.
     fn mul_sub(self, factor: Self, term: Self) -> Self;
-    /// `term - self·factor`, the product rounded or not.
+    /// Returns `term - self·factor`, the product rounded or not.
     fn sub_from(self, factor: Self, term: Self) -> Self;
     /// Bit `k` is set where lane `k` has `self < other`; clear at NaN.
     fn lt(self, other: Self) -> u32;
@@ -52,13 +52,13 @@ pub(crate) trait F32x8: Copy {
     /// True if [`pack`](Self::pack) takes a few instructions.
     const PACKS_FAST: bool = false;
 
-    /// All lanes equal to `value`.
+    /// Returns all lanes equal to `value`.
     fn splat(value: f32) -> Self;
     /// Lanes from memory.
     fn load(values: &[f32; WIDTH]) -> Self;
-    /// The smaller number; where both are negative, either. Not for NaN.
+    /// Returns the smaller number; where both are negative, either. Not for NaN.
     fn min(self, other: Self) -> Self;
-    /// The larger number; where both are negative, either. Not for NaN.
+    /// Returns the larger number; where both are negative, either. Not for NaN.
     fn max(self, other: Self) -> Self;
     /// As [`F32x4::mul_sub`].
     fn mul_sub(self, factor: Self, term: Self) -> Self;

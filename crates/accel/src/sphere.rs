@@ -27,7 +27,7 @@ pub struct Sphere {
 }
 
 impl Sphere {
-    /// A box that contains the sphere; see [`Primitive::bounds`](crate::Primitive::bounds).
+    /// Returns a box that contains the sphere; see [`Primitive::bounds`](crate::Primitive::bounds).
     pub(crate) fn bounds(&self) -> Aabb {
         let shape = [self.radius, self.z_min, self.z_max, self.phi_max];
         if !shape.iter().all(|x| x.is_finite()) {
@@ -85,7 +85,7 @@ impl SphereTest {
         )
     }
 
-    /// `u` and `v` of a point on the sphere. None: it is cut away.
+    /// Returns `u` and `v` of a point on the sphere. None: it is cut away.
     pub(crate) fn parameters(&self, p: DVec3) -> Option<[f64; 2]> {
         // Rounding left the point near the sphere: put it on.
         let p = p * (self.radius / p.length());

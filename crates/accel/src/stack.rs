@@ -102,7 +102,7 @@ impl Stack {
         unsafe { self.entries.get_unchecked_mut(index) }.write(entry);
     }
 
-    /// The last child that is entered at `limit` or before; drops those after it.
+    /// Returns the last child that is entered at `limit` or before; drops those after it.
     #[inline(always)]
     pub(crate) fn pop(&mut self, limit: f32) -> Option<Child> {
         let limit = u64::from(limit.to_bits()) << 32 | u64::from(u32::MAX);
@@ -117,13 +117,13 @@ impl Stack {
     }
 }
 
-/// The child of an entry.
+/// Returns the child of an entry.
 #[inline(always)]
 fn child(entry: u64) -> Child {
     Child::from_bits(entry as u32)
 }
 
-/// The numbers of the set bits, ascending.
+/// Returns the numbers of the set bits, ascending.
 #[inline(always)]
 pub(crate) fn bits(mut mask: u32) -> impl Iterator<Item = usize> {
     std::iter::from_fn(move || {

@@ -151,7 +151,7 @@ impl<P: Space> Walk<'_, P> {
     }
 }
 
-/// The ray in the form that the kernels assume: finite, not empty, without negative or infinite
+/// Returns the ray in the form that the kernels assume: finite, not empty, without negative or infinite
 /// `t`, and with zero for components whose reciprocal would overflow. None: it hits nothing.
 #[inline(always)]
 pub(crate) fn clean(ray: &Ray) -> Option<Ray> {

@@ -88,7 +88,7 @@ impl TriangleBlock {
         block
     }
 
-    /// The used lanes: indices and vertices.
+    /// Returns the used lanes: indices and vertices.
     pub(crate) fn triangles(&self) -> impl Iterator<Item = (u32, [Vec3; 3])> {
         let used = self
             .primitives
@@ -102,7 +102,7 @@ impl TriangleBlock {
         self.primitives[lane]
     }
 
-    /// The vertices in `lane`. Written out, as `array::map` is not always inlined into the loop.
+    /// Returns the vertices in `lane`. Written out, as `array::map` is not always inlined into the loop.
     #[inline(always)]
     fn triangle(&self, lane: usize) -> [Vec3; 3] {
         let vertex = |i: usize| {
@@ -163,7 +163,7 @@ impl TriangleBlock {
         }
     }
 
-    /// The point where the ray's line passes the triangle in `lane`.
+    /// Returns the point where the ray's line passes the triangle in `lane`.
     /// `certain`: the lanes known to be passed.
     #[inline(always)]
     pub(crate) fn pass<V: F32x4>(
@@ -188,7 +188,7 @@ impl TriangleBlock {
     }
 }
 
-/// The axes in cyclic order, that of the direction's largest component last.
+/// Returns the axes in cyclic order, that of the direction's largest component last.
 #[inline(always)]
 fn axes_of(direction: Vec3) -> [usize; 3] {
     let [x, y, z] = direction.abs().to_array();
@@ -260,8 +260,8 @@ pub(crate) struct TriangleLanes<V> {
 }
 
 impl<V: F32x4> TriangleLanes<V> {
-    /// The `t` at which the line passes triangles with vertices at `depths`, by the edge functions opposite to them,
-    /// whose error is at most `bound`.
+    /// Returns the `t` at which the line passes triangles with vertices at `depths`, by the edge functions opposite to
+    /// them, whose error is at most `bound`.
     #[inline(always)]
     fn passage(&self, depths: [V; 3], edges: [V; 3], bound: V) -> PassageLanes<V> {
         let [a, b, c] = edges.map(F32x4::abs);
@@ -287,14 +287,14 @@ struct PassageLanes<V> {
 }
 
 impl<V: F32x4> PassageLanes<V> {
-    /// The mask of the lanes certainly outside the limits.
+    /// Returns the mask of the lanes certainly outside the limits.
     #[inline(always)]
     fn outside(&self, limits: [f32; 2]) -> u32 {
         let [t_min, t_max] = limits.map(|t| V::splat(t) * self.sum);
         (self.t + self.error).lt(t_min) | t_max.lt(self.t - self.error)
     }
 
-    /// The mask of the lanes certainly within the limits.
+    /// Returns the mask of the lanes certainly within the limits.
     #[inline(always)]
     fn within(&self, limits: [f32; 2]) -> u32 {
         let [t_min, t_max] = limits.map(|t| V::splat(t) * self.sum);

@@ -56,7 +56,7 @@ fn all_visited(what: &str, visited: &[bool]) -> Result<(), String> {
         })
 }
 
-/// The eight corners of a box.
+/// Returns the eight corners of a box.
 fn corners(part: &Aabb) -> impl Iterator<Item = Vec3> + use<> {
     let sides = [part.min, part.max];
     (0..8)

@@ -39,7 +39,7 @@ pub enum BlindSpot {
 }
 
 impl BlindSpot {
-    /// True where the light is missing from pictures, and not only noisy.
+    /// Returns true where the light is missing from pictures, and not only noisy.
     pub const fn is_missing(self) -> bool {
         match self {
             Self::Caustics
@@ -51,7 +51,7 @@ impl BlindSpot {
         }
     }
 
-    /// True where it is light of `light` that is not made.
+    /// Returns true where it is light of `light` that is not made.
     pub fn concerns(self, light: &Light) -> bool {
         match self {
             Self::Caustics | Self::CausticsSeenBySpecular => light.is_delta(),
@@ -62,7 +62,7 @@ impl BlindSpot {
         }
     }
 
-    /// The fewest vertices of these paths.
+    /// Returns the fewest vertices of these paths.
     const fn shortest(self) -> usize {
         match self {
             Self::Sky | Self::EndlessGlow => 2,
@@ -72,7 +72,7 @@ impl BlindSpot {
         }
     }
 
-    /// The estimators and strategies that find this light, as a clause.
+    /// Returns the estimators and strategies that find this light, as a clause.
     pub const fn remedy(self) -> &'static str {
         match self {
             Self::Caustics => "`light`, `bdpt`, `lvc` and `auto` find it by strategy t1",
@@ -89,7 +89,7 @@ impl BlindSpot {
         }
     }
 
-    /// The blind spot, as a phrase.
+    /// Returns the blind spot, as a phrase.
     pub const fn description(self) -> &'static str {
         match self {
             Self::Caustics => "caustics of point, spot, distant and hidden lights (L S+ D)",
@@ -113,7 +113,7 @@ impl BlindSpot {
     }
 }
 
-/// The blind spots of an estimator with all its strategies, in a scene. A material that is specular at a few
+/// Returns the blind spots of an estimator with all its strategies, in a scene. A material that is specular at a few
 /// points only, or may be by the bounds of its textures, counts as mirrors and clear glass do.
 pub fn blind_spots(scene: &Scene, view: &View, integrator: IntegratorKind) -> Vec<BlindSpot> {
     let lights = scene.lights();
@@ -142,7 +142,7 @@ pub fn blind_spots(scene: &Scene, view: &View, integrator: IntegratorKind) -> Ve
     spots.iter().copied().filter(is_there).collect()
 }
 
-/// The light that is missing from images of `integrator` with paths as long as `settings` allow: those of its
+/// Returns the light that is missing from images of `integrator` with paths as long as `settings` allow: those of its
 /// [`blind_spots`] that are not made at all.
 pub fn missing_light(
     scene: &Scene,

@@ -19,13 +19,14 @@ pub struct Term {
 }
 
 impl Term {
-    /// C w.
+    /// Returns C w.
     #[inline]
     pub fn value(&self) -> Spectrum {
         self.contribution * self.weight
     }
 
-    /// The contribution of the term where its shadow ray is certain to be traced and `transmittance` of it arrives.
+    /// Returns the contribution of the term where its shadow ray is certain to be traced and `transmittance` of it
+    /// arrives.
     #[inline]
     pub fn certain(self, transmittance: f32) -> Contribution {
         Contribution {
@@ -48,13 +49,13 @@ pub struct Contribution {
 }
 
 impl Contribution {
-    /// C w v / π.
+    /// Returns C w v / π.
     #[inline]
     pub fn value(&self) -> Spectrum {
         self.arriving(self.term.value())
     }
 
-    /// C v / π: the value without the weight. None: no film can sum it, though it can sum the value.
+    /// Returns C v / π: the value without the weight. None: no film can sum it, though it can sum the value.
     ///
     /// Zero where the weight is zero, as not all such terms are traced.
     pub fn unweighted(&self) -> Option<Spectrum> {
@@ -76,7 +77,7 @@ impl Contribution {
     }
 }
 
-/// True where a film can sum `value`.
+/// Returns true where a film can sum `value`.
 #[inline]
 pub fn is_summable(value: Spectrum) -> bool {
     value.is_within(LARGEST_CONTRIBUTION)

@@ -32,7 +32,7 @@ pub struct Locus {
 }
 
 impl Locus {
-    /// A point of a surface.
+    /// Makes a point of a surface.
     #[inline]
     pub fn on_surface(point: Vec3, n_g: Vec3, error: f32) -> Self {
         Self {
@@ -44,7 +44,7 @@ impl Locus {
         }
     }
 
-    /// A point in space.
+    /// Makes a point in space.
     #[inline]
     pub fn in_space(point: Vec3) -> Self {
         Self {
@@ -56,7 +56,7 @@ impl Locus {
         }
     }
 
-    /// A point where `medium` scatters or glows.
+    /// Makes a point where `medium` scatters or glows.
     #[inline]
     pub fn in_medium(point: Vec3, medium: MediumId) -> Self {
         Self {
@@ -72,13 +72,13 @@ impl Locus {
         Self { media, ..self }
     }
 
-    /// The medium that a ray along `w` leaves through.
+    /// Returns the medium that a ray along `w` leaves through.
     #[inline]
     pub fn medium_toward(&self, w: Vec3) -> MediumId {
         self.media.toward(self.n_g.dot(w))
     }
 
-    /// The place at infinity that the unit `direction` points to.
+    /// Returns the place at infinity that the unit `direction` points to.
     #[inline]
     pub fn at_infinity(direction: Vec3) -> Self {
         Self {
@@ -87,7 +87,7 @@ impl Locus {
         }
     }
 
-    /// True for a place at infinity.
+    /// Returns true for a place at infinity.
     #[inline]
     pub fn is_infinite(&self) -> bool {
         self.kind == LocusKind::Infinity
@@ -102,16 +102,16 @@ impl Locus {
         }
     }
 
-    /// The origin of a ray along `w` that does not meet the surface of this place: pushed off by the error
+    /// Returns the origin of a ray along `w` that does not meet the surface of this place: pushed off by the error
     /// to the side that `w` leaves to.
     #[inline]
     pub fn ray_origin(&self, w: Vec3) -> Vec3 {
         self.pushed_off(w, Vec3::splat(self.error))
     }
 
-    /// The end of a ray from the point `from` that does not meet the surface of this place: pushed off by the error and
-    /// by what a ray of that length adds. Its direction, the corners as its origin sees them and the `t` of a hit are
-    /// rounded, each by at most half an epsilon of the way; another half is room.
+    /// Returns the end of a ray from the point `from` that does not meet the surface of this place: pushed off by the
+    /// error and by what a ray of that length adds. Its direction, the corners as its origin sees them and the `t` of a
+    /// hit are rounded, each by at most half an epsilon of the way; another half is room.
     #[inline]
     pub fn ray_end(&self, from: Vec3) -> Vec3 {
         let back = from - self.point;
@@ -121,14 +121,14 @@ impl Locus {
         )
     }
 
-    /// The point on the side that `w` leaves to, off the surface by errors up to these in its coordinates.
+    /// Returns the point on the side that `w` leaves to, off the surface by errors up to these in its coordinates.
     #[inline]
     fn pushed_off(&self, w: Vec3, errors: Vec3) -> Vec3 {
         let distance = self.n_g.abs().dot(errors);
         self.point + self.n_g * distance.copysign(self.n_g.dot(w))
     }
 
-    /// The direction to this place from the point `from`, of any length.
+    /// Returns the direction to this place from the point `from`, of any length.
     #[inline]
     pub fn direction_from(&self, from: Vec3) -> Vec3 {
         if self.is_infinite() {

@@ -12,7 +12,7 @@ pub struct UnknownName {
 }
 
 impl UnknownName {
-    /// `given`, where names are those of `known`.
+    /// Returns `given`, where names are those of `known`.
     pub fn new(given: &str, known: &[&str]) -> Self {
         let hint = nearest(given, known.iter().copied()).map_or_else(
             || format!("expected {}", known.join(", ")),
@@ -28,7 +28,7 @@ impl UnknownName {
 /// A name with more letters has nothing near.
 const LONGEST_NAME: usize = 100;
 
-/// The name that `name` was probably meant to be. None: nothing is near.
+/// Returns the name that `name` was probably meant to be. None: nothing is near.
 pub fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     // A third of the letters may be wrong; two words of three letters are not each other.
     let letters = name.chars().count();
@@ -58,7 +58,7 @@ macro_rules! named {
             pub const NAMES: [(&'static str, Self); [$($name),+].len()] =
                 [$(($name, Self::$variant)),+];
 
-            /// The name.
+            /// Returns the name.
             pub fn name(self) -> &'static str {
                 match self {
                     $(Self::$variant => $name),+

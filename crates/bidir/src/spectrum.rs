@@ -31,7 +31,7 @@ impl Spectrum {
         Self([value; 4])
     }
 
-    /// The lanes in one register.
+    /// Returns the lanes in one register.
     #[inline]
     fn lanes(self) -> Vec4 {
         Vec4::from_array(self.0)
@@ -51,31 +51,31 @@ impl Spectrum {
         Self(std::array::from_fn(|i| f(self.0[i], other.0[i])))
     }
 
-    /// The largest lane.
+    /// Returns the largest lane.
     #[inline]
     pub fn max_lane(self) -> f32 {
         self.0[0].max(self.0[1]).max(self.0[2].max(self.0[3]))
     }
 
-    /// The smallest lane.
+    /// Returns the smallest lane.
     #[inline]
     pub fn min_lane(self) -> f32 {
         self.lanes().min_element()
     }
 
-    /// True where every lane is exactly zero.
+    /// Returns true where every lane is exactly zero.
     #[inline]
     pub fn is_black(self) -> bool {
         self.lanes().cmpeq(Vec4::ZERO).all()
     }
 
-    /// True where no lane is larger than `limit`, or NaN.
+    /// Returns true where no lane is larger than `limit`, or NaN.
     #[inline]
     pub fn is_within(self, limit: f32) -> bool {
         self.lanes().abs().cmple(Vec4::splat(limit)).all()
     }
 
-    /// True where no lane is NaN or infinite.
+    /// Returns true where no lane is NaN or infinite.
     #[inline]
     pub fn is_finite(self) -> bool {
         self.0.iter().all(|lane| lane.is_finite())
@@ -154,7 +154,7 @@ impl Div<f32> for Spectrum {
 /// A colour in linear Rec. 709 primaries: the colours of scene descriptions and of developed films.
 pub type Rgb = [f32; 3];
 
-/// The luminance Y of a linear Rec. 709 colour, or of several at once.
+/// Returns the luminance Y of a linear Rec. 709 colour, or of several at once.
 #[inline]
 pub fn luminance<T: Add<Output = T>>([r, g, b]: [T; 3]) -> T
 where
@@ -174,7 +174,7 @@ pub enum Lanes {
 }
 
 impl Lanes {
-    /// The lanes of a reflectance or transmittance.
+    /// Returns the lanes of a reflectance or transmittance.
     #[inline]
     pub fn albedo(self, [r, g, b]: Rgb) -> Spectrum {
         match self {
@@ -184,7 +184,7 @@ impl Lanes {
         }
     }
 
-    /// The lanes of a quantity without an upper bound, such as an index of refraction.
+    /// Returns the lanes of a quantity without an upper bound, such as an index of refraction.
     #[inline]
     pub fn unbounded(self, [r, g, b]: Rgb) -> Spectrum {
         match self {
@@ -195,7 +195,7 @@ impl Lanes {
         }
     }
 
-    /// The lanes of an emitted radiance or intensity.
+    /// Returns the lanes of an emitted radiance or intensity.
     #[inline]
     pub fn illuminant(self, [r, g, b]: Rgb) -> Spectrum {
         match self {
@@ -205,7 +205,7 @@ impl Lanes {
         }
     }
 
-    /// The mean over the lanes that carry light: of contributions the scalar by which candidates are compared.
+    /// Returns the mean over the lanes that carry light: of contributions the scalar by which candidates are compared.
     #[inline]
     pub fn mean(self, spectrum: Spectrum) -> f32 {
         match self {
@@ -227,7 +227,7 @@ impl Lanes {
         lanes.into_iter()
     }
 
-    /// One of the lanes that carry light, each as likely as others, by `u` in `[0, 1)`.
+    /// Returns one of the lanes that carry light, each as likely as others, by `u` in `[0, 1)`.
     #[inline]
     pub fn pick_lane(self, u: f32) -> usize {
         match self {
@@ -237,7 +237,7 @@ impl Lanes {
         }
     }
 
-    /// The colour that light adds to the film.
+    /// Returns the colour that light adds to the film.
     #[inline]
     pub fn to_rgb(self, light: Spectrum) -> Rgb {
         match self {
@@ -247,7 +247,7 @@ impl Lanes {
         }
     }
 
-    /// The luminance of light.
+    /// Returns the luminance of light.
     #[inline]
     pub fn luminance(self, light: Spectrum) -> f32 {
         luminance(self.to_rgb(light))

@@ -27,7 +27,7 @@ pub struct RayCounts {
 }
 
 impl RayCounts {
-    /// All rays.
+    /// Returns all rays.
     pub fn total(&self) -> u64 {
         self.camera + self.light + self.connection + self.light_image
     }

@@ -15,7 +15,7 @@ pub struct Strategy {
 }
 
 impl Strategy {
-    /// The strategy of `s` light and `t` camera vertices.
+    /// Returns the strategy of `s` light and `t` camera vertices.
     #[inline]
     pub fn new(s: usize, t: usize) -> Self {
         Self {
@@ -24,7 +24,7 @@ impl Strategy {
         }
     }
 
-    /// The strategy of `s` light vertices for paths of as many vertices.
+    /// Returns the strategy of `s` light vertices for paths of as many vertices.
     pub(crate) fn with_light_vertices(self, s: u16) -> Self {
         Self {
             s,
@@ -90,13 +90,13 @@ impl Strategies {
         }
     }
 
-    /// True where the last rule is `all`: every strategy takes part.
+    /// Returns true where the last rule is `all`: every strategy takes part.
     #[inline]
     pub(crate) fn is_all(&self) -> bool {
         self.rules.last() == Some(&Rule::ALL)
     }
 
-    /// True where the list adds a strategy for paths of more than `most` vertices alone.
+    /// Returns true where the list adds a strategy for paths of more than `most` vertices alone.
     pub(crate) fn has_longer_than(&self, most: usize) -> bool {
         self.rules.iter().any(|rule| {
             let (s, t): (usize, usize) = (rule.s.unwrap_or(0).into(), rule.t.unwrap_or(1).into());
@@ -104,7 +104,7 @@ impl Strategies {
         })
     }
 
-    /// True where strategy (s, t) takes part.
+    /// Returns true where strategy (s, t) takes part.
     #[inline]
     pub fn contains(&self, s: usize, t: usize) -> bool {
         match self.short.get(s) {
@@ -114,7 +114,7 @@ impl Strategies {
     }
 }
 
-/// The last rule that matches (s, t); false where none does.
+/// Returns the last rule that matches (s, t); false where none does.
 fn decide(rules: &[Rule], s: usize, t: usize) -> bool {
     let matches = |rule: &&Rule| {
         rule.s.is_none_or(|only| usize::from(only) == s)

@@ -35,14 +35,14 @@ fn seed() -> u64 {
     })
 }
 
-/// `n` independent samples; those of different cases have nothing in common.
+/// Returns `n` independent samples; those of different cases have nothing in common.
 pub(crate) fn samples(case: &str, n: u64) -> impl Iterator<Item = SampleStream> {
     let stream = stream_of(case);
     let sampler = Sampler::new(SamplerKind::Independent, seed());
     (0..n).map(move |index| sampler.stream(StreamDomain::Camera, stream, index))
 }
 
-/// `n` independent means of `value`, each over `points` samples that a sequence spreads evenly.
+/// Returns `n` independent means of `value`, each over `points` samples that a sequence spreads evenly.
 pub(crate) fn means(
     case: &str,
     [n, points]: [u64; 2],
@@ -57,7 +57,7 @@ pub(crate) fn means(
     })
 }
 
-/// A number of `case`, by FNV-1a, so that a case keeps its numbers when others come and go.
+/// Returns a number of `case`, by FNV-1a, so that a case keeps its numbers when others come and go.
 fn stream_of(case: &str) -> u64 {
     let hash = |hash: u64, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
     case.bytes().fold(0xcbf2_9ce4_8422_2325, hash)
@@ -105,7 +105,7 @@ struct Case {
 }
 
 impl Case {
-    /// The fault of the case, as a line. None: it has none.
+    /// Returns the fault of the case, as a line. None: it has none.
     fn failure(&self, level: f64) -> Option<String> {
         let Self { name, p, p_biased } = self;
         if p.is_nan() || *p < level {
@@ -212,7 +212,7 @@ impl Battery {
     }
 }
 
-/// A view of `film` through a pinhole at the origin that looks along +z, 90 degrees wide.
+/// Returns a view of `film` through a pinhole at the origin that looks along +z, 90 degrees wide.
 pub(crate) fn view(film: FilmSettings) -> View {
     let camera = Perspective::new(&PerspectiveSettings {
         world_from_camera: Affine3A::IDENTITY,

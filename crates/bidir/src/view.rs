@@ -34,7 +34,7 @@ pub struct View {
 }
 
 impl View {
-    /// A view that filters those textures that ask for it.
+    /// Makes a view that filters those textures that ask for it.
     ///
     /// Errors: the film's crop is empty or outside of it.
     pub fn new(camera: Camera, film: FilmSettings) -> Result<Self, EmptyCrop> {
@@ -63,19 +63,19 @@ impl View {
         Ok(Self::new(camera, film)?.with_filtering(self.filtering))
     }
 
-    /// The camera, in the space of the scene.
+    /// Returns the camera, in the space of the scene.
     #[inline]
     pub fn camera(&self) -> &Camera {
         &self.camera
     }
 
-    /// The film's geometry, filter and exposure.
+    /// Returns the film's geometry, filter and exposure.
     #[inline]
     pub fn film(&self) -> &FilmSettings {
         &self.film
     }
 
-    /// The width that textures are averaged over at the point `p`: a function of the point and the view,
+    /// Returns the width that textures are averaged over at the point `p`: a function of the point and the view,
     /// however a path came there. Unit: m.
     #[inline]
     pub fn footprint(&self, p: Vec3) -> f32 {

@@ -92,7 +92,7 @@ pub struct Walk {
 }
 
 impl Command {
-    /// True where it only moves the camera: many such come one after another.
+    /// Returns true where it only moves the camera: many such come one after another.
     pub fn is_move(&self) -> bool {
         matches!(
             self,
@@ -100,7 +100,7 @@ impl Command {
         )
     }
 
-    /// True where it makes the running pass useless.
+    /// Returns true where it makes the running pass useless.
     pub fn ends_pass(&self) -> bool {
         !matches!(self, Self::Resume {} | Self::Save { .. })
     }

@@ -20,7 +20,7 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// The picture of `film`.
+    /// Returns the picture of `film`.
     pub fn new(film: &Film) -> Self {
         let picture = film.develop();
         Self {

@@ -37,7 +37,7 @@ pub struct SentFrame {
 }
 
 impl SentFrame {
-    /// A frame of a lane.
+    /// Makes a frame of a lane.
     pub(crate) fn new(lane: LaneId, generation: u32, frame: Frame, rays: Option<Vec<f32>>) -> Self {
         Self {
             lane,
@@ -48,7 +48,7 @@ impl SentFrame {
         }
     }
 
-    /// The message to clients: `BDF1`, then as u32 the lane, its generation, the passes, width and
+    /// Returns the message to clients: `BDF1`, then as u32 the lane, its generation, the passes, width and
     /// height of the whole film, left, top, width and height of the crop, then red, green and blue of
     /// each pixel as f32, row by row from the top left; all little endian.
     pub(crate) fn message(&self) -> Bytes {
@@ -130,7 +130,7 @@ impl SharedState {
         self.status.send_replace(Arc::new(status));
     }
 
-    /// The status.
+    /// Returns the status.
     pub(crate) fn status(&self) -> Arc<Status> {
         self.status.borrow().clone()
     }
@@ -145,7 +145,7 @@ impl SharedState {
         self.frames[lane.index()].send_replace(shown);
     }
 
-    /// The frame of a lane.
+    /// Returns the frame of a lane.
     pub(crate) fn shown(&self, lane: LaneId) -> Option<Arc<SentFrame>> {
         self.frames[lane.index()].borrow().clone()
     }
@@ -155,7 +155,7 @@ impl SharedState {
         self.frames[lane.index()].subscribe()
     }
 
-    /// True where a client receives frames.
+    /// Returns true where a client receives frames.
     pub(crate) fn is_watched(&self) -> bool {
         self.frames[0].receiver_count() > 0
     }
@@ -170,7 +170,7 @@ impl SharedState {
         }
     }
 
-    /// The log, each line with the seconds since the start.
+    /// Returns the log, each line with the seconds since the start.
     pub(crate) fn log_text(&self) -> String {
         let log = self.log.lock().unwrap_or_else(PoisonError::into_inner);
         log.iter().map(String::as_str).collect()
@@ -226,7 +226,7 @@ pub struct ClientHandle {
     interrupts: Arc<Interrupts>,
 }
 
-/// A queue with the handle of its clients; `first` is the status until the renderer has more.
+/// Returns a queue with the handle of its clients; `first` is the status until the renderer has more.
 pub fn request_queue(first: Status) -> (RequestQueue, ClientHandle) {
     let (sender, receiver) = sync_channel(REQUESTS);
     let handle = ClientHandle {
@@ -242,7 +242,7 @@ pub fn request_queue(first: Status) -> (RequestQueue, ClientHandle) {
 }
 
 impl RequestQueue {
-    /// The shared state.
+    /// Returns the shared state.
     pub fn state(&self) -> &SharedState {
         &self.handle.state
     }
@@ -255,7 +255,7 @@ impl RequestQueue {
         &self.handle.interrupts
     }
 
-    /// The next request.
+    /// Returns the next request.
     pub(crate) fn take(&self) -> Option<Request> {
         self.requests.try_recv().ok()
     }
@@ -271,7 +271,7 @@ impl RequestQueue {
 pub(crate) struct Refused;
 
 impl ClientHandle {
-    /// The shared state.
+    /// Returns the shared state.
     pub fn state(&self) -> &SharedState {
         &self.state
     }

@@ -22,7 +22,7 @@ impl LaneId {
     /// Both.
     pub const ALL: [Self; 2] = [Self::A, Self::B];
 
-    /// Its number.
+    /// Returns its number.
     pub fn index(self) -> usize {
         match self {
             Self::A => 0,
@@ -68,7 +68,7 @@ impl From<&FilmSettings> for FilmStatus {
 }
 
 impl Status {
-    /// The status of a render that has not begun, of the scene file `name` on `film`, and that takes no
+    /// Returns the status of a render that has not begun, of the scene file `name` on `film`, and that takes no
     /// commands.
     pub fn preparing(name: &str, film: &FilmSettings) -> Self {
         Self {
@@ -89,7 +89,7 @@ impl Status {
     }
 }
 
-/// The name of a scene file without its folders.
+/// Returns the name of a scene file without its folders.
 pub(crate) fn scene_name(name: &str) -> String {
     let file = Path::new(name).file_name();
     file.map_or_else(
@@ -109,7 +109,7 @@ pub struct Choices {
 }
 
 impl Choices {
-    /// All names.
+    /// Returns all names.
     fn all() -> Self {
         let names = IntegratorKind::NAMES.iter();
         let rays = [

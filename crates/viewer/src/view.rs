@@ -56,7 +56,7 @@ pub(crate) struct Course {
     pub(crate) target: Option<u64>,
 }
 
-/// The names of the integrator and of the selection of shadow rays.
+/// Returns the names of the integrator and of the selection of shadow rays.
 pub(crate) fn method_of(settings: &Settings) -> [String; 2] {
     let chosen = Request::of(settings).shadow_rays;
     let rays = chosen.map_or_else(|| settings.shadow_rays.to_string(), |rays| rays.to_string());
@@ -64,7 +64,7 @@ pub(crate) fn method_of(settings: &Settings) -> [String; 2] {
 }
 
 impl RenderView {
-    /// The view of an empty lane, for which `settings` were requested.
+    /// Returns the view of an empty lane, for which `settings` were requested.
     pub(crate) fn new(lane: LaneId, course: Course, settings: &Settings) -> Self {
         Self {
             lane,
@@ -81,12 +81,12 @@ impl RenderView {
         self.course.generation
     }
 
-    /// The time of all passes.
+    /// Returns the time of all passes.
     pub(crate) fn rendered(&self) -> Duration {
         self.rendered
     }
 
-    /// True where all passes are done.
+    /// Returns true where all passes are done.
     pub(crate) fn is_complete(&self, session: &Session<'_>) -> bool {
         let passes = session.film().passes().len();
         self.course.target.is_some_and(|target| passes >= target)
@@ -150,7 +150,7 @@ impl RenderView {
         Some(last.relative_error).filter(|error| error.is_finite())
     }
 
-    /// The status of the lane.
+    /// Returns the status of the lane.
     pub(crate) fn status(&self, session: &Session<'_>) -> LaneStatus {
         let (stats, settings) = (session.stats(), session.settings());
         let [integrator, shadow_rays] = self.method.clone();
@@ -184,7 +184,7 @@ impl RenderView {
     }
 }
 
-/// A count by seconds or samples; 0 where there are none.
+/// Returns a count by seconds or samples; 0 where there are none.
 fn ratio(count: u64, whole: f64) -> f64 {
     if whole > 0.0 {
         count as f64 / whole

@@ -42,7 +42,7 @@ pub(super) fn blocks(lanes: u32) -> f32 {
     lanes.div_ceil(LANES as u32) as f32
 }
 
-/// Half of the surface area of a box whose lengths are multiplied by `scale`.
+/// Returns half of the surface area of a box whose lengths are multiplied by `scale`.
 pub(super) fn scaled_area(scale: f32, [min, max]: [Vec3A; 2]) -> f32 {
     // The difference alone could overflow.
     half_area(max * scale - min * scale)
@@ -65,7 +65,7 @@ impl Grid {
         }
     }
 
-    /// The bin of a center along each axis.
+    /// Returns the bin of a center along each axis.
     #[inline]
     fn bins_of(&self, center: Vec3A) -> [usize; 3] {
         // A NaN (nothing times infinity) belongs to the first bin: the cast sees to it where `max` need not.
@@ -104,7 +104,7 @@ impl Bin {
 /// `[axis][bin]`.
 type Table<const BINS: usize> = [[Bin; BINS]; 3];
 
-/// The split of least cost; `centers` bound those of the references. None: all are in one place, or nearly.
+/// Returns the split of least cost; `centers` bound those of the references. None: all are in one place, or nearly.
 pub(super) fn best_split(
     references: &[Reference],
     centers: [Vec3A; 2],

@@ -51,32 +51,32 @@ impl Reference {
         }
     }
 
-    /// True if it has a place in a tree.
+    /// Returns true if it has a place in a tree.
     pub(super) fn is_valid(&self) -> bool {
         self.bounds.is_valid()
     }
 
-    /// The corners of its box, in vector registers.
+    /// Returns the corners of its box, in vector registers.
     #[inline]
     pub(super) fn bounds(&self) -> [Vec3A; 2] {
         [self.bounds.min.into(), self.bounds.max.into()]
     }
 
-    /// The middle of its box. None of its intermediate results overflows.
+    /// Returns the middle of its box. None of its intermediate results overflows.
     #[inline]
     pub(super) fn center(&self) -> Vec3A {
         let [min, max] = self.bounds();
         0.5 * min + 0.5 * max
     }
 
-    /// A coordinate of [`Self::center`], with the same rounding: both must put a reference into the same bin.
+    /// Returns a coordinate of [`Self::center`], with the same rounding: both must put a reference into the same bin.
     #[inline]
     pub(super) fn center_on(&self, axis: usize) -> f32 {
         let [min, max]: [&[f32; 3]; 2] = [self.bounds.min.as_ref(), self.bounds.max.as_ref()];
         0.5 * min[axis] + 0.5 * max[axis]
     }
 
-    /// The work of intersecting it, in lanes: a quadric costs what a block of triangles does, an
+    /// Returns the work of intersecting it, in lanes: a quadric costs what a block of triangles does, an
     /// instance so much that none shares a leaf.
     #[inline]
     pub(super) fn lanes(&self) -> u32 {
@@ -132,19 +132,19 @@ impl Totals {
         self.kinds |= other.kinds;
     }
 
-    /// The corners of a box around all centers.
+    /// Returns the corners of a box around all centers.
     pub(super) fn centers(&self) -> [Vec3A; 2] {
         self.centers
     }
 
-    /// The box around all.
+    /// Returns the box around all.
     pub(super) fn bounds(&self) -> Aabb {
         let [min, max] = self.bounds.map(Into::into);
         Aabb { min, max }
     }
 }
 
-/// A power of two that scales coordinates of at most `reach` to about 1: areas then neither overflow nor
+/// Returns a power of two that scales coordinates of at most `reach` to about 1: areas then neither overflow nor
 /// vanish, whatever the size of the scene.
 pub(super) fn scale_of(reach: f32) -> f32 {
     let exponent_only = f32::from_bits(reach.to_bits() & f32::INFINITY.to_bits());
@@ -196,24 +196,24 @@ impl<'a> Group<'a> {
         self.totals.bounds()
     }
 
-    /// True if a leaf is to be made: always if it is one test, never if a leaf has no room for it, and
+    /// Returns true if a leaf is to be made: always if it is one test, never if a leaf has no room for it, and
     /// otherwise if testing all is expected to cost no more than a node and its children.
     /// A node's test counts as much as a block's.
     pub(super) fn is_leaf(&self) -> bool {
         self.is_one_test() || self.has_room() && self.leaf_cost() <= self.area + self.split_cost()
     }
 
-    /// True if a split pays where the node that will test the parts is paid for already.
+    /// Returns true if a split pays where the node that will test the parts is paid for already.
     pub(super) fn deserves_split(&self) -> bool {
         !(self.is_one_test() || self.has_room() && self.leaf_cost() <= self.split_cost())
     }
 
-    /// True if its leaf is a block of triangles, or one primitive.
+    /// Returns true if its leaf is a block of triangles, or one primitive.
     fn is_one_test(&self) -> bool {
         self.len() == 1 || self.has_room() && self.totals.lanes <= LANES as u32
     }
 
-    /// True if a leaf has room for all.
+    /// Returns true if a leaf has room for all.
     fn has_room(&self) -> bool {
         self.kind.is_some() && self.totals.lanes <= MAX_LEAF_LANES
     }

@@ -108,7 +108,7 @@ fn vector(state: &mut u64) -> DVec3 {
     DVec3::new(random(state), random(state), random(state))
 }
 
-/// The answer without the box in the world that might cull it.
+/// Returns the answer without the box in the world that might cull it.
 fn unculled(bvh: &Bvh, ray: &Ray) -> Option<f32> {
     let (local, space) = bvh.placements[0].view(ray, &Approach::new(ray), 1);
     let hit = bvh.objects[0].closest(&local, accept_all)?;

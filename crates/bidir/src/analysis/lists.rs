@@ -65,7 +65,7 @@ fn words(range: &RangeInclusive<usize>) -> String {
     }
 }
 
-/// The light that the list of `settings` loses in a scene. None: no more than with all strategies, or
+/// Returns the light that the list of `settings` loses in a scene. None: no more than with all strategies, or
 /// the integrator does not use the list.
 pub fn lost_light(
     scene: &Scene,
@@ -96,7 +96,7 @@ pub fn lost_light(
     (!named.is_empty()).then(|| LostLight::Specular(named.join(", ")))
 }
 
-/// The names of the shortest patterns in which no two neighbours scatter alike; else of the shortest.
+/// Returns the names of the shortest patterns in which no two neighbours scatter alike; else of the shortest.
 fn examples(lost: &[Vec<bool>]) -> Vec<String> {
     let varied = lost.iter().filter(|pattern| {
         let inside = &pattern[1..pattern.len() - 1];
@@ -142,7 +142,7 @@ enum LightKind {
 }
 
 impl LightKind {
-    /// True where strategy (s, n - s) makes paths of this light whose vertices scatter diffusely where
+    /// Returns true where strategy (s, n - s) makes paths of this light whose vertices scatter diffusely where
     /// `is_diffuse` says so; both ends always do.
     fn makes(self, s: usize, is_diffuse: &[bool]) -> bool {
         let n = is_diffuse.len();
@@ -163,7 +163,7 @@ impl LightKind {
     }
 }
 
-/// The kinds of lights of a scene, each once.
+/// Returns the kinds of lights of a scene, each once.
 fn kinds(scene: &Scene, view: &View) -> Vec<LightKind> {
     let is_parallel = view.camera().is_parallel();
     let mut kinds = Vec::new();

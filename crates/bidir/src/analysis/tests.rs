@@ -27,7 +27,7 @@ pub(super) fn scene(materials: &[Material], lights: Vec<Light>) -> Scene {
     builder.build().unwrap()
 }
 
-/// A pixel that sees it.
+/// Returns a pixel that sees it.
 pub(super) fn view() -> View {
     crate::testing::view(FilmSettings::new([1, 1], Filter::default()))
 }
@@ -89,7 +89,7 @@ fn lights_that_rays_hit_are_noisy_where_others_are_missing() {
     assert!(Caustics.is_missing() && !ChanceCaustics.is_missing());
 }
 
-/// A clear coat over a tenth of a rough surface, whose lobe is drawn about once in forty times.
+/// Returns a clear coat over a tenth of a rough surface, whose lobe is drawn about once in forty times.
 fn thinly_coated() -> Material {
     Material::Principled(Arc::new(PrincipledMaterial {
         coat: ScaledFloat::constant(0.1),
@@ -97,7 +97,7 @@ fn thinly_coated() -> Material {
     }))
 }
 
-/// A medium without a boundary around everything, which glows.
+/// Returns a medium without a boundary around everything, which glows.
 fn endless_glow() -> Scene {
     let mut builder = SceneBuilder::new();
     let coefficients = Coefficients::new([0.1; 3], [0.1; 3]).unwrap();

@@ -79,7 +79,7 @@ struct MetalSeen {
 }
 
 impl CoatedConductor {
-    /// `metal` under an interface of `ggx`; `tables` are those of the two surfaces.
+    /// Returns `metal` under an interface of `ggx`; `tables` are those of the two surfaces.
     pub fn new(
         tables: (&Layer, &Reflections),
         ggx: Ggx,
@@ -117,7 +117,7 @@ impl CoatedConductor {
         self.facets.is_smooth()
     }
 
-    /// The reflectance along the mirrored direction, if all is smooth: F + T² a F_m / (1 - F a F_m),
+    /// Returns the reflectance along the mirrored direction, if all is smooth: F + T² a F_m / (1 - F a F_m),
     /// with a the part that the layer leaves after one trip.
     #[inline]
     fn mirror_reflectance(&self, wo: Vec3) -> Spectrum {
@@ -129,14 +129,14 @@ impl CoatedConductor {
         trip.map(|trip| reflected + sqr(1.0 - reflected) * trip * all_orders(reflected * trip))
     }
 
-    /// The factors of the direction `w`.
+    /// Returns the factors of the direction `w`.
     #[inline]
     fn seen(&self, w: Vec3) -> MetalSeen {
         let [seen, _] = self.seen_from([w; 2]);
         seen
     }
 
-    /// The factors of each of two directions.
+    /// Returns the factors of each of two directions.
     #[inline]
     fn seen_from(&self, w: [Vec3; 2]) -> [MetalSeen; 2] {
         let coats = self.coat.interfaces(w);
@@ -160,13 +160,13 @@ impl CoatedConductor {
         [coat, once, self.multiple * seen.trapped]
     }
 
-    /// The reflectance of the metal's facets.
+    /// Returns the reflectance of the metal's facets.
     #[inline]
     fn fresnel(&self, cos: f32) -> Spectrum {
         fresnel::conductor(cos, self.eta, self.k)
     }
 
-    /// The metal's reflectance of what it reflects once, at a facet of cosine `cos`, along directions of
+    /// Returns the metal's reflectance of what it reflects once, at a facet of cosine `cos`, along directions of
     /// mean (1-μ)⁵ `grazing`.
     #[inline]
     fn once_fresnel(&self, cos: f32, grazing: f32) -> Spectrum {
@@ -175,7 +175,7 @@ impl CoatedConductor {
         fresnel.map(|part| part + (1.0 - part) * more)
     }
 
-    /// The probabilities of drawing from each lobe. All are zero where nothing is scattered.
+    /// Returns the probabilities of drawing from each lobe. All are zero where nothing is scattered.
     #[inline]
     fn probs(shares: &[Spectrum; 3]) -> [f32; 3] {
         let shares = shares.map(Spectrum::max_lane);
@@ -183,7 +183,7 @@ impl CoatedConductor {
         shares.map(|share| if sum > 0.0 { share / sum } else { 0.0 })
     }
 
-    /// The albedo: the sum of the shares, at most 1.
+    /// Returns the albedo: the sum of the shares, at most 1.
     #[inline]
     fn albedo_of([coat, once, trapped]: &[Spectrum; 3]) -> Spectrum {
         (*coat + *once + *trapped).map(|lane| lane.min(1.0))
@@ -219,8 +219,8 @@ impl CoatedConductor {
         }
     }
 
-    /// f of the metal under the interface, and the densities of drawing either direction by one reflection at the metal:
-    /// that of the direction within, times dω'/dω = |cosθ| / (η² |cosθ'|).
+    /// Returns f of the metal under the interface, and the densities of drawing either direction by one reflection at
+    /// the metal: that of the direction within, times dω'/dω = |cosθ| / (η² |cosθ'|).
     #[inline]
     fn eval_metal(
         &self,

@@ -41,7 +41,7 @@ pub struct Filling {
 }
 
 impl Filling {
-    /// The optical depth of absorption.
+    /// Returns the optical depth of absorption.
     #[inline]
     pub(crate) fn absorption(&self) -> Spectrum {
         self.albedo.map(|albedo| self.thickness * (1.0 - albedo))
@@ -77,7 +77,7 @@ impl CoatedDiffuse {
         }
     }
 
-    /// True where nothing below a smooth coat scatters: a Dirac distribution alone.
+    /// Returns true where nothing below a smooth coat scatters: a Dirac distribution alone.
     #[inline]
     pub(super) fn is_delta(&self) -> bool {
         self.coat.is_smooth() && self.is_black_within()
@@ -106,7 +106,7 @@ impl CoatedDiffuse {
         [seen.reflected, self.entering.max_lane() * seen.through]
     }
 
-    /// The probability of drawing from the interface. It depends on |cosθ| alone, so that a mirrored
+    /// Returns the probability of drawing from the interface. It depends on |cosθ| alone, so that a mirrored
     /// direction has the same.
     #[inline]
     fn coat_prob(&self, seen: Seen) -> f32 {

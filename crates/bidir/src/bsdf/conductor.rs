@@ -28,7 +28,7 @@ pub struct Conductor {
 }
 
 impl Conductor {
-    /// A metal of index η + ik.
+    /// Makes a metal of index η + ik.
     pub fn new(eta: Spectrum, k: Spectrum, ggx: Ggx, scattering: FacetScattering) -> Self {
         let single = Self {
             eta,
@@ -74,7 +74,7 @@ impl Conductor {
         self.fresnel(wo.z) * (1.0 - lost) + self.multiple * lost
     }
 
-    /// The probability of drawing from the lobe of light that one facet loses, k being `lost`.
+    /// Returns the probability of drawing from the lobe of light that one facet loses, k being `lost`.
     #[inline]
     fn multiple_prob(&self, w: Vec3, lost: f32) -> f32 {
         let [once, often] = [self.fresnel(w.z), self.multiple].map(Spectrum::max_lane);

@@ -53,7 +53,7 @@ pub(super) struct Multiple {
 }
 
 impl Dielectric {
-    /// An interface of index `eta`, inside over outside.
+    /// Makes an interface of index `eta`, inside over outside.
     pub fn new(eta: f32, ggx: Ggx, scattering: FacetScattering) -> Self {
         let single = Self {
             eta,
@@ -69,7 +69,7 @@ impl Dielectric {
         }
     }
 
-    /// The interface with `index` outside in place of 1.
+    /// Returns the interface with `index` outside in place of 1.
     pub(super) fn within(self, index: f32) -> Self {
         let scattering = if self.lost == Sides::NONE {
             FacetScattering::Single
@@ -79,25 +79,25 @@ impl Dielectric {
         Self::new(self.eta / index, self.ggx, scattering)
     }
 
-    /// An index-matched interface bends nothing, so roughness has no meaning there.
+    /// Returns an index-matched interface bends nothing, so roughness has no meaning there.
     #[inline]
     pub(crate) fn is_smooth(&self) -> bool {
         self.ggx.is_smooth() || (self.eta - 1.0).abs() < 1e-6
     }
 
-    /// η of the other side divided by η of the side of `w`.
+    /// Returns η of the other side divided by η of the side of `w`.
     #[inline]
     pub(super) fn eta_across(&self, w: Vec3) -> f32 {
         if w.z > 0.0 { self.eta } else { 1.0 / self.eta }
     }
 
-    /// The absolute index on the side of `w`, the outside counting 1.
+    /// Returns the absolute index on the side of `w`, the outside counting 1.
     #[inline]
     pub(super) fn eta_at(&self, w: Vec3) -> f32 {
         if w.z > 0.0 { 1.0 } else { self.eta }
     }
 
-    /// The factor of a crossing on the quantity of `mode` that a walk from `wo` carries.
+    /// Returns the factor of a crossing on the quantity of `mode` that a walk from `wo` carries.
     #[inline]
     pub(super) fn crossing_scale(&self, wo: Vec3, mode: TransportMode) -> f32 {
         match mode {
@@ -106,7 +106,7 @@ impl Dielectric {
         }
     }
 
-    /// The facet that sends `wo` to `wi`, in the upper hemisphere, and how it does.
+    /// Returns the facet that sends `wo` to `wi`, in the upper hemisphere, and how it does.
     ///
     /// None: where that facet is seen from behind, or the directions are degenerate.
     #[inline]
@@ -155,7 +155,7 @@ impl Dielectric {
         }
     }
 
-    /// k of the direction `w`.
+    /// Returns k of the direction `w`.
     #[inline]
     pub(super) fn lost_of(&self, w: Vec3) -> f32 {
         multiple::of_interface(self.ggx, self.eta_across(w), w)
@@ -281,7 +281,7 @@ impl Dielectric {
         BsdfSample::of_value(wi, &self.eval(wo, wi, mode))
     }
 
-    /// `wi` drawn by a flat interface, which takes its lobe with probability `prob`.
+    /// Returns `wi` drawn by a flat interface, which takes its lobe with probability `prob`.
     #[inline]
     fn smooth_sample(&self, wo: Vec3, wi: Vec3, scale: f32, prob: f32) -> BsdfSample {
         BsdfSample {

@@ -22,7 +22,7 @@ impl DiffuseTransmission {
         (self.reflectance + self.transmittance).map(|lane| lane.min(1.0))
     }
 
-    /// The probability of drawing a reflected direction. None: nothing is scattered.
+    /// Returns the probability of drawing a reflected direction. None: nothing is scattered.
     #[inline]
     fn reflection_prob(&self) -> Option<f32> {
         let (r, t) = (self.reflectance.max_lane(), self.transmittance.max_lane());

@@ -4,7 +4,7 @@ use crate::math::{safe_sqrt, sqr};
 use crate::spectrum::Spectrum;
 use glam::Vec4;
 
-/// The reflectance of an interface between dielectrics.
+/// Returns the reflectance of an interface between dielectrics.
 ///
 /// `cos_i` is the cosine on the side that light arrives from: positive outside, negative inside.
 /// `eta` is the index inside divided by the index outside. The value is the same for both
@@ -31,7 +31,7 @@ pub fn schlick(cos: f32) -> f32 {
     sqr(sqr(x)) * x
 }
 
-/// The reflectance of a conductor with index `eta + i·k` against vacuum, all lanes at once
+/// Returns the reflectance of a conductor with index `eta + i·k` against vacuum, all lanes at once
 /// [Lagarde13, "Fresnel term of conductors"].
 #[inline]
 pub fn conductor(cos_i: f32, eta: Spectrum, k: Spectrum) -> Spectrum {
@@ -50,7 +50,7 @@ pub fn conductor(cos_i: f32, eta: Spectrum, k: Spectrum) -> Spectrum {
     Spectrum(mean.clamp(Vec4::ZERO, Vec4::ONE).to_array())
 }
 
-/// (sum - cross) / (sum + cross); 1 where both are zero: at normal incidence for a black index of
+/// Returns (sum - cross) / (sum + cross); 1 where both are zero: at normal incidence for a black index of
 /// zero, and at grazing incidence for the index of vacuum.
 #[inline]
 fn contrast(sum: Vec4, cross: Vec4) -> Vec4 {

@@ -48,13 +48,13 @@ impl Ggx {
         }
     }
 
-    /// True where the surface has no facets: a Dirac distribution of normals.
+    /// Returns true where the surface has no facets: a Dirac distribution of normals.
     #[inline]
     pub fn is_smooth(self) -> bool {
         self.alpha_x <= 0.0
     }
 
-    /// D(m), the density of facet area. Unit: 1/sr.
+    /// Returns D(m), the density of facet area. Unit: 1/sr.
     #[inline]
     pub fn d(self, m: Vec3) -> f32 {
         let slope = sqr(m.x / self.alpha_x) + sqr(m.y / self.alpha_y) + sqr(m.z);
@@ -68,31 +68,31 @@ impl Ggx {
         ((1.0 + tan2.min(f32::MAX)).sqrt() - 1.0) / 2.0
     }
 
-    /// The slopes along x and y.
+    /// Returns the slopes along x and y.
     #[inline]
     pub(super) fn alphas(self) -> [f32; 2] {
         [self.alpha_x, self.alpha_y]
     }
 
-    /// True where all azimuths are alike.
+    /// Returns true where all azimuths are alike.
     #[inline]
     pub(super) fn is_isotropic(self) -> bool {
         self.alpha_x.to_bits() == self.alpha_y.to_bits()
     }
 
-    /// 1 / (1 + 2Λ(v)): G₂ of a direction with itself. Range: `[0, 1]`.
+    /// Returns 1 / (1 + 2Λ(v)): G₂ of a direction with itself. Range: `[0, 1]`.
     #[inline]
     pub(super) fn unshadowed(self, v: Vec3) -> f32 {
         1.0 / (1.0 + 2.0 * self.lambda(v))
     }
 
-    /// The part of facets seen from `v` that nothing shadows.
+    /// Returns the part of facets seen from `v` that nothing shadows.
     #[inline]
     pub fn g1(self, v: Vec3) -> f32 {
         1.0 / (1.0 + self.lambda(v))
     }
 
-    /// The part of facets seen from both `wo` and `wi` that nothing shadows.
+    /// Returns the part of facets seen from both `wo` and `wi` that nothing shadows.
     #[inline]
     pub fn g2(self, wo: Vec3, wi: Vec3) -> f32 {
         1.0 / (1.0 + self.lambda(wo) + self.lambda(wi))
@@ -112,7 +112,7 @@ impl Ggx {
         }
     }
 
-    /// The direction that a facet which `wo` sees reflects it to. None: below the surface.
+    /// Returns the direction that a facet which `wo` sees reflects it to. None: below the surface.
     #[inline]
     pub fn sample_mirror(self, wo: Vec3, u: Vec2) -> Option<Vec3> {
         let m = self.sample_visible(wo, u);
@@ -120,13 +120,13 @@ impl Ggx {
         (wo.z * wi.z > 0.0).then_some(wi)
     }
 
-    /// The slope of an isotropic surface with as much variance.
+    /// Returns the slope of an isotropic surface with as much variance.
     #[inline]
     pub fn mean_alpha(self) -> f32 {
         ((sqr(self.alpha_x) + sqr(self.alpha_y)) / 2.0).sqrt()
     }
 
-    /// How near to a mirror it is: 1 for a mirror, 0 for slopes of 1 and above.
+    /// Returns how near to a mirror it is: 1 for a mirror, 0 for slopes of 1 and above.
     #[inline]
     pub fn gloss(self) -> f32 {
         1.0 - self.mean_alpha().min(1.0)
@@ -143,7 +143,7 @@ impl Ggx {
         )
     }
 
-    /// A normal in the upper hemisphere, by how much of its facets `v` sees; for `v` below the
+    /// Returns a normal in the upper hemisphere, by how much of its facets `v` sees; for `v` below the
     /// surface, of the facets seen from beneath \[Heitz18\].
     #[inline]
     pub fn sample_visible(self, v: Vec3, u: Vec2) -> Vec3 {

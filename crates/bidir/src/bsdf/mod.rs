@@ -65,7 +65,7 @@ pub enum TransportMode {
 }
 
 impl TransportMode {
-    /// The other mode: that of a walk through the same vertex in the opposite direction.
+    /// Returns the other mode: that of a walk through the same vertex in the opposite direction.
     #[inline]
     #[must_use]
     pub fn reversed(self) -> Self {
@@ -119,8 +119,8 @@ pub struct BsdfSample {
 }
 
 impl BsdfSample {
-    /// The mirrored direction, drawn with probability `prob` from a Dirac lobe of `reflectance`. `prob` and `albedo`
-    /// are the same for `wo` and the mirrored direction.
+    /// Returns the mirrored direction, drawn with probability `prob` from a Dirac lobe of `reflectance`. `prob` and
+    /// `albedo` are the same for `wo` and the mirrored direction.
     #[inline]
     fn mirror(wo: Vec3, reflectance: Spectrum, prob: f32, albedo: Spectrum) -> Self {
         let pdf = prob * wo.z.abs();
@@ -134,7 +134,7 @@ impl BsdfSample {
         }
     }
 
-    /// The sample `wi` that was drawn for `wo`, where `value` is that of both. None: its density underflows.
+    /// Returns the sample `wi` that was drawn for `wo`, where `value` is that of both. None: its density underflows.
     #[inline]
     fn of_value(wi: Vec3, value: &BsdfValue) -> Option<Self> {
         (value.pdf > 0.0 && wi.z != 0.0).then(|| Self {
@@ -179,7 +179,8 @@ pub enum Bsdf {
 }
 
 impl Bsdf {
-    /// f, densities and albedo for two directions, without Dirac lobes. `mode` is that of a walk that knows `wo`.
+    /// Returns f, densities and albedo for two directions, without Dirac lobes. `mode` is that of a walk that knows
+    /// `wo`.
     ///
     /// Paths call [`Turn`](crate::path::Turn) instead, which corrects for shading normals.
     #[inline]
@@ -240,7 +241,7 @@ impl Bsdf {
         }
     }
 
-    /// True where all scattering is a Dirac distribution.
+    /// Returns true where all scattering is a Dirac distribution.
     #[inline]
     pub fn is_delta(&self) -> bool {
         match self {
@@ -254,7 +255,7 @@ impl Bsdf {
         }
     }
 
-    /// How it scatters, without a coat that has a normal of its own.
+    /// Returns how it scatters, without a coat that has a normal of its own.
     pub fn lobes(&self) -> Lobes {
         match self {
             Self::Diffuse(_) | Self::DiffuseTransmission(_) => Lobes::Diffuse(0.0),
@@ -267,7 +268,7 @@ impl Bsdf {
         }
     }
 
-    /// The normal of a clear coat in the local frame. None: the layers of the surface have one frame.
+    /// Returns the normal of a clear coat in the local frame. None: the layers of the surface have one frame.
     #[inline]
     pub fn coat_normal(&self) -> Option<Vec3> {
         match self {
@@ -313,7 +314,7 @@ impl Bsdf {
         }
     }
 
-    /// The values that every test battery runs over.
+    /// Returns the values that every test battery runs over.
     pub fn examples() -> Vec<(&'static str, Self)> {
         let mut examples = Vec::new();
         examples.extend(Diffuse::examples().map(|(name, bsdf)| (name, Self::Diffuse(bsdf))));
@@ -333,7 +334,7 @@ impl Bsdf {
     }
 }
 
-/// True where two local directions lie on the same side of the surface.
+/// Returns true where two local directions lie on the same side of the surface.
 #[inline]
 pub(crate) fn same_hemisphere(a: Vec3, b: Vec3) -> bool {
     a.z * b.z > 0.0

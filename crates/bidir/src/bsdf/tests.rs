@@ -14,7 +14,7 @@ use crate::sampler::{Dimension, Purpose, SampleStream};
 
 const MODES: [TransportMode; 2] = [TransportMode::Radiance, TransportMode::Importance];
 
-/// The unit direction with cosine `cos` at azimuth `phi`.
+/// Returns the unit direction with cosine `cos` at azimuth `phi`.
 fn direction(cos: f32, phi: f32) -> Vec3 {
     let (y, x) = sin_cos(phi);
     let sin = (1.0 - cos * cos).sqrt();
@@ -41,13 +41,13 @@ fn cases() -> impl Iterator<Item = (String, Bsdf, Vec3)> {
     })
 }
 
-/// The numbers that one scattering takes: for the lobe, and for the direction.
+/// Returns the numbers that one scattering takes: for the lobe, and for the direction.
 pub(super) fn numbers(sample: &SampleStream) -> (f32, Vec2) {
     let lobe = sample.get_1d(Dimension::at(2, Purpose::Lobe));
     (lobe, sample.get_2d(Dimension::at(2, Purpose::Scatter)))
 }
 
-/// True where the surface looks alike from above and from below.
+/// Returns true where the surface looks alike from above and from below.
 fn is_two_sided(bsdf: &Bsdf) -> bool {
     match bsdf {
         Bsdf::Dielectric(_) => false,
@@ -58,7 +58,7 @@ fn is_two_sided(bsdf: &Bsdf) -> bool {
 
 const VARIANTS: usize = 8;
 
-/// A new variant does not compile before it has a number here.
+/// Returns a new variant does not compile before it has a number here.
 fn variant(bsdf: &Bsdf) -> usize {
     match bsdf {
         Bsdf::Diffuse(_) => 0,

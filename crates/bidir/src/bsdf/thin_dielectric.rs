@@ -16,7 +16,7 @@ pub struct ThinDielectric {
 }
 
 impl ThinDielectric {
-    /// R'.
+    /// Returns R'.
     #[inline]
     fn reflectance(self, w: Vec3) -> f32 {
         // Light enters from outside on both sides.

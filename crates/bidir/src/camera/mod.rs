@@ -63,7 +63,7 @@ pub enum Camera {
 }
 
 impl Camera {
-    /// The name of its kind, in one word.
+    /// Returns the name of its kind, in one word.
     pub const fn kind(&self) -> &'static str {
         match self {
             Self::Perspective(_) => "perspective",
@@ -72,7 +72,7 @@ impl Camera {
         }
     }
 
-    /// Its position and the directions of its axes.
+    /// Returns its position and the directions of its axes.
     pub fn pose(&self) -> Pose {
         match self {
             Self::Perspective(camera) => camera.pose,
@@ -92,7 +92,7 @@ impl Camera {
         self
     }
 
-    /// True where all rays go the same way.
+    /// Returns true where all rays go the same way.
     pub fn is_parallel(&self) -> bool {
         matches!(self, Self::Orthographic(_))
     }
@@ -107,7 +107,7 @@ impl Camera {
         }
     }
 
-    /// A point of the lens. The numbers are asked for where the lens has an extent.
+    /// Returns a point of the lens. The numbers are asked for where the lens has an extent.
     #[inline]
     pub fn sample_lens(&self, u: impl FnOnce() -> Vec2) -> LensSample {
         match self {
@@ -117,7 +117,7 @@ impl Camera {
         }
     }
 
-    /// The ray from the lens point of `u` whose image is `raster`.
+    /// Returns the ray from the lens point of `u` whose image is `raster`.
     #[inline]
     pub fn sample_ray(&self, raster: Vec2, u: impl FnOnce() -> Vec2) -> CameraRay {
         match self {
@@ -127,7 +127,7 @@ impl Camera {
         }
     }
 
-    /// The raster position of the ray through `p` along the unit direction `w`, `p` being a lens
+    /// Returns the raster position of the ray through `p` along the unit direction `w`, `p` being a lens
     /// point, or for parallel rays any point of the ray. None: it leaves backwards.
     #[inline]
     pub fn raster(&self, p: Vec3, w: Vec3) -> Option<Vec2> {
@@ -138,7 +138,7 @@ impl Camera {
         }
     }
 
-    /// How far in front of the camera a point is: along the axis, where there is one.
+    /// Returns how far in front of the camera a point is: along the axis, where there is one.
     #[inline]
     pub fn depth(&self, p: Vec3) -> f32 {
         match self {
@@ -158,7 +158,7 @@ impl Camera {
         }
     }
 
-    /// The density of leaving the lens along `w`. Measure: solid angle, camera samples per pass
+    /// Returns the density of leaving the lens along `w`. Measure: solid angle, camera samples per pass
     /// and sr; for parallel rays area across them, camera samples per pass and m².
     #[inline]
     pub fn pdf_direction(&self, w: Vec3) -> f32 {
@@ -169,7 +169,7 @@ impl Camera {
         }
     }
 
-    /// How wide a pixel is at the point `p`, across the view: textures there are averaged over it.
+    /// Returns how wide a pixel is at the point `p`, across the view: textures there are averaged over it.
     /// A function of the point alone, of any point of the world, seen or not. Unit: m.
     #[inline]
     pub fn pixel_width(&self, p: Vec3) -> f32 {

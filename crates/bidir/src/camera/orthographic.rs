@@ -36,7 +36,7 @@ pub struct Orthographic {
 }
 
 impl Orthographic {
-    /// The camera. None: its map is flat, or the screen has no area.
+    /// Returns the camera. None: its map is flat, or the screen has no area.
     pub fn new(settings: &OrthographicSettings) -> Option<Self> {
         let (pose, stretch) = Pose::new(&across(&settings.world_from_camera))?;
         let screen = settings.screen.map(|corner| corner * stretch.unit);
@@ -81,7 +81,7 @@ impl Orthographic {
         }
     }
 
-    /// The raster position that sees the point `p`. None: it is behind the plane.
+    /// Returns the raster position that sees the point `p`. None: it is behind the plane.
     #[inline]
     pub(super) fn raster(&self, p: Vec3) -> Option<Vec2> {
         let local = self.pose.to_local(p - self.pose.origin);
@@ -96,13 +96,13 @@ impl Orthographic {
         self.pose.forward.dot(p - self.pose.origin)
     }
 
-    /// The width of a pixel, the same everywhere.
+    /// Returns the width of a pixel, the same everywhere.
     #[inline]
     pub(super) fn pixel_width(&self) -> f32 {
         1.0 / self.raster_density.sqrt()
     }
 
-    /// dx/dA along the axis, the one direction there is.
+    /// Returns dx/dA along the axis, the one direction there is.
     #[inline]
     pub(super) fn density(&self, w: Vec3) -> f32 {
         if self.pose.forward.dot(w) > 0.0 {
@@ -113,7 +113,7 @@ impl Orthographic {
     }
 }
 
-/// The map of a camera whose axes x and y are as its axis z sees them: across it, if they are not already.
+/// Returns the map of a camera whose axes x and y are as its axis z sees them: across it, if they are not already.
 fn across(world_from_camera: &Affine3A) -> Affine3A {
     let m = world_from_camera.matrix3;
     let is_square =

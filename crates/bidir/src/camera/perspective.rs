@@ -41,7 +41,7 @@ pub struct Perspective {
 }
 
 impl Perspective {
-    /// The camera. None: its map is flat, or a size is not finite and positive where it must be.
+    /// Returns the camera. None: its map is flat, or a size is not finite and positive where it must be.
     pub fn new(settings: &PerspectiveSettings) -> Option<Self> {
         let (pose, stretch) = Pose::new(&settings.world_from_camera)?;
         let per_raster = (settings.screen[1] - settings.screen[0]) / settings.resolution;
@@ -87,7 +87,7 @@ impl Perspective {
         }
     }
 
-    /// The area of the lens; 1 for a pinhole, whose Dirac distribution cancels.
+    /// Returns the area of the lens; 1 for a pinhole, whose Dirac distribution cancels.
     #[inline]
     fn lens_area(&self) -> f32 {
         if self.lens_radius > 0.0 {
@@ -137,7 +137,7 @@ impl Perspective {
         self.pose.forward.dot(p - self.pose.origin)
     }
 
-    /// dx/dω = raster density / cos³θ: the plane z = 1 seen at an angle.
+    /// Returns dx/dω = raster density / cos³θ: the plane z = 1 seen at an angle.
     #[inline]
     pub(super) fn pdf_direction(&self, w: Vec3) -> f32 {
         let cos = self.pose.forward.dot(w);

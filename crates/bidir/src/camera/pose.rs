@@ -35,25 +35,25 @@ pub(super) struct Stretch {
 impl Stretch {
     const EVEN: [Vec3; 3] = [Vec3::X, Vec3::Y, Vec3::Z];
 
-    /// The position on the plane z = 1 of one on the plane z = 1 of camera space.
+    /// Returns the position on the plane z = 1 of one on the plane z = 1 of camera space.
     #[inline]
     pub(super) fn on_plane(&self, p: Vec2) -> Vec2 {
         self.vector(p) + self.axes[2].truncate()
     }
 
-    /// The vector in planes of equal depth of one in camera space, in the unit along the axis.
+    /// Returns the vector in planes of equal depth of one in camera space, in the unit along the axis.
     #[inline]
     pub(super) fn vector(&self, v: Vec2) -> Vec2 {
         let [x, y, _] = self.axes;
         Vec2::new(x.x * v.x + y.x * v.y, y.y * v.y)
     }
 
-    /// The area of one of camera space in planes of equal depth.
+    /// Returns the area of one of camera space in planes of equal depth.
     pub(super) fn area(&self) -> f32 {
         (self.axes[0].x * self.axes[1].y).abs()
     }
 
-    /// The matrix S, scaled to determinant ±1. None: it is even, which turns no direction.
+    /// Returns the matrix S, scaled to determinant ±1. None: it is even, which turns no direction.
     pub(super) fn of_directions(&self) -> Option<Mat3> {
         let [x, y, z] = self.axes;
         let size = libm::cbrtf((x.x * y.y * z.z).abs());
@@ -71,7 +71,7 @@ pub struct Turn {
 }
 
 impl Pose {
-    /// The place of a camera: the frame whose axes x and y span the camera's planes of equal depth, and the
+    /// Returns the place of a camera: the frame whose axes x and y span the camera's planes of equal depth, and the
     /// rest of its map. None: the map is flat, or not finite.
     pub(super) fn new(world_from_camera: &Affine3A) -> Option<(Self, Stretch)> {
         let m = world_from_camera.matrix3;
@@ -101,19 +101,19 @@ impl Pose {
         is_place.then_some((pose, stretch))
     }
 
-    /// A world vector in the camera's axes.
+    /// Returns a world vector in the camera's axes.
     #[inline]
     pub fn to_local(self, v: Vec3) -> Vec3 {
         Vec3::new(self.right.dot(v), self.up.dot(v), self.forward.dot(v))
     }
 
-    /// The world vector of one in the camera's axes.
+    /// Returns the world vector of one in the camera's axes.
     #[inline]
     pub fn to_world(self, v: Vec3) -> Vec3 {
         self.right * v.x + self.up * v.y + self.forward * v.z
     }
 
-    /// The axis of the world that is up for who looks through the camera: of those that are level with
+    /// Returns the axis of the world that is up for who looks through the camera: of those that are level with
     /// the picture the one nearest to its up, as a camera without roll has it however steep it looks;
     /// but where two are level, and it looks steeper than 45 degrees, it cannot be known.
     pub fn vertical(&self) -> Vec3 {
@@ -139,7 +139,7 @@ impl Pose {
         }
     }
 
-    /// The camera turned about the point `pivot`: the world's points keep their distances from it.
+    /// Returns the camera turned about the point `pivot`: the world's points keep their distances from it.
     /// About its own origin it looks around; about what it looks at it goes around that, the other
     /// way. It never looks along `vertical`.
     #[must_use]
@@ -152,7 +152,7 @@ impl Pose {
             .rotated(pivot, vertical, hand * turn.right)
     }
 
-    /// The frame rotated by `angle` about the unit vector `axis` through `pivot`, square again
+    /// Returns the frame rotated by `angle` about the unit vector `axis` through `pivot`, square again
     /// however often it was rotated.
     fn rotated(self, pivot: Vec3, axis: Vec3, angle: f32) -> Self {
         let (sin, cos) = sin_cos(angle);

@@ -34,7 +34,7 @@ pub struct Spherical {
 }
 
 impl Spherical {
-    /// The camera at a place: x right, y up, z forward. Unit of `resolution`: pixels. None: the map is flat,
+    /// Returns the camera at a place: x right, y up, z forward. Unit of `resolution`: pixels. None: the map is flat,
     /// or the film is empty.
     pub fn new(
         world_from_camera: &Affine3A,
@@ -88,7 +88,7 @@ impl Spherical {
         }
     }
 
-    /// A direction of the world in camera space, and dω_camera/dω_world = |det S⁻¹| / |S⁻¹ω|³.
+    /// Returns a direction of the world in camera space, and dω_camera/dω_world = |det S⁻¹| / |S⁻¹ω|³.
     #[inline]
     fn in_camera(&self, w: Vec3) -> (Vec3, f32) {
         let local = self.pose.to_local(w);
@@ -133,7 +133,7 @@ impl Spherical {
         self.depth(p) * solid_angle.sqrt()
     }
 
-    /// dx/dω.
+    /// Returns dx/dω.
     #[inline]
     pub(super) fn density(&self, w: Vec3) -> f32 {
         let area = self.resolution.x * self.resolution.y;

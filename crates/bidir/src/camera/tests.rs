@@ -11,7 +11,7 @@ use crate::testing::{Battery, Domain, Grid, check_close, samples};
 const RESOLUTION: Vec2 = Vec2::new(40.0, 30.0);
 const EYE: Vec3 = Vec3::new(1.0, 2.0, -3.0);
 
-/// The axis of every example.
+/// Returns the axis of every example.
 fn forward() -> Vec3 {
     turn() * Vec3::Z
 }
@@ -100,7 +100,7 @@ fn others() -> [(&'static str, Camera); 5] {
 
 const VARIANTS: usize = 3;
 
-/// A new variant does not compile before it has a number here.
+/// Returns a new variant does not compile before it has a number here.
 fn variant(camera: &Camera) -> usize {
     match camera {
         Camera::Perspective(_) => 0,

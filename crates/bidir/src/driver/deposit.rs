@@ -52,7 +52,7 @@ impl Deposit<'_> {
         }
     }
 
-    /// The place of a sample's pixel in the crop.
+    /// Returns the place of a sample's pixel in the crop.
     fn pixel(&self, sample: &Sample) -> Option<usize> {
         let [x, y] = sample.pixel.map(i64::from);
         self.job.view.film().crop.index(x, y)
@@ -77,7 +77,7 @@ impl Deposit<'_> {
         }
     }
 
-    /// The parts of the picture that a contribution is in.
+    /// Returns the parts of the picture that a contribution is in.
     fn parts_of(&self, contribution: &Contribution) -> impl Iterator<Item = usize> {
         let group = self.job.scene.light_group(contribution.term.light);
         self.layers.parts_of(contribution.term.strategy, group)
@@ -144,7 +144,7 @@ impl Deposit<'_> {
         f64::from(luminance(self.rgb(contribution.value())))
     }
 
-    /// The raw image of a contribution, and the value added to it. None: it has none, or the value is
+    /// Returns the raw image of a contribution, and the value added to it. None: it has none, or the value is
     /// counted as dropped from it.
     fn raw(&self, contribution: &Contribution, stats: &mut Stats) -> Option<(usize, Rgb)> {
         let part = self.layers.raw_part(contribution.term.strategy)?;
@@ -156,7 +156,7 @@ impl Deposit<'_> {
     }
 }
 
-/// The entries that add to an image, with their samples.
+/// Returns the entries that add to an image, with their samples.
 fn added<'a>(
     samples: &'a [Sample],
     entries: &'a [Entry],
@@ -165,7 +165,7 @@ fn added<'a>(
     added.map(|entry| (&samples[entry.sample as usize], entry))
 }
 
-/// The splats that add to the light image, with their places.
+/// Returns the splats that add to the light image, with their places.
 fn splats(entries: &[Entry]) -> impl Iterator<Item = (&Contribution, SplatPlace)> {
     let splats = entries.iter();
     splats.filter_map(|entry| Some((&entry.contribution, entry.splat_place()?)))
@@ -184,14 +184,14 @@ mod tests {
     use crate::sampler::{Domain, Sampler, SamplerKind};
     use crate::scene::{Scene, SceneBuilder};
 
-    /// A sky.
+    /// Returns a sky.
     fn scene() -> Scene {
         let mut builder = SceneBuilder::new();
         builder.light(Light::Infinite(InfiniteLight::constant([1.0; 3])));
         builder.build().unwrap()
     }
 
-    /// An entry C w of this strategy.
+    /// Returns an entry C w of this strategy.
     fn entry((s, t): (usize, usize), c: f32, weight: f32) -> Entry {
         let place = SplatPlace {
             raster: Vec2::splat(0.5),
@@ -214,7 +214,7 @@ mod tests {
         }
     }
 
-    /// The film and the counters after one sample that leaves these behind, the last as a splat.
+    /// Returns the film and the counters after one sample that leaves these behind, the last as a splat.
     fn deposit(entries: &[Entry], splat: Entry) -> (Film, Stats) {
         let view = crate::testing::view(FilmSettings::new([1, 1], Filter::default()));
         let (scene, layers) = (scene(), Layers::new(&[], &[], 3).with_raw());

@@ -47,7 +47,7 @@ struct FirstSurface {
 }
 
 impl Features {
-    /// The features of the one sample of `batch`, which was just taken, between two looks at what it cost.
+    /// Returns the features of the one sample of `batch`, which was just taken, between two looks at what it cost.
     pub(super) fn new(
         job: &Job<'_>,
         layers: &Layers,
@@ -64,13 +64,13 @@ impl Features {
         }
     }
 
-    /// The numbers of all images, in the order of [`Layers::aovs`].
+    /// Returns the numbers of all images, in the order of [`Layers::aovs`].
     pub(super) fn values<'a>(&'a self, layers: &'a Layers) -> impl Iterator<Item = f32> + 'a {
         let aovs = layers.aovs().iter();
         aovs.flat_map(|&aov| self.value(aov).into_iter().take(aov.sums()))
     }
 
-    /// The numbers of an image: as many of them as it has sums.
+    /// Returns the numbers of an image: as many of them as it has sums.
     fn value(&self, aov: Aov) -> [f32; 3] {
         let of = |get: fn(&FirstSurface) -> [f32; 3]| self.surface.as_ref().map_or([0.0; 3], get);
         match aov {

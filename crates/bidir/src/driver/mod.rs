@@ -71,7 +71,7 @@ pub trait Progress: Sync {
         Stop::NEVER
     }
 
-    /// The host's clock, which is looked at only where a film keeps
+    /// Returns the host's clock, which is looked at only where a film keeps
     /// [`Aov::Time`](crate::film::Aov::Time). Unit: nanoseconds since any moment.
     fn nanoseconds(&self) -> u64 {
         0

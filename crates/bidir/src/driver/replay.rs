@@ -100,31 +100,31 @@ impl Replay {
         replay
     }
 
-    /// The sum of the terms that it adds to its own pixel.
+    /// Returns the sum of the terms that it adds to its own pixel.
     pub fn value(&self) -> Spectrum {
         self.batch.values[0]
     }
 
-    /// The terms that it adds to the light image, with their places.
+    /// Returns the terms that it adds to the light image, with their places.
     pub fn splats(&self) -> impl Iterator<Item = (&Contribution, SplatPlace)> {
         let splats = self.batch.splats.iter();
         splats.filter_map(|entry| Some((&entry.contribution, entry.splat_place()?)))
     }
 
-    /// The light subpath of the sample; empty where it has that of another, or none was walked.
+    /// Returns the light subpath of the sample; empty where it has that of another, or none was walked.
     pub fn light(&self) -> Subpath<'_> {
         let light = self.light.map(|number| self.batch.light.get(number));
         light.unwrap_or_default()
     }
 
-    /// The camera subpath of the sample; empty where none was walked.
+    /// Returns the camera subpath of the sample; empty where none was walked.
     pub fn camera(&self) -> Subpath<'_> {
         let is_walked = self.batch.camera.count() > 0;
         let camera = is_walked.then(|| self.batch.camera.get(0));
         camera.unwrap_or_default()
     }
 
-    /// The connections within the limit of length that no term is about.
+    /// Returns the connections within the limit of length that no term is about.
     fn zeros(&self, job: &Job<'_>) -> Vec<Strategy> {
         let [light, camera] = [self.light(), self.camera()].map(|walk| walk.vertices.len());
         let all = (2..=camera).flat_map(|t| (1..=light).map(move |s| Strategy::new(s, t)));
@@ -178,12 +178,12 @@ impl ReplayedTerm {
         }
     }
 
-    /// True where something of it arrives.
+    /// Returns true where something of it arrives.
     pub fn is_visible(&self) -> bool {
         self.transmittance > 0.0
     }
 
-    /// True where the term is let through by selection, or where nothing is chosen from.
+    /// Returns true where the term is let through by selection, or where nothing is chosen from.
     pub fn is_chosen(&self) -> bool {
         match self.fate {
             Fate::NotTraced => false,
@@ -194,7 +194,7 @@ impl ReplayedTerm {
     }
 }
 
-/// The place of a splat, and the factor that turns its value into its part of a pixel in one pass's image.
+/// Returns the place of a splat, and the factor that turns its value into its part of a pixel in one pass's image.
 fn land(film: &FilmSettings, place: SplatPlace) -> (Landing, f32) {
     let picked = film.pick_pixel(place);
     let landing = Landing {

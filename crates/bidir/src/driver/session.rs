@@ -103,7 +103,7 @@ pub struct Session<'a> {
 }
 
 impl<'a> Session<'a> {
-    /// A session that has rendered nothing but its training.
+    /// Makes a session that has rendered nothing but its training.
     ///
     /// Errors: the film needs more memory than `resources` allow or the system has; `effort` asked to stop.
     pub fn new(
@@ -176,7 +176,7 @@ impl<'a> Session<'a> {
         self.first_pass = first;
     }
 
-    /// The pass that [`Self::step`] renders.
+    /// Returns the pass that [`Self::step`] renders.
     pub fn next_pass(&self) -> u64 {
         self.film.passes().first_missing(self.first_pass)
     }
@@ -220,7 +220,7 @@ impl<'a> Session<'a> {
         true
     }
 
-    /// The counters and times of all threads since the last call.
+    /// Returns the counters and times of all threads since the last call.
     fn take_counts(&mut self) -> (Stats, StageTimes) {
         let (mut stats, mut stage_times) = (Stats::default(), StageTimes::default());
         for batch in &mut self.batches {
@@ -283,7 +283,7 @@ impl<'a> Session<'a> {
         }
     }
 
-    /// How many samples strategies take.
+    /// Returns how many samples strategies take.
     pub(super) fn counts(&self) -> SampleCounts {
         match self.guiding() {
             Some(training) => training.counts(self.settings.lvc, self.light_subpaths()),
@@ -295,7 +295,7 @@ impl<'a> Session<'a> {
         self.guiding().map_or(Guide::default(), Training::guide)
     }
 
-    /// The training, if the estimator uses its knowledge.
+    /// Returns the training, if the estimator uses its knowledge.
     fn guiding(&self) -> Option<&Training> {
         let training = self.training.as_ref();
         training.filter(|_| self.settings.integrator == IntegratorKind::Lvc)
@@ -334,7 +334,7 @@ impl<'a> Session<'a> {
         true
     }
 
-    /// The sample at `place` in the order of a pass, with the light path that goes with it.
+    /// Returns the sample at `place` in the order of a pass, with the light path that goes with it.
     fn sample(&self, place: u64, pass: u64) -> Sample {
         let film = self.view.film();
         let sampler = Sampler::new(self.settings.sampler, self.settings.seed);
@@ -365,29 +365,29 @@ impl<'a> Session<'a> {
         Some(Replay::new(&job, batch, light, &*selector))
     }
 
-    /// The view that is rendered.
+    /// Returns the view that is rendered.
     pub fn view(&self) -> &View {
         &self.view
     }
 
-    /// The scene that is rendered.
+    /// Returns the scene that is rendered.
     pub fn scene(&self) -> &Scene {
         &self.scene
     }
 
-    /// How it is rendered, with everything decided that was left open.
+    /// Returns how it is rendered, with everything decided that was left open.
     pub fn settings(&self) -> &Settings {
         &self.settings
     }
 
-    /// The film rendered so far.
+    /// Returns the film rendered so far.
     pub fn film(&self) -> &Film {
         &self.film
     }
 
-    /// The noise that is left in the picture ([`Picture::relative_error`](crate::film::Picture::relative_error)).
-    /// Without any light it is 0: the picture is black for good, where one that is black so far may have
-    /// found nothing yet.
+    /// Returns the noise that is left in the picture
+    /// ([`Picture::relative_error`](crate::film::Picture::relative_error)). Without any light it is 0: the picture is
+    /// black for good, where one that is black so far may have found nothing yet.
     pub fn noise(&self) -> f64 {
         if self.scene.lights().is_empty() {
             return 0.0;
@@ -402,7 +402,7 @@ impl<'a> Session<'a> {
         passes >= 16 && passes.is_multiple_of(1 << (passes.ilog2() - 3))
     }
 
-    /// A warning that the image is black, or the same everywhere, with the reason. None: it has content, or no
+    /// Returns a warning that the image is black, or the same everywhere, with the reason. None: it has content, or no
     /// pass was rendered. Takes as long as developing the film.
     pub fn blank_warning(&self) -> Option<String> {
         let is_empty = self.film.passes().is_empty();
@@ -417,23 +417,23 @@ impl<'a> Session<'a> {
         (!is_empty).then(warn)?
     }
 
-    /// The counters so far, without training.
+    /// Returns the counters so far, without training.
     pub fn stats(&self) -> &Stats {
         &self.stats
     }
 
-    /// The time of stages, measured in some samples of those; zero without
+    /// Returns the time of stages, measured in some samples of those; zero without
     /// [`Resources::clock`].
     pub fn stage_times(&self) -> &StageTimes {
         &self.stage_times
     }
 
-    /// The training before the first pass, if anything had to be learned.
+    /// Returns the training before the first pass, if anything had to be learned.
     pub fn training(&self) -> Option<&Training> {
         self.training.as_ref()
     }
 
-    /// The number of threads.
+    /// Returns the number of threads.
     pub fn threads(&self) -> usize {
         self.batches.len()
     }
@@ -443,7 +443,7 @@ impl<'a> Session<'a> {
         self.workers.shortage()
     }
 
-    /// The film with what was counted for it; the session goes on with an empty one, and knows no
+    /// Returns the film with what was counted for it; the session goes on with an empty one, and knows no
     /// longer which passes were rendered.
     ///
     /// Errors: the system does not have the memory of another film; the session is as before.
@@ -453,13 +453,13 @@ impl<'a> Session<'a> {
         Ok((film, std::mem::take(&mut self.stats)))
     }
 
-    /// The film, without the session.
+    /// Returns the film, without the session.
     pub fn into_film(self) -> Film {
         self.film
     }
 }
 
-/// The rule that chooses shadow rays, with what training found for it.
+/// Returns the rule that chooses shadow rays, with what training found for it.
 fn selector(settings: &Settings, training: Option<&Training>) -> Box<dyn Selector> {
     let mean = training.map_or(0.0, |training| training.mean_luminance);
     settings.shadow_rays.selector(mean)

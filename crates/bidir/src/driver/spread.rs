@@ -8,7 +8,7 @@ use rayon::prelude::*;
 /// not. Unit: 2⁻⁶⁴ of a side.
 const STEPS: [u64; 2] = [0xc13f_a9a9_02a6_328f, 0x91e1_0da5_c79e_7b1d];
 
-/// The pixel of point number `i` of the sequence, without end: a film is filled evenly at any time.
+/// Returns the pixel of point number `i` of the sequence, without end: a film is filled evenly at any time.
 pub(super) fn point(crop: &PixelRect, i: u64) -> [u32; 2] {
     let along = |step: u64, size: u32| {
         let part = i.wrapping_mul(step) >> 32;
@@ -61,7 +61,7 @@ pub(super) mod tests {
         [220, 150],
     ];
 
-    /// The group of each pixel, in row order.
+    /// Returns the group of each pixel, in row order.
     fn groups(crop: &PixelRect) -> Vec<u64> {
         let (pixels, size) = (permutation(crop), group_size(crop.area()));
         let mut groups = vec![u64::MAX; pixels.len()];

@@ -30,7 +30,7 @@ impl Threads {
         }
     }
 
-    /// How many there are to be.
+    /// Returns how many there are to be.
     pub fn count(self) -> usize {
         match self.asked {
             0 => self.processors,
@@ -61,7 +61,7 @@ pub struct Shortage {
 }
 
 impl Shortage {
-    /// True where no thread was started.
+    /// Returns true where no thread was started.
     pub fn is_total(&self) -> bool {
         self.started == 0
     }
@@ -136,7 +136,7 @@ impl Recruits {
     }
 }
 
-/// A thread that does what it is sent; without anything it ends with its sender.
+/// Returns a thread that does what it is sent; without anything it ends with its sender.
 fn recruit() -> io::Result<Sender<ThreadBuilder>> {
     let (sender, receiver) = channel();
     let wait = move || {
@@ -226,7 +226,7 @@ mod tests {
     use super::*;
     use rayon::prelude::*;
 
-    /// The workers of a system that starts no thread.
+    /// Returns the workers of a system that starts no thread.
     fn refused() -> Workers {
         let (pool, shortage) = Recruits {
             waiting: Vec::new(),

@@ -30,7 +30,7 @@ pub struct StrategyMoments {
 }
 
 impl Session<'_> {
-    /// The moments of each strategy that the film keeps an image of, in the order of their images.
+    /// Returns the moments of each strategy that the film keeps an image of, in the order of their images.
     pub fn strategy_moments(&self) -> impl Iterator<Item = StrategyMoments> {
         let layers = self.film().layers();
         let parts = layers.kept_strategies();
@@ -49,7 +49,7 @@ impl Session<'_> {
         })
     }
 
-    /// V, where the squares of the image's pixels have the mean `mean_square`.
+    /// Returns V, where the squares of the image's pixels have the mean `mean_square`.
     fn variance(&self, strategy: Strategy, mean_square: f64) -> Option<f64> {
         let (passes, samples) = (self.film().passes().len(), self.stats().samples);
         if passes < 2 || samples == 0 {

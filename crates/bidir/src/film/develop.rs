@@ -21,7 +21,7 @@ pub struct Picture {
 }
 
 impl Picture {
-    /// The noise that is left: the root mean square of the pixels' standard errors, divided by the
+    /// Returns the noise that is left: the root mean square of the pixels' standard errors, divided by the
     /// mean of the picture, both of luminance. Infinite for a black picture.
     ///
     /// Errors of a pixel's channels are taken as fully correlated, and stratified passes as
@@ -56,7 +56,7 @@ pub struct LayerImage {
 }
 
 impl Film {
-    /// The mean of all passes with the variance of that mean, exposed.
+    /// Returns the mean of all passes with the variance of that mean, exposed.
     pub fn develop(&self) -> Picture {
         let developed = self.pixels().map(|sums| self.develop_pixel(sums));
         let (pixels, variance) = developed.unzip();
@@ -68,7 +68,7 @@ impl Film {
         }
     }
 
-    /// The images beside the picture: those of [`Layers::aovs`](super::Layers::aovs) in that order,
+    /// Returns the images beside the picture: those of [`Layers::aovs`](super::Layers::aovs) in that order,
     /// then the parts of the picture.
     ///
     /// Parts are exposed as the picture is; for the others [`AovKind`] gives numerator and divisor.
@@ -88,7 +88,7 @@ impl Film {
         self.passes.len().max(1) as f64
     }
 
-    /// The mean of both layers, not exposed.
+    /// Returns the mean of both layers, not exposed.
     fn mean(&self, camera: i128, light: i128) -> f64 {
         let light_paths = self.samples() * self.settings.light_paths().max(1) as f64;
         fixed::to_f64(camera, VALUE_SCALE) / self.samples()
@@ -109,12 +109,12 @@ impl Film {
         (value, variance)
     }
 
-    /// The pixels of part number `part` of [`Layers`](super::Layers), exposed.
+    /// Returns the pixels of part number `part` of [`Layers`](super::Layers), exposed.
     pub fn part_pixels(&self, part: usize) -> impl Iterator<Item = Rgb> {
         self.pixels().map(move |sums| self.part(sums, part))
     }
 
-    /// A pixel of part number `part`.
+    /// Returns a pixel of part number `part`.
     fn part(&self, sums: &[i128], part: usize) -> Rgb {
         let begin = PICTURE_SUMS + self.layers.features() + PART_SUMS * part;
         let exposure = f64::from(self.settings.exposure);
@@ -124,14 +124,14 @@ impl Film {
         })
     }
 
-    /// The cost that each pixel has, row by row from the top left of the crop. None: the film does not
+    /// Returns the cost that each pixel has, row by row from the top left of the crop. None: the film does not
     /// keep it.
     pub fn cost(&self, aov: Aov) -> Option<Vec<f32>> {
         let is_kept = aov.kind() == AovKind::Cost && self.layers.aovs().contains(&aov);
         is_kept.then(|| self.feature(aov))
     }
 
-    /// The images that `aov` becomes.
+    /// Returns the images that `aov` becomes.
     fn aov(&self, aov: Aov) -> Vec<LayerImage> {
         let channels = aov.channels();
         let data = match aov {
@@ -148,7 +148,7 @@ impl Film {
         images.collect()
     }
 
-    /// The variance of every channel's mean, and the same relative to the square of the mean, 0
+    /// Returns the variance of every channel's mean, and the same relative to the square of the mean, 0
     /// where that is 0.
     fn variances(&self) -> [Vec<f32>; 2] {
         let Picture {
@@ -164,7 +164,7 @@ impl Film {
         [absolute, relative]
     }
 
-    /// The values of an image of camera samples.
+    /// Returns the values of an image of camera samples.
     fn feature(&self, aov: Aov) -> Vec<f32> {
         let of = |aov| Some(PICTURE_SUMS + self.layers.feature(aov)?);
         let Some(begin) = of(aov) else {

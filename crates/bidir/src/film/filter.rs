@@ -39,14 +39,14 @@ pub struct Filter {
 }
 
 impl Default for Filter {
-    /// The box of one pixel.
+    /// Returns the box of one pixel.
     fn default() -> Self {
         Self::new(FilterKind::Box, Vec2::splat(0.5))
     }
 }
 
 impl Filter {
-    /// A filter with half widths `radius`, positive. Unit: pixels.
+    /// Makes a filter with half widths `radius`, positive. Unit: pixels.
     pub fn new(kind: FilterKind, radius: Vec2) -> Self {
         Self {
             x: Axis::new(kind, radius.x),
@@ -54,12 +54,12 @@ impl Filter {
         }
     }
 
-    /// The half widths. Unit: pixels.
+    /// Returns the half widths. Unit: pixels.
     pub fn radius(&self) -> Vec2 {
         Vec2::new(self.x.radius, self.y.radius)
     }
 
-    /// h at `offset` from the pixel's centre. Unit: 1/pixel².
+    /// Returns h at `offset` from the pixel's centre. Unit: 1/pixel².
     pub fn eval(&self, offset: Vec2) -> f32 {
         self.x.eval(offset.x) * self.y.eval(offset.y)
     }
@@ -176,14 +176,14 @@ impl Axis {
     }
 }
 
-/// ⌊x⌋ as [`f32::floor`] finds it, which is a call to a library without SSE4.1.
+/// Returns ⌊x⌋ as [`f32::floor`] finds it, which is a call to a library without SSE4.1.
 #[inline]
 fn floor(x: f32) -> i64 {
     let towards_zero = x as i64;
     towards_zero.saturating_sub(i64::from(x < towards_zero as f32))
 }
 
-/// The inverse of the cumulative tent over [-1, 1].
+/// Returns the inverse of the cumulative tent over [-1, 1].
 #[inline]
 fn tent(u: f32) -> f32 {
     if u < 0.5 {
@@ -207,7 +207,7 @@ impl Table {
     const LEAST_RADIUS: f32 = 4.0;
     const INTERVALS_OF_CELL: usize = 4;
 
-    /// The table of a symmetrical shape, normalised.
+    /// Returns the table of a symmetrical shape, normalised.
     fn new(radius: f32, shape: &dyn Fn(f32) -> f32) -> Self {
         let n = Self::INTERVALS * radius.max(Self::LEAST_RADIUS).ceil() as usize;
         let mut values: Vec<_> = (0..=n)
@@ -227,7 +227,7 @@ impl Table {
         Self { values, cells }
     }
 
-    /// h at the part `x` of the radius, from 0 to 1.
+    /// Returns h at the part `x` of the radius, from 0 to 1.
     #[inline]
     fn eval(&self, x: f32) -> f32 {
         let intervals = self.values.len() - 1;
@@ -238,7 +238,7 @@ impl Table {
     }
 }
 
-/// exp(-x² / 2σ²) less its value at the radius. Of a wide one both are nearly 1.
+/// Returns exp(-x² / 2σ²) less its value at the radius. Of a wide one both are nearly 1.
 fn lowered_gaussian(x: f32, sigma: f32, radius: f32) -> f32 {
     let exponent = |x: f32| {
         let deviations = f64::from(x) / f64::from(sigma);
@@ -248,7 +248,7 @@ fn lowered_gaussian(x: f32, sigma: f32, radius: f32) -> f32 {
     (-libm::exp(here) * libm::expm1(rim - here)) as f32
 }
 
-/// [Mitchell88, eq. 8] times 6, for x in [0, 2].
+/// Returns [Mitchell88, eq. 8] times 6, for x in [0, 2].
 fn mitchell(x: f32, b: f32, c: f32) -> f32 {
     if x <= 1.0 {
         ((12.0 - 9.0 * b - 6.0 * c) * x + (-18.0 + 12.0 * b + 6.0 * c)) * x * x + (6.0 - 2.0 * b)

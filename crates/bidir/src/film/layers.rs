@@ -90,7 +90,7 @@ named!(Aov {
 });
 
 impl Aov {
-    /// The names in image files: those of pbrt-v4's film `gbuffer` where it has them.
+    /// Returns the names in image files: those of pbrt-v4's film `gbuffer` where it has them.
     pub fn channels(self) -> &'static [Channels] {
         const fn of(layer: &'static str, names: &'static [&'static str]) -> Channels {
             Channels { layer, names }
@@ -109,7 +109,7 @@ impl Aov {
         }
     }
 
-    /// The number of sums that a pixel has for it; none if it is computed from other sums.
+    /// Returns the number of sums that a pixel has for it; none if it is computed from other sums.
     pub fn sums(self) -> usize {
         match self {
             Self::Albedo | Self::Position | Self::Normal | Self::ShadingNormal => 3,
@@ -118,7 +118,7 @@ impl Aov {
         }
     }
 
-    /// The source of its values.
+    /// Returns the source of its values.
     pub fn kind(self) -> AovKind {
         match self {
             Self::Position | Self::Normal | Self::ShadingNormal | Self::Depth => AovKind::Surface,
@@ -152,7 +152,7 @@ impl Layers {
     /// The most vertices of paths whose strategies have images of their own.
     pub const MOST_STRATEGY_VERTICES: usize = 16;
 
-    /// Layers of `aovs`, in any order, of all `light_groups` of the scene by name (none: no such
+    /// Returns the layers of `aovs`, in any order, of all `light_groups` of the scene by name (none: no such
     /// layers), and of each strategy of paths with at most `strategy_vertices` vertices (0: no such
     /// layers; at most [`Self::MOST_STRATEGY_VERTICES`]).
     pub fn new(aovs: &[Aov], light_groups: &[String], strategy_vertices: usize) -> Self {
@@ -180,17 +180,17 @@ impl Layers {
         Self { strategies, ..self }
     }
 
-    /// The images beside the picture, sorted.
+    /// Returns the images beside the picture, sorted.
     pub fn aovs(&self) -> &[Aov] {
         &self.aovs
     }
 
-    /// The names of the groups of lights that have images, in the order of the scene's.
+    /// Returns the names of the groups of lights that have images, in the order of the scene's.
     pub fn light_groups(&self) -> &[String] {
         &self.light_groups
     }
 
-    /// The most vertices of paths whose strategies have images.
+    /// Returns the most vertices of paths whose strategies have images.
     pub fn strategy_vertices(&self) -> usize {
         self.strategy_vertices
     }
@@ -200,28 +200,28 @@ impl Layers {
         self.strategies
     }
 
-    /// True where nothing but the picture is kept.
+    /// Returns true where nothing but the picture is kept.
     pub fn is_empty(&self) -> bool {
         *self == Self::default()
     }
 
-    /// The sums of a pixel: the picture's, the features', and both layers of the parts.
+    /// Returns the sums of a pixel: the picture's, the features', and both layers of the parts.
     pub fn sums(&self) -> usize {
         PICTURE_SUMS + self.features() + PART_SUMS * self.parts()
     }
 
-    /// The sums of a pixel for all images of camera samples.
+    /// Returns the sums of a pixel for all images of camera samples.
     pub fn features(&self) -> usize {
         self.aovs.iter().map(|aov| aov.sums()).sum()
     }
 
-    /// The index of the first sum of `aov` among [`Self::features`]. None: it is not kept.
+    /// Returns the index of the first sum of `aov` among [`Self::features`]. None: it is not kept.
     pub fn feature(&self, aov: Aov) -> Option<usize> {
         let at = self.aovs.iter().position(|&kept| kept == aov)?;
         Some(self.aovs[..at].iter().map(|aov| aov.sums()).sum())
     }
 
-    /// The number of parts: one for each group of lights, then one for each strategy, shorter paths
+    /// Returns the number of parts: one for each group of lights, then one for each strategy, shorter paths
     /// first, then one for all longer paths, and then those of raw images, in the same order.
     pub fn parts(&self) -> usize {
         match self.strategies {
@@ -232,7 +232,7 @@ impl Layers {
         }
     }
 
-    /// The number of parts that are weighted.
+    /// Returns the number of parts that are weighted.
     fn first_raw(&self) -> usize {
         let strategies = match self.strategy_vertices {
             0 => 0,
@@ -241,7 +241,7 @@ impl Layers {
         self.light_groups.len() + strategies
     }
 
-    /// The index of `strategy` among those that have images. None: it has none.
+    /// Returns the index of `strategy` among those that have images. None: it has none.
     #[inline]
     fn strategy(&self, strategy: Strategy) -> Option<usize> {
         let n = usize::from(strategy.s + strategy.t);
@@ -249,13 +249,13 @@ impl Layers {
         is_kept.then(|| strategies_below(n) + usize::from(strategy.s))
     }
 
-    /// The part of the weighted image of `strategy` alone. None: it has none.
+    /// Returns the part of the weighted image of `strategy` alone. None: it has none.
     #[inline]
     pub fn weighted_part(&self, strategy: Strategy) -> Option<usize> {
         Some(self.light_groups.len() + self.strategy(strategy)?)
     }
 
-    /// The part of the raw image of `strategy`. None: it has none.
+    /// Returns the part of the raw image of `strategy`. None: it has none.
     #[inline]
     pub fn raw_part(&self, strategy: Strategy) -> Option<usize> {
         match self.strategies {
@@ -270,7 +270,7 @@ impl Layers {
         rows.flat_map(|n| (0..n).map(move |s| Strategy::new(s, n - s)))
     }
 
-    /// The parts that a contribution of `strategy` and of lights in `group` belongs to; raw images
+    /// Returns the parts that a contribution of `strategy` and of lights in `group` belongs to; raw images
     /// have values of their own, and are not among them.
     #[inline]
     pub fn parts_of(&self, strategy: Strategy, group: u32) -> impl Iterator<Item = usize> {
@@ -283,7 +283,7 @@ impl Layers {
         of_group.into_iter().chain(of_strategy)
     }
 
-    /// The layers' names of all parts: `lightgroup.NAME`, `sStT`, `longer`, and `raw.sStT`.
+    /// Returns the layers' names of all parts: `lightgroup.NAME`, `sStT`, `longer`, and `raw.sStT`.
     pub fn part_names(&self) -> impl Iterator<Item = String> + '_ {
         let groups = self.light_groups.iter();
         let groups = groups.map(|name| format!("lightgroup.{name}"));
@@ -296,7 +296,7 @@ impl Layers {
     }
 }
 
-/// Strategies of paths with fewer than `n` vertices: Σ_{m=2}^{n-1} m, as a path of m vertices has
+/// Returns the strategies of paths with fewer than `n` vertices: Σ_{m=2}^{n-1} m, as a path of m vertices has
 /// s = 0 … m-1.
 fn strategies_below(n: usize) -> usize {
     (n * n.saturating_sub(1) / 2).saturating_sub(1)

@@ -2,7 +2,7 @@
 
 use super::FilmError;
 
-/// `count` values of `make`.
+/// Returns `count` values of `make`.
 ///
 /// Errors: the system does not have the memory.
 pub fn filled<T>(count: usize, make: impl FnMut() -> T) -> Result<Vec<T>, FilmError> {

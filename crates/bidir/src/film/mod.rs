@@ -72,14 +72,14 @@ pub struct Film {
 }
 
 impl Film {
-    /// An empty film of a picture alone.
+    /// Makes an empty film of a picture alone.
     ///
     /// Errors: as [`Self::with_layers`].
     pub fn new(settings: FilmSettings, memory_limit: u64) -> Result<Self, FilmError> {
         Self::with_layers(settings, Layers::default(), memory_limit)
     }
 
-    /// An empty film of a picture with `layers`.
+    /// Makes an empty film of a picture with `layers`.
     ///
     /// Errors: the film would need more memory than `memory_limit` bytes, or than the system has.
     pub fn with_layers(
@@ -103,7 +103,7 @@ impl Film {
         })
     }
 
-    /// A film as it was stored, with `sums` in the form of [`Self::sums`].
+    /// Makes a film as it was stored, with `sums` in the form of [`Self::sums`].
     ///
     /// Errors: there are not as many of them as the crop's pixels have.
     pub fn restore(
@@ -123,7 +123,7 @@ impl Film {
         })
     }
 
-    /// A film without passes, of the same geometry and layers.
+    /// Makes a film without passes, of the same geometry and layers.
     ///
     /// Errors: the system does not have the memory.
     pub fn emptied(&self) -> Result<Self, FilmError> {
@@ -131,7 +131,7 @@ impl Film {
         Self::with_layers(settings, layers, u64::MAX)
     }
 
-    /// A film with the same passes.
+    /// Makes a film with the same passes.
     ///
     /// Errors: the system does not have the memory.
     pub fn try_clone(&self) -> Result<Self, FilmError> {
@@ -141,35 +141,35 @@ impl Film {
         Ok(copy)
     }
 
-    /// The memory of a film, the running pass included. Unit: bytes.
+    /// Returns the memory of a film, the running pass included. Unit: bytes.
     pub fn memory(settings: &FilmSettings, layers: &Layers) -> u64 {
         let of_pixel = layers.sums() * size_of::<i128>() + PassBuffer::bytes_per_pixel(layers);
         settings.crop.area().saturating_mul(of_pixel as u64)
     }
 
-    /// The film's geometry and filter.
+    /// Returns the film's geometry and filter.
     pub fn settings(&self) -> &FilmSettings {
         &self.settings
     }
 
-    /// The images kept beside the picture.
+    /// Returns the images kept beside the picture.
     pub fn layers(&self) -> &Layers {
         &self.layers
     }
 
-    /// The passes that were added.
+    /// Returns the passes that were added.
     pub fn passes(&self) -> &PassSet {
         &self.passes
     }
 
-    /// The exact sums, row by row from the top left of the crop. Of each pixel there are, each for
+    /// Returns the exact sums, row by row from the top left of the crop. Of each pixel there are, each for
     /// red, green and blue: camera samples, splats, and squares of pass totals; then the sums of
     /// [`Layers::aovs`]; then, for each part, camera samples and splats.
     pub fn sums(&self) -> &[i128] {
         &self.sums
     }
 
-    /// The sums of each pixel.
+    /// Returns the sums of each pixel.
     fn pixels(&self) -> ChunksExact<'_, i128> {
         self.sums.chunks_exact(self.layers.sums())
     }

@@ -30,7 +30,7 @@ pub struct PassBuffer {
     layers: [usize; 2],
 }
 
-/// A value that a sum has room for, whatever a scene's size.
+/// Returns a value that a sum has room for, whatever a scene's size.
 fn bounded(value: f32) -> f32 {
     if value.is_nan() {
         0.0
@@ -79,7 +79,7 @@ impl PassBuffer {
         of_picture * (1 + layers.parts()) + size_of::<AtomicU32>() * layers.features()
     }
 
-    /// An empty pass of a film.
+    /// Makes an empty pass of a film.
     ///
     /// Errors: the system does not have the memory.
     pub fn new(settings: &FilmSettings, layers: &Layers) -> Result<Self, FilmError> {
@@ -164,7 +164,7 @@ impl PassBuffer {
         }
     }
 
-    /// The camera sample and the sum of splats of pixel `i`, in [`fixed::VALUE_SCALE`].
+    /// Returns the camera sample and the sum of splats of pixel `i`, in [`fixed::VALUE_SCALE`].
     #[inline]
     pub(super) fn pixel(&self, i: usize) -> ([i128; 3], [i128; 3]) {
         (

@@ -21,7 +21,7 @@ pub struct PassSet {
 pub struct ParsePassSetError(pub String);
 
 impl PassSet {
-    /// The number of passes.
+    /// Returns the number of passes.
     pub fn len(&self) -> u64 {
         self.ranges
             .iter()
@@ -29,12 +29,12 @@ impl PassSet {
             .sum()
     }
 
-    /// True where no pass is held.
+    /// Returns true where no pass is held.
     pub fn is_empty(&self) -> bool {
         self.ranges.is_empty()
     }
 
-    /// The ranges, sorted, none touching the next.
+    /// Returns the ranges, sorted, none touching the next.
     pub fn ranges(&self) -> &[Range<u64>] {
         &self.ranges
     }
@@ -60,14 +60,14 @@ impl PassSet {
         self.ranges.splice(begin..end, [joined]);
     }
 
-    /// Both sets.
+    /// Returns both sets.
     #[must_use]
     pub fn union(&self, other: &Self) -> Self {
         let ranges = self.ranges.iter().chain(&other.ranges);
         ranges.cloned().collect()
     }
 
-    /// The passes that both hold.
+    /// Returns the passes that both hold.
     #[must_use]
     pub fn intersection(&self, other: &Self) -> Self {
         let mut ranges = Vec::new();
@@ -90,7 +90,7 @@ impl PassSet {
         Self { ranges }
     }
 
-    /// The passes of `self` that `other` lacks.
+    /// Returns the passes of `self` that `other` lacks.
     #[must_use]
     pub fn difference(&self, other: &Self) -> Self {
         let mut ranges = Vec::new();
@@ -110,14 +110,14 @@ impl PassSet {
         Self { ranges }
     }
 
-    /// The first pass at or after `from` that is not held.
+    /// Returns the first pass at or after `from` that is not held.
     pub fn first_missing(&self, from: u64) -> u64 {
         let range = self.ranges.get(self.first_ending_after(from));
         let held = range.filter(|range| range.start <= from);
         held.map_or(from, |range| range.end)
     }
 
-    /// The number of the first range that ends after `pass`.
+    /// Returns the number of the first range that ends after `pass`.
     fn first_ending_after(&self, pass: u64) -> usize {
         self.ranges.partition_point(|range| range.end <= pass)
     }

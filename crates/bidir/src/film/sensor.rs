@@ -17,7 +17,7 @@ pub struct Sensor {
 }
 
 impl Sensor {
-    /// The response to a sample.
+    /// Returns the response to a sample.
     #[inline]
     pub fn respond(&self, light: Rgb) -> Rgb {
         let balanced = match &self.balance {

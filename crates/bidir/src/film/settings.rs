@@ -25,12 +25,12 @@ impl PixelRect {
         self.max[1].saturating_sub(self.min[1])
     }
 
-    /// The number of pixels.
+    /// Returns the number of pixels.
     pub fn area(&self) -> u64 {
         u64::from(self.width()) * u64::from(self.height())
     }
 
-    /// The position of a pixel in row order. None: it is outside.
+    /// Returns the position of a pixel in row order. None: it is outside.
     #[inline]
     pub fn index(&self, x: i64, y: i64) -> Option<usize> {
         let (dx, dy) = (x - i64::from(self.min[0]), y - i64::from(self.min[1]));
@@ -39,7 +39,7 @@ impl PixelRect {
         inside.then(|| dy as usize * self.width() as usize + dx as usize)
     }
 
-    /// The pixel at position `i` of row order.
+    /// Returns the pixel at position `i` of row order.
     #[inline]
     pub fn pixel(&self, i: usize) -> [u32; 2] {
         let width = self.width() as usize;
@@ -66,7 +66,7 @@ pub struct FilmSettings {
 }
 
 impl FilmSettings {
-    /// An uncropped film with exposure 1.
+    /// Makes an uncropped film with exposure 1.
     pub fn new(resolution: [u32; 2], filter: Filter) -> Self {
         let crop = PixelRect {
             min: [0, 0],
@@ -81,7 +81,7 @@ impl FilmSettings {
         }
     }
 
-    /// The pixel that a splat goes to, drawn by the filter: its position in row order of the crop, and
+    /// Returns the pixel that a splat goes to, drawn by the filter: its position in row order of the crop, and
     /// what its value is multiplied by. None: it is outside.
     #[inline]
     pub fn pick_pixel(&self, place: SplatPlace) -> Option<(usize, f32)> {

@@ -17,7 +17,7 @@ impl Cell {
     /// The cell of every vertex where nothing is learned.
     pub(crate) const FIRST: Self = Self(0);
 
-    /// Its number, below [`Cells::COUNT`], so that tables of [`Cells::NAMES`] entries need no check.
+    /// Returns its number, below [`Cells::COUNT`], so that tables of [`Cells::NAMES`] entries need no check.
     #[inline]
     pub(crate) fn index(self) -> usize {
         usize::from(self.0)
@@ -57,13 +57,13 @@ impl Cells {
     /// How many a [`Cell`] could name.
     pub(crate) const NAMES: usize = 1 << u8::BITS;
 
-    /// The number of a pair of cells, by that of camera vertices first, among the square of as many.
+    /// Returns the number of a pair of cells, by that of camera vertices first, among the square of as many.
     #[inline]
     pub(crate) fn pair(light: Cell, camera: Cell) -> usize {
         camera.index() * Self::COUNT + light.index()
     }
 
-    /// The cell of a number.
+    /// Returns the cell of a number.
     #[inline]
     pub(crate) fn cell(index: usize) -> Cell {
         Cell(index as u8)
@@ -77,7 +77,7 @@ impl Cells {
         Self { planes }
     }
 
-    /// The cell of a vertex with the unit normal `n`.
+    /// Returns the cell of a vertex with the unit normal `n`.
     #[inline]
     pub fn of(&self, point: Vec3, n: Vec3) -> Cell {
         let point = point.to_array();
@@ -122,7 +122,7 @@ fn divide(points: &mut [Vec3], i: usize, planes: &mut [Plane]) {
     divide(behind, 2 * i + 1, planes);
 }
 
-/// The axis along which `points` vary most.
+/// Returns the axis along which `points` vary most.
 fn longest(points: &[Vec3]) -> usize {
     let count = points.len() as f32;
     let mean = points.iter().sum::<Vec3>() / count;
@@ -135,7 +135,7 @@ fn longest(points: &[Vec3]) -> usize {
     }
 }
 
-/// The number of the first point behind the widest gap of sorted `points` near their median; where a wall
+/// Returns the number of the first point behind the widest gap of sorted `points` near their median; where a wall
 /// takes all of that, behind the gap that is nearest to it.
 fn widest_gap(points: &[Vec3], axis: usize) -> usize {
     let count = points.len() as f64;

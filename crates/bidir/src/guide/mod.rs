@@ -25,14 +25,14 @@ pub struct Guide<'a> {
 }
 
 impl<'a> Guide<'a> {
-    /// The cell of a vertex with the unit normal `n`; the default one without proposals.
+    /// Returns the cell of a vertex with the unit normal `n`; the default one without proposals.
     #[inline]
     pub(crate) fn cell(&self, point: Vec3, n: Vec3) -> Cell {
         let cell = |all: &LightProposals| all.cells().of(point, n);
         self.proposals.map_or(Cell::default(), cell)
     }
 
-    /// The knowledge of connections of camera vertices in the cell `y`.
+    /// Returns the knowledge of connections of camera vertices in the cell `y`.
     #[inline]
     pub(crate) fn of_camera(&self, y: Cell) -> CellGuide<'a> {
         CellGuide(self.proposals.map(|all| (all, all.row(y))))
@@ -44,21 +44,21 @@ impl<'a> Guide<'a> {
 pub(crate) struct CellGuide<'a>(Option<(&'a LightProposals, &'a ProposalRow)>);
 
 impl<'a> CellGuide<'a> {
-    /// The choice of light vertices. None: each is as likely as others.
+    /// Returns the choice of light vertices. None: each is as likely as others.
     #[inline]
     pub(crate) fn row(self) -> Option<&'a ProposalRow> {
         self.0.map(|(_, row)| row)
     }
 
-    /// n κ / M: the number of samples of a connection with the cell `light`, relative to uniform proposals; 1 without
-    /// proposals. It is a function of the path alone.
+    /// Returns n κ / M: the number of samples of a connection with the cell `light`, relative to uniform proposals; 1
+    /// without proposals. It is a function of the path alone.
     #[inline(always)]
     pub(crate) fn count_factor(self, light: Cell) -> f64 {
         self.0
             .map_or(1.0, |(all, row)| all.count_factor(light, row))
     }
 
-    /// √V̂ of shadow rays from the cell `light`; 1 without proposals.
+    /// Returns √V̂ of shadow rays from the cell `light`; 1 without proposals.
     #[inline(always)]
     pub(crate) fn root_visibility(self, light: Cell) -> f32 {
         self.0.map_or(1.0, |(_, row)| row.root_visibility(light))

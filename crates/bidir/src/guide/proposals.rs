@@ -119,8 +119,8 @@ impl PairSums {
         .collect()
     }
 
-    /// n κ / M of a connection of these cells if it did not add `square` to what is known, where `all` is κ and `sum`
-    /// that of [`roots`](Self::roots), and if `more` light vertices of each light subpath were in its cell.
+    /// Returns n κ / M of a connection of these cells if it did not add `square` to what is known, where `all` is κ and
+    /// `sum` that of [`roots`](Self::roots), and if `more` light vertices of each light subpath were in its cell.
     pub(crate) fn count_factor(
         &self,
         [all, sum]: [f64; 2],
@@ -143,7 +143,7 @@ impl PairSums {
         UNIFORM_PART + (1.0 - UNIFORM_PART) * learned
     }
 
-    /// √V̂ of pair number `pair` if a connection that arrived or not were not known.
+    /// Returns √V̂ of pair number `pair` if a connection that arrived or not were not known.
     pub(crate) fn root_visibility_without(&self, pair: usize, has_arrived: bool) -> f32 {
         let [traced, arrived] = self.arrived[pair];
         let others = [
@@ -168,13 +168,13 @@ pub(crate) enum CellDraw {
 pub(crate) struct Part(u32, f64);
 
 impl Part {
-    /// The part `number` / 2^32.
+    /// Returns the part `number` / 2^32.
     #[inline]
     pub(crate) fn of_all(number: u32) -> Self {
         Self(number, 4_294_967_296.0)
     }
 
-    /// The number of the thing at this part of `count`; below it, unless it is 0.
+    /// Returns the number of the thing at this part of `count`; below it, unless it is 0.
     #[inline]
     pub(crate) fn pick(self, count: u32) -> usize {
         /// The last digits of a sum with it are the nearest whole number, in one step on every machine.
@@ -188,7 +188,7 @@ impl Part {
 }
 
 impl LightProposals {
-    /// The proposals that suit `sums`.
+    /// Returns the proposals that suit `sums`.
     pub fn new(cells: Cells, sums: &PairSums) -> Self {
         let kappa = &sums.light_vertices;
         let all: f64 = kappa.iter().sum();
@@ -208,19 +208,19 @@ impl LightProposals {
         }
     }
 
-    /// The cells of vertices.
+    /// Returns the cells of vertices.
     #[inline]
     pub(super) fn cells(&self) -> &Cells {
         &self.cells
     }
 
-    /// n κ / M of a light vertex in the cell `light` for a camera vertex with the proposals `row`.
+    /// Returns n κ / M of a light vertex in the cell `light` for a camera vertex with the proposals `row`.
     #[inline]
     pub(super) fn count_factor(&self, light: Cell, row: &ProposalRow) -> f64 {
         UNIFORM_PART + self.count_factors[light.index()] * f64::from(row.units(light))
     }
 
-    /// The proposals to camera vertices in the cell `camera`.
+    /// Returns the proposals to camera vertices in the cell `camera`.
     #[inline]
     pub(crate) fn row(&self, camera: Cell) -> &ProposalRow {
         &self.rows[camera.index()]
@@ -254,21 +254,21 @@ impl ProposalRow {
         CellDraw::One(light, units, Part(number - begin, numbers_of(units)))
     }
 
-    /// (1 - ε) Γ(c | r) of the cell c = `light`, in units.
+    /// Returns (1 - ε) Γ(c | r) of the cell c = `light`, in units.
     #[inline]
     pub(crate) fn units(&self, light: Cell) -> u16 {
         let cell = light.index();
         self.last[cell + 1] - self.last[cell]
     }
 
-    /// √V̂ of a light vertex in the cell `light`.
+    /// Returns √V̂ of a light vertex in the cell `light`.
     #[inline]
     pub(crate) fn root_visibility(&self, light: Cell) -> f32 {
         f32::from(self.root_visibility[light.index()]) * (1.0 / f32::from(VISIBILITY_UNITS))
     }
 }
 
-/// 1 / P(z | y) for a light vertex in a cell c with `units` of (1 - ε) Γ(c | r), where `[K, K_c]` = `counts`.
+/// Returns 1 / P(z | y) for a light vertex in a cell c with `units` of (1 - ε) Γ(c | r), where `[K, K_c]` = `counts`.
 #[inline]
 pub(crate) fn inverse_prob(units: u16, counts: [u32; 2]) -> f32 {
     let [all, of_cell] = counts.map(|count| count as f32);
@@ -276,20 +276,20 @@ pub(crate) fn inverse_prob(units: u16, counts: [u32; 2]) -> f32 {
     UNITS as f32 * all * of_cell / sum
 }
 
-/// How many of 2^32 numbers lead to so many units.
+/// Returns how many of 2^32 numbers lead to so many units.
 #[inline]
 const fn numbers_of(units: u16) -> f64 {
     units as f64 * UNITS as f64
 }
 
-/// The first cell that has a unit of this part, or one behind it.
+/// Returns the first cell that has a unit of this part, or one behind it.
 fn first_cell_of_part(last: &LastUnits, part: usize) -> u8 {
     let begin = part as u16 * UNITS_OF_PART;
     last[1..Cells::COUNT].partition_point(|&last| last < begin) as u8
 }
 
-/// √V̂ in units if so many connections were traced and arrived. Pairs of cells that training did not see count as
-/// visible, and none counts as hidden for sure.
+/// Returns √V̂ in units if so many connections were traced and arrived. Pairs of cells that training did not see count
+/// as visible, and none counts as hidden for sure.
 fn root_visibility(arrived: Option<&[u32; 2]>) -> u8 {
     let [traced, arrived] = arrived.copied().unwrap_or_default();
     let visible = f64::from(arrived + 1) / f64::from(traced + 1);
@@ -297,8 +297,8 @@ fn root_visibility(arrived: Option<&[u32; 2]>) -> u8 {
     (root * f64::from(VISIBILITY_UNITS)).round() as u8
 }
 
-/// The last units of all uniform proposals and of each cell, with Γ(c | r) ∝ √(κ_c Σ X²), or κ_c where nothing was
-/// found.
+/// Returns the last units of all uniform proposals and of each cell, with Γ(c | r) ∝ √(κ_c Σ X²), or κ_c where nothing
+/// was found.
 fn last_units(kappa: &[f64], squares: &[f64]) -> LastUnits {
     let learned = || kappa.iter().zip(squares).map(|(k, q)| (k * q).sqrt());
     let total: f64 = learned().sum();

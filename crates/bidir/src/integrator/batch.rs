@@ -30,7 +30,7 @@ pub struct Sample {
 }
 
 impl Sample {
-    /// The sample of `pixel` in `pass` with the random numbers of its camera subpath and of its light subpath.
+    /// Returns the sample of `pixel` in `pass` with the random numbers of its camera subpath and of its light subpath.
     #[inline]
     pub fn new(pass: u64, pixel: [u32; 2], camera: SampleStream, light: SampleStream) -> Self {
         Self {
@@ -70,7 +70,7 @@ impl LightEnd {
         }
     }
 
-    /// The term of its connection with camera vertex number `t`.
+    /// Returns the term of its connection with camera vertex number `t`.
     #[inline(always)]
     pub(super) fn term(&self, t: usize, contribution: Spectrum, weight: f32) -> Term {
         Term {
@@ -81,7 +81,7 @@ impl LightEnd {
         }
     }
 
-    /// The candidate that is such a `term`, with number `y` of all camera vertices.
+    /// Returns the candidate that is such a `term`, with number `y` of all camera vertices.
     #[inline(always)]
     pub(super) fn candidate(&self, term: Term, score: f32, y: u32) -> Candidate {
         Candidate {
@@ -148,7 +148,7 @@ pub struct Batch {
 }
 
 impl Batch {
-    /// A batch that measures its stages where there is a clock.
+    /// Makes a batch that measures its stages where there is a clock.
     pub(crate) fn timed_by(clock: Option<Clock>) -> Self {
         Self {
             stopwatch: Stopwatch::new(clock),
@@ -183,18 +183,18 @@ impl Batch {
         self.cache.clear();
     }
 
-    /// The number of the first sample's light subpath, where each has its own.
+    /// Returns the number of the first sample's light subpath, where each has its own.
     pub(super) fn first_light(&self) -> usize {
         self.light.count() - self.samples.len()
     }
 
-    /// True of a connection that is evaluated together with others: both of its vertices are diffuse.
+    /// Returns true of a connection that is evaluated together with others: both of its vertices are diffuse.
     pub(crate) fn is_diffuse(&self, connection: &Candidate) -> bool {
         let [z, y] = connection.vertices.map(|number| number as usize);
         self.light_sums.diffuse(z).is_some() && self.camera_sums.diffuse(y).is_some()
     }
 
-    /// The candidates, each with its entry if it was chosen.
+    /// Returns the candidates, each with its entry if it was chosen.
     pub(crate) fn connections(&self) -> impl Iterator<Item = (&Candidate, Option<&Entry>)> {
         let mut entries = vec![None; self.candidates.len()];
         let of_chosen = &self.entries[self.entries.len() - self.chosen.len()..];
@@ -204,7 +204,7 @@ impl Batch {
         self.candidates.iter().zip(entries)
     }
 
-    /// The entry of a candidate that was not chosen, or was not offered.
+    /// Returns the entry of a candidate that was not chosen, or was not offered.
     pub(crate) fn untraced(&self, candidate: &Candidate) -> Entry {
         let fate = if is_summable(candidate.term.value()) {
             Fate::NotTraced
@@ -216,8 +216,8 @@ impl Batch {
         Entry { fate, ..entry }
     }
 
-    /// The shares of the path of `entry`; `candidate` is the candidate that it was, if it was one. None: the sample
-    /// has no such path. `parts` gets those of single connections.
+    /// Returns the shares of the path of `entry`; `candidate` is the candidate that it was, if it was one. None: the
+    /// sample has no such path. `parts` gets those of single connections.
     pub(crate) fn shares(
         &self,
         job: &Job<'_>,

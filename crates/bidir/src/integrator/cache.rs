@@ -43,7 +43,7 @@ impl Default for CellTable {
 }
 
 impl CellTable {
-    /// The entries of a cell.
+    /// Returns the entries of a cell.
     #[inline]
     fn of(&self, cell: Cell) -> Entries {
         self.0[cell.index()]
@@ -75,8 +75,8 @@ pub(super) struct Place {
 }
 
 impl Place {
-    /// The place of vertex number `i` of a light subpath, of which there are `sums`. None: the subpath begins on no
-    /// light.
+    /// Returns the place of vertex number `i` of a light subpath, of which there are `sums`. None: the subpath begins
+    /// on no light.
     #[inline]
     pub(super) fn new(subpath: &Subpath<'_>, i: usize, sums: &RunningSums) -> Option<Self> {
         let z = subpath.first + i;
@@ -224,7 +224,7 @@ impl LightCache {
     }
 }
 
-/// A number below 2^32 in each of `count` equal parts, at the part `u` / 2^32 of it.
+/// Returns a number below 2^32 in each of `count` equal parts, at the part `u` / 2^32 of it.
 #[inline]
 fn numbers(count: u16, u: u32) -> impl Iterator<Item = u32> {
     // With 32 more bits than the numbers have, so that the parts are equal.
@@ -233,7 +233,7 @@ fn numbers(count: u16, u: u32) -> impl Iterator<Item = u32> {
     (0..count).map(move |m| ((first + m * part) >> 32) as u32)
 }
 
-/// The vertices of a light subpath that camera vertices may be connected with, by number.
+/// Returns the vertices of a light subpath that camera vertices may be connected with, by number.
 pub(crate) fn connectable(
     light_point: LightPointChoice,
     subpath: &[Vertex],

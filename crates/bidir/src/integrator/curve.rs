@@ -17,7 +17,7 @@ impl Curve {
     /// The bits of a place.
     pub(super) const BITS: u32 = 3 * DIGITS;
 
-    /// The curve in the box around `points`.
+    /// Returns the curve in the box around `points`.
     pub(super) fn around(points: &[Vec3]) -> Self {
         let empty = [Vec3::INFINITY, Vec3::NEG_INFINITY];
         let grow = |[low, high]: [Vec3; 2], &point: &Vec3| [low.min(point), high.max(point)];
@@ -29,7 +29,7 @@ impl Curve {
         }
     }
 
-    /// The place of a point on the curve.
+    /// Returns the place of a point on the curve.
     #[inline]
     pub(super) fn place(&self, point: Vec3) -> u64 {
         let [x, y, z] = ((point - self.low) * self.scale).to_array().map(apart);
@@ -37,7 +37,7 @@ impl Curve {
     }
 }
 
-/// The digits of a coordinate, two zeros between them.
+/// Returns the digits of a coordinate, two zeros between them.
 #[inline]
 fn apart(x: f32) -> u64 {
     let digits = (x as u64).min((1 << DIGITS) - 1);

@@ -17,7 +17,7 @@ pub enum Link {
 }
 
 impl Link {
-    /// The ends of the shadow ray, if it has one.
+    /// Returns the ends of the shadow ray, if it has one.
     #[inline]
     pub fn ends(&self) -> Option<&[Locus; 2]> {
         match self {
@@ -56,7 +56,7 @@ pub struct Entry {
 const _: () = assert!(size_of::<Entry>() == 144);
 
 impl Entry {
-    /// A term that is certain to take part; its shadow ray is not traced yet.
+    /// Makes a term that is certain to take part; its shadow ray is not traced yet.
     #[inline]
     pub(super) fn certain(sample: usize, term: Term, link: Link) -> Self {
         let fate = match link {
@@ -71,7 +71,7 @@ impl Entry {
         }
     }
 
-    /// The ends of its shadow ray, if one is to be traced.
+    /// Returns the ends of its shadow ray, if one is to be traced.
     #[inline]
     pub(super) fn shadow_ray(&self) -> Option<&[Locus; 2]> {
         self.link.ends().filter(|_| self.fate == Fate::NotTraced)
@@ -90,13 +90,13 @@ impl Entry {
         }
     }
 
-    /// True where it adds to an image.
+    /// Returns true where it adds to an image.
     #[inline]
     pub fn is_added(&self) -> bool {
         self.fate == Fate::Added
     }
 
-    /// Its place, if it adds to the light image.
+    /// Returns its place, if it adds to the light image.
     #[inline]
     pub fn splat_place(&self) -> Option<SplatPlace> {
         match self.link {

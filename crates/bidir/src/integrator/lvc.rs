@@ -77,7 +77,7 @@ impl CandidateCount {
     /// The number of light points that suits most scenes.
     pub const NEXT_EVENTS: Self = Self::new(2, 1);
 
-    /// `first` and `deeper`, brought into the range.
+    /// Returns `first` and `deeper`, brought into the range.
     pub const fn new(first: u16, deeper: u16) -> Self {
         Self {
             first: Self::in_range(first),
@@ -85,7 +85,7 @@ impl CandidateCount {
         }
     }
 
-    /// `count` for every vertex, brought into the range.
+    /// Returns `count` for every vertex, brought into the range.
     pub const fn of(count: u16) -> Self {
         Self::new(count, count)
     }
@@ -98,13 +98,13 @@ impl CandidateCount {
         }
     }
 
-    /// M of the last vertex of a camera subpath of `t` ≥ 2 vertices, the lens point among them.
+    /// Returns M of the last vertex of a camera subpath of `t` ≥ 2 vertices, the lens point among them.
     #[inline]
     pub fn at(self, t: usize) -> u16 {
         if t == 2 { self.first } else { self.deeper }
     }
 
-    /// M of the first vertex, and of those behind it.
+    /// Returns M of the first vertex, and of those behind it.
     pub fn get(self) -> [u16; 2] {
         [self.first, self.deeper]
     }
@@ -119,7 +119,7 @@ impl SamplesPerSubpath {
     /// The most: a group has one subpath at the least.
     pub const MAX: u16 = 256;
 
-    /// 2^`exponent`, or the most.
+    /// Returns 2^`exponent`, or the most.
     pub const fn power_of_two(exponent: u32) -> Self {
         match 1u16.checked_shl(exponent) {
             Some(count) if count <= Self::MAX => Self(count),
@@ -127,20 +127,20 @@ impl SamplesPerSubpath {
         }
     }
 
-    /// The least number that is neither below this one nor below `count`, or the most.
+    /// Returns the least number that is neither below this one nor below `count`, or the most.
     #[must_use]
     pub fn or_more(self, count: f64) -> Self {
         let count = (count.ceil() as u32).next_power_of_two();
         Self::power_of_two(count.max(self.0.into()).ilog2())
     }
 
-    /// The most that is neither above this one nor above `count`, which is positive.
+    /// Returns the most that is neither above this one nor above `count`, which is positive.
     #[must_use]
     pub fn or_fewer(self, count: u64) -> Self {
         Self::power_of_two(count.min(self.0.into()).ilog2())
     }
 
-    /// The number.
+    /// Returns the number.
     #[inline]
     pub fn get(self) -> u16 {
         self.0

@@ -16,7 +16,7 @@ use super::{Batch, CandidateCount, IntegratorKind, LvcSettings};
 use crate::path::Job;
 use crate::select::Selector;
 
-/// How many samples share light subpaths where so many pixels are rendered. So few that the subpaths stay in a
+/// Returns how many samples share light subpaths where so many pixels are rendered. So few that the subpaths stay in a
 /// processor's cache, and that a film of 1152 pixels or more has at least 18 groups: pixels two apart are then in
 /// different ones (`driver::spread`).
 pub(crate) fn group_size(pixels: u64) -> u64 {
@@ -39,7 +39,7 @@ pub enum Method {
 }
 
 impl Method {
-    /// The estimator; `selector` chooses the shadow rays of those that have candidates, and `lvc` is for
+    /// Returns the estimator; `selector` chooses the shadow rays of those that have candidates, and `lvc` is for
     /// those that share light subpaths.
     pub fn new(kind: IntegratorKind, selector: Box<dyn Selector>, lvc: &LvcSettings) -> Self {
         match kind {
@@ -51,7 +51,7 @@ impl Method {
         }
     }
 
-    /// True where the samples of a group share light subpaths.
+    /// Returns true where the samples of a group share light subpaths.
     pub fn shares_light(&self) -> bool {
         matches!(self, Self::Lvc(..))
     }

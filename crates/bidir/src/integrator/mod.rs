@@ -52,7 +52,7 @@ named!(IntegratorKind {
 });
 
 impl IntegratorKind {
-    /// True where the estimator has connections to choose from.
+    /// Returns true where the estimator has connections to choose from.
     pub fn has_candidates(self) -> bool {
         match self {
             Self::Bdpt | Self::Lvc | Self::Auto => true,

@@ -48,7 +48,7 @@ pub struct AreaLight {
 }
 
 impl AreaLight {
-    /// The light of `shape`, which is number `index` of the scene.
+    /// Returns the light of `shape`, which is number `index` of the scene.
     pub fn new(index: usize, shape: &Shape, radiance: Rgb, sides: EmissionSides) -> Self {
         let areas = (0..shape.primitive_count()).map(|i| shape.primitive_area(i));
         let primitives = Distribution1d::new(areas);
@@ -86,7 +86,7 @@ impl AreaLight {
         self.mean = (sum / PATTERN_POINTS as f32).max(least);
     }
 
-    /// The radiance of a point of the surface.
+    /// Returns the radiance of a point of the surface.
     #[inline]
     fn radiance_at(&self, surface: &SurfacePoint) -> Rgb {
         let Some(pattern) = &self.pattern else {
@@ -96,7 +96,7 @@ impl AreaLight {
         std::array::from_fn(|channel| self.radiance[channel] * factor[channel].max(0.0))
     }
 
-    /// The radiance of a light point: whoever drew it, it is the same function of the point.
+    /// Returns the radiance of a light point: whoever drew it, it is the same function of the point.
     #[inline]
     fn radiance(&self, context: &LightContext<'_>, at: &LightPoint) -> Rgb {
         if self.pattern.is_none() {
@@ -112,7 +112,7 @@ impl AreaLight {
         self.is_hidden = true;
     }
 
-    /// The shape, by index.
+    /// Returns the shape, by index.
     pub(crate) fn shape_index(&self) -> usize {
         self.shape
     }
@@ -135,7 +135,7 @@ impl AreaLight {
         self.sides() * PI * self.primitives.total() as f32 * self.mean
     }
 
-    /// The power of a primitive, by its area.
+    /// Returns the power of a primitive, by its area.
     pub(super) fn primitive_power(&self, context: &LightContext<'_>, primitive: u32) -> f32 {
         let area = context.shapes[self.shape].primitive_area(primitive as usize);
         self.sides() * PI * area * self.mean
@@ -148,13 +148,13 @@ impl AreaLight {
         }
     }
 
-    /// How many emitters it is for a tree of lights. None: one.
+    /// Returns how many emitters it is for a tree of lights. None: one.
     pub(super) fn divided_into(&self, context: &LightContext<'_>) -> Option<u32> {
         let count = context.shapes[self.shape].primitive_count();
         (count > UNDIVIDED).then_some(count as u32)
     }
 
-    /// The bounds of `part`, and of the directions it sends light to.
+    /// Returns the bounds of `part`, and of the directions it sends light to.
     pub(super) fn bounds(&self, context: &LightContext<'_>, part: Part) -> EmitterBounds {
         let shape = &context.shapes[self.shape];
         let of_primitive = |i| self.primitive_bounds(shape, i);
@@ -205,7 +205,7 @@ impl AreaLight {
         }
     }
 
-    /// A point drawn on a primitive, with its density among the points of that primitive.
+    /// Returns a point drawn on a primitive, with its density among the points of that primitive.
     #[inline]
     fn light_sample(&self, primitive: u32, drawn: &ShapeSample) -> LightSample {
         let coverage = self.coverage.as_ref();

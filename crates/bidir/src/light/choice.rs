@@ -12,19 +12,19 @@ pub struct LightChoice {
 }
 
 impl LightChoice {
-    /// The choice among `lights`, by power.
+    /// Returns the choice among `lights`, by power.
     pub fn new(lights: &[Light], context: &LightContext<'_>) -> Self {
         Self::with_weights(lights.iter().map(|light| light.power(context)))
     }
 
-    /// The choice in proportion to `weights`, one for each light.
+    /// Returns the choice in proportion to `weights`, one for each light.
     pub fn with_weights(weights: impl ExactSizeIterator<Item = f32>) -> Self {
         let count = weights.len();
         let lights = Distribution1d::new(weights);
         Self { lights, count }
     }
 
-    /// The number of lights.
+    /// Returns the number of lights.
     pub fn count(&self) -> usize {
         self.count
     }
@@ -43,7 +43,7 @@ impl LightChoice {
         }
     }
 
-    /// The probability of light `i`. Unitless.
+    /// Returns the probability of light `i`. Unitless.
     #[inline]
     pub fn prob(&self, i: usize) -> f32 {
         self.lights.prob(i)

@@ -12,14 +12,14 @@ use crate::math::{
 use crate::spectrum::{Rgb, luminance};
 use crate::texture::Image;
 
-/// The density of where a ray from infinity crosses the disk around the scene, perpendicular to
+/// Returns the density of where a ray from infinity crosses the disk around the scene, perpendicular to
 /// it. Measure: area, 1/m².
 #[inline]
 pub(super) fn pdf_disk(context: &LightContext<'_>) -> f32 {
     1.0 / (PI * sqr(context.radius))
 }
 
-/// A ray from the light at infinity in `direction`, through an even point of the scene's disk.
+/// Returns a ray from the light at infinity in `direction`, through an even point of the scene's disk.
 #[inline]
 fn ray_from_infinity(
     context: &LightContext<'_>,
@@ -98,7 +98,7 @@ impl InfiniteLight {
         }
     }
 
-    /// `scale` times an equal-area octahedral image of finite, non-negative texels, turned by the
+    /// Returns `scale` times an equal-area octahedral image of finite, non-negative texels, turned by the
     /// rotation `world_from_light`.
     pub fn image(image: Image<3>, scale: f32, world_from_light: Mat3) -> Self {
         let weights: Vec<f32> = image
@@ -145,7 +145,7 @@ impl InfiniteLight {
         direction_to_square(local).clamp(Vec2::ZERO, Vec2::ONE)
     }
 
-    /// The density of the direction `to_light`. Measure: solid angle, 1/sr.
+    /// Returns the density of the direction `to_light`. Measure: solid angle, 1/sr.
     #[inline]
     pub(super) fn pdf(&self, to_light: Vec3) -> f32 {
         match &self.radiance {

@@ -52,7 +52,7 @@ pub struct LightPoint {
 }
 
 impl LightPoint {
-    /// A point on an emitting surface.
+    /// Makes a point on an emitting surface.
     pub fn on_surface(surface: &SurfacePoint, primitive: u32) -> Self {
         Self {
             locus: surface.locus(),
@@ -60,7 +60,7 @@ impl LightPoint {
         }
     }
 
-    /// A point in space.
+    /// Makes a point in space.
     pub fn in_space(point: Vec3) -> Self {
         Self {
             locus: Locus::in_space(point),
@@ -68,7 +68,7 @@ impl LightPoint {
         }
     }
 
-    /// A point where a medium glows.
+    /// Makes a point where a medium glows.
     pub fn in_medium(point: Vec3, medium: MediumId) -> Self {
         Self {
             locus: Locus::in_medium(point, medium),
@@ -76,7 +76,7 @@ impl LightPoint {
         }
     }
 
-    /// The unit `direction` towards a light at infinity.
+    /// Returns the unit `direction` towards a light at infinity.
     pub fn at_infinity(direction: Vec3) -> Self {
         Self {
             locus: Locus::at_infinity(direction),
@@ -97,7 +97,7 @@ pub struct LightSample {
 }
 
 impl LightSample {
-    /// A point where all of the light is there.
+    /// Makes a point where all of the light is there.
     pub fn new(at: LightPoint, pdf: f32) -> Self {
         Self {
             at,
@@ -163,7 +163,7 @@ pub enum Light {
 }
 
 impl Light {
-    /// The name of its kind, in one word.
+    /// Returns the name of its kind, in one word.
     pub const fn kind(&self) -> &'static str {
         match self {
             Self::Area(_) => "area",
@@ -175,7 +175,7 @@ impl Light {
         }
     }
 
-    /// True where no ray can hit the light by chance: its position, or its direction, is a Dirac
+    /// Returns true where no ray can hit the light by chance: its position, or its direction, is a Dirac
     /// distribution, or its surface is hidden.
     #[inline]
     pub fn is_delta(&self) -> bool {
@@ -186,12 +186,12 @@ impl Light {
         }
     }
 
-    /// True for a medium without an end: nothing but walks from the camera finds all of its points.
+    /// Returns true for a medium without an end: nothing but walks from the camera finds all of its points.
     pub fn is_endless(&self) -> bool {
         matches!(self, Self::Volume(light) if light.is_endless())
     }
 
-    /// True for lights outside the scene.
+    /// Returns true for lights outside the scene.
     #[inline]
     pub fn is_infinite(&self) -> bool {
         matches!(self, Self::Distant(_) | Self::Infinite(_))
@@ -244,7 +244,7 @@ impl Light {
         }
     }
 
-    /// The density of the light point `at` in [`sample_emission`](Self::sample_emission).
+    /// Returns the density of the light point `at` in [`sample_emission`](Self::sample_emission).
     #[inline]
     pub fn pdf_position(&self, context: &LightContext<'_>, at: &LightPoint) -> f32 {
         match self {
@@ -255,7 +255,7 @@ impl Light {
         }
     }
 
-    /// The density of leaving `at` along `w` in [`sample_emission`](Self::sample_emission).
+    /// Returns the density of leaving `at` along `w` in [`sample_emission`](Self::sample_emission).
     #[inline]
     pub fn pdf_direction(&self, context: &LightContext<'_>, at: &LightPoint, w: Vec3) -> f32 {
         match self {
@@ -266,7 +266,7 @@ impl Light {
         }
     }
 
-    /// The parts that are chosen among by themselves: all of it, or each primitive.
+    /// Returns the parts that are chosen among by themselves: all of it, or each primitive.
     fn parts(&self, context: &LightContext<'_>) -> impl Iterator<Item = Part> {
         let primitives = match self {
             Self::Area(light) => light.divided_into(context),
@@ -278,7 +278,7 @@ impl Light {
         })
     }
 
-    /// The share of [`power`](Self::power) that a part has. Unit: W, luminance.
+    /// Returns the share of [`power`](Self::power) that a part has. Unit: W, luminance.
     fn part_power(&self, context: &LightContext<'_>, part: Part) -> f32 {
         match (self, part) {
             (Self::Area(light), Part::Primitive(i)) => light.primitive_power(context, i),
@@ -286,7 +286,7 @@ impl Light {
         }
     }
 
-    /// The bounds of a part, and of the directions it sends light to. None: it is at infinity.
+    /// Returns the bounds of a part, and of the directions it sends light to. None: it is at infinity.
     fn bounds(&self, context: &LightContext<'_>, part: Part) -> Option<EmitterBounds> {
         match self {
             Self::Area(light) => Some(light.bounds(context, part)),
@@ -318,7 +318,7 @@ impl Light {
         }
     }
 
-    /// The density of `at` in [`sample_next_event`](Self::sample_next_event).
+    /// Returns the density of `at` in [`sample_next_event`](Self::sample_next_event).
     #[inline]
     pub fn pdf_next_event(
         &self,

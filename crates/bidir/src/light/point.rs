@@ -32,7 +32,7 @@ impl PointLight {
         }
     }
 
-    /// The point itself.
+    /// Returns the point itself.
     #[inline]
     pub(super) fn at(&self) -> LightSample {
         LightSample::new(LightPoint::in_space(self.position), 1.0)
@@ -83,7 +83,7 @@ impl Rim {
         }
     }
 
-    /// The mean of the falloff.
+    /// Returns the mean of the falloff.
     fn mean(self) -> f32 {
         match self {
             Self::SmoothStep => 1.0 / 2.0,
@@ -93,7 +93,7 @@ impl Rim {
 }
 
 impl SpotLight {
-    /// A spot along the unit vector `axis` with `intensity` (W/sr) within the half angle `full`,
+    /// Makes a spot along the unit vector `axis` with `intensity` (W/sr) within the half angle `full`,
     /// falling to nothing at the half angle `end`. Unit: radians.
     pub fn new(position: Vec3, axis: Vec3, intensity: Rgb, [full, end]: [f32; 2]) -> Self {
         let [full_height, end_height] = [full, end].map(|angle| 2.0 * sqr(libm::sinf(angle / 2.0)));
@@ -137,13 +137,13 @@ impl SpotLight {
         }
     }
 
-    /// 1 - cosθ of the unit direction `w`.
+    /// Returns 1 - cosθ of the unit direction `w`.
     #[inline]
     fn height(&self, w: Vec3) -> f32 {
         self.axis.z.distance_squared(w) / 2.0
     }
 
-    /// The intensity along the unit direction `w`.
+    /// Returns the intensity along the unit direction `w`.
     #[inline]
     pub(super) fn intensity(&self, w: Vec3) -> Rgb {
         let height = self.height(w);
@@ -158,7 +158,7 @@ impl SpotLight {
         self.intensity.map(|i| i * falloff)
     }
 
-    /// The point itself.
+    /// Returns the point itself.
     #[inline]
     pub(super) fn at(&self) -> LightSample {
         LightSample::new(LightPoint::in_space(self.position), 1.0)

@@ -77,13 +77,13 @@ fn kite() -> Mesh {
 /// The number of cells of a fire.
 const FIRE: [usize; 3] = [4, 3, 5];
 
-/// The place of the fires' box.
+/// Returns the place of the fires' box.
 fn fireplace() -> Affine3A {
     Affine3A::from_mat3_translation(turn(), Vec3::new(-0.5, 0.2, 0.0))
         * Affine3A::from_scale(Vec3::new(1.0, 2.0, 0.5))
 }
 
-/// A number for a cell of a fire.
+/// Returns a number for a cell of a fire.
 fn ember(i: usize) -> f32 {
     (i * 7 % 5) as f32
 }
@@ -105,7 +105,7 @@ fn gas() -> Medium {
     gas.glowing(Glow::Even(COLOR)).unwrap()
 }
 
-/// A dark environment with a bright texel, some even ones and some black.
+/// Returns a dark environment with a bright texel, some even ones and some black.
 fn environment() -> InfiniteLight {
     let texel = |i: u16| match i {
         27 => [40.0, 60.0, 30.0],
@@ -191,7 +191,7 @@ fn examples(surroundings: &Surroundings) -> Vec<(&'static str, Light)> {
 
 const VARIANTS: usize = 6;
 
-/// A new variant does not compile before it has a number here.
+/// Returns a new variant does not compile before it has a number here.
 fn variant(light: &Light) -> usize {
     match light {
         Light::Area(_) => 0,
@@ -212,7 +212,7 @@ fn every_variant_has_an_example() {
     assert_eq!(seen, [true; VARIANTS]);
 }
 
-/// The numbers that one emission takes: two and a third for the position, and two for the direction.
+/// Returns the numbers that one emission takes: two and a third for the position, and two for the direction.
 fn numbers(sample: &SampleStream) -> (Vec2, f32, Vec2) {
     let get = |purpose| sample.get_2d(Dimension::at(0, purpose));
     let u_depth = sample.get_1d(Dimension::at(0, Purpose::LightDepth));
@@ -223,7 +223,7 @@ fn numbers(sample: &SampleStream) -> (Vec2, f32, Vec2) {
     )
 }
 
-/// A frame with narrow lights' axis as its pole.
+/// Returns a frame with narrow lights' axis as its pole.
 fn pole() -> Frame {
     Frame::from_z(Vec3::new(0.6, 0.0, -0.8))
 }

@@ -36,7 +36,7 @@ struct Cells {
 }
 
 impl VolumeLight {
-    /// The light of a medium of a scene that is not built yet.
+    /// Returns the light of a medium of a scene that is not built yet.
     pub(crate) fn of(medium: MediumId) -> Self {
         Self {
             medium,
@@ -45,7 +45,7 @@ impl VolumeLight {
         }
     }
 
-    /// The light of medium number `id`, which is within `bounds` if it has no box of its own.
+    /// Returns the light of medium number `id`, which is within `bounds` if it has no box of its own.
     pub(crate) fn new(id: MediumId, medium: &Medium, bounds: Option<Aabb>) -> Self {
         let cells = medium.glow_cells(bounds);
         let cells = cells.and_then(|cells| {
@@ -68,7 +68,7 @@ impl VolumeLight {
         self.is_endless
     }
 
-    /// The medium.
+    /// Returns the medium.
     pub fn medium(&self) -> MediumId {
         self.medium
     }
@@ -103,7 +103,7 @@ impl VolumeLight {
         Some(LightSample::new(at, pdf * cells.inverse_volume))
     }
 
-    /// The density of a point. Measure: volume, 1/m³.
+    /// Returns the density of a point. Measure: volume, 1/m³.
     #[inline]
     pub(super) fn pdf(&self, at: &LightPoint) -> f32 {
         self.cells

@@ -69,7 +69,7 @@ impl Axis {
         Self((0..=steps).map(|i| sqr(i as f32 / steps as f32)).collect())
     }
 
-    /// The value where it is constant; else `nodes`.
+    /// Returns the value where it is constant; else `nodes`.
     fn of_texture(texture: &FloatTexture, nodes: impl Iterator<Item = f32>) -> Self {
         match texture {
             FloatTexture::Constant(value) => Self(vec![*value]),
@@ -77,7 +77,7 @@ impl Axis {
         }
     }
 
-    /// The indices of the values on both sides of `value`, and where it is between them.
+    /// Returns the indices of the values on both sides of `value`, and where it is between them.
     #[inline]
     fn locate(&self, value: f32) -> (usize, usize, f32) {
         let after = self.0.partition_point(|&node| node < value);
@@ -159,7 +159,7 @@ impl Fillings {
         }
     }
 
-    /// The tables of each lane, for the slope between two of the layers.
+    /// Returns the tables of each lane, for the slope between two of the layers.
     fn at(&self, slope: (usize, usize, f32), filling: &Filling) -> [Filled; 4] {
         if let [only] = *self.tables {
             return [only; 4];
@@ -177,7 +177,7 @@ impl Fillings {
         })
     }
 
-    /// The mean of the tables around a point, which is between two values on each axis.
+    /// Returns the mean of the tables around a point, which is between two values on each axis.
     fn mixed(&self, point: [(usize, usize, f32); 4]) -> Filled {
         let sizes = [
             self.depths.0.len(),
@@ -219,7 +219,7 @@ pub struct CoatedDiffuseMaterial {
 }
 
 impl CoatedDiffuseMaterial {
-    /// A base of `reflectance`.
+    /// Makes a base of `reflectance`.
     pub fn new(coat: CoatSettings, reflectance: ColorTexture) -> Self {
         let layers = Layers::new(&coat);
         Self {

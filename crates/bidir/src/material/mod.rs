@@ -168,7 +168,7 @@ pub enum Material {
 }
 
 impl Material {
-    /// The name of its kind, in one word.
+    /// Returns the name of its kind, in one word.
     pub fn kind(&self) -> &'static str {
         match self {
             Self::Diffuse { .. } => "diffuse",
@@ -184,7 +184,7 @@ impl Material {
         }
     }
 
-    /// The relief that turns the shading frame. None: nothing does, or each part of a mixture for itself.
+    /// Returns the relief that turns the shading frame. None: nothing does, or each part of a mixture for itself.
     #[inline]
     pub fn relief(&self) -> Option<&Relief> {
         match self {
@@ -193,7 +193,7 @@ impl Material {
         }
     }
 
-    /// The unit normal of a clear coat at a point. None: there is no coat.
+    /// Returns the unit normal of a clear coat at a point. None: there is no coat.
     #[inline]
     pub fn coat_normal(&self, surface: &SurfacePoint, at: &TexturePoint) -> Option<Vec3> {
         match self {
@@ -203,7 +203,7 @@ impl Material {
         }
     }
 
-    /// The material that a mixture is at a point, chosen by the number `u`; itself where it is none.
+    /// Returns the material that a mixture is at a point, chosen by the number `u`; itself where it is none.
     #[inline]
     pub fn choose(&self, at: &TexturePoint, u: impl FnOnce() -> f32) -> &Self {
         match self {
@@ -212,7 +212,7 @@ impl Material {
         }
     }
 
-    /// The dependences of its textures and its relief, beside the parameters.
+    /// Returns the dependences of its textures and its relief, beside the parameters.
     pub fn needs(&self) -> Needs {
         match self {
             Self::Diffuse { reflectance } => reflectance.needs(),
@@ -239,7 +239,7 @@ impl Material {
         }
     }
 
-    /// The scattering at a point, that of a mixture's first material: [`choose`](Self::choose) first.
+    /// Returns the scattering at a point, that of a mixture's first material: [`choose`](Self::choose) first.
     #[inline]
     pub fn bsdf(&self, at: &TexturePoint, lanes: Lanes) -> Bsdf {
         let albedo = |texture: &ColorTexture| lanes.albedo(unit(texture.eval(at)));
@@ -285,7 +285,7 @@ impl Material {
 }
 
 impl Mixture {
-    /// The number is stretched for what is chosen, so that mixtures within mixtures can use it again.
+    /// Returns the number is stretched for what is chosen, so that mixtures within mixtures can use it again.
     fn choose(&self, at: &TexturePoint, u: f32) -> &Material {
         let amount = self.amount.eval(at).clamp(0.0, 1.0);
         let [first, second] = &self.materials;
@@ -299,13 +299,13 @@ impl Mixture {
     }
 }
 
-/// A reflectance between 0 and 1; NaN stays NaN, to be found and counted where light carries it.
+/// Returns a reflectance between 0 and 1; NaN stays NaN, to be found and counted where light carries it.
 #[inline]
 fn unit(rgb: Rgb) -> Rgb {
     rgb.map(|channel| channel.clamp(0.0, 1.0))
 }
 
-/// The k that reflects `r` at normal incidence where η = 1.
+/// Returns the k that reflects `r` at normal incidence where η = 1.
 #[inline]
 fn absorption_of_reflectance(r: f32) -> f32 {
     let r = r.min(0.9999);

@@ -26,13 +26,13 @@ impl ScaledColor {
         }
     }
 
-    /// True where the product is black everywhere.
+    /// Returns true where the product is black everywhere.
     #[inline]
     fn is_black(&self) -> bool {
         self.factor.iter().all(|&channel| channel <= 0.0)
     }
 
-    /// True where it is 1 everywhere.
+    /// Returns true where it is 1 everywhere.
     #[inline]
     fn is_white(&self) -> bool {
         let is_one = |channel: &f32| channel.to_bits() == 1f32.to_bits();
@@ -45,7 +45,7 @@ impl ScaledColor {
             .map_or(Needs::NOTHING, ColorTexture::needs)
     }
 
-    /// The product at a point.
+    /// Returns the product at a point.
     #[inline]
     pub fn eval(&self, at: &TexturePoint) -> Rgb {
         match &self.texture {
@@ -76,7 +76,7 @@ impl ScaledFloat {
         }
     }
 
-    /// The product at a point.
+    /// Returns the product at a point.
     #[inline]
     pub fn eval(&self, at: &TexturePoint) -> f32 {
         let texel = self
@@ -92,7 +92,7 @@ impl ScaledFloat {
             .map_or(Needs::NOTHING, FloatTexture::needs)
     }
 
-    /// The product between 0 and 1; where the number is 0 nothing is looked up.
+    /// Returns the product between 0 and 1; where the number is 0 nothing is looked up.
     #[inline]
     fn share(&self, at: &TexturePoint) -> f32 {
         if self.factor == 0.0 {
@@ -171,7 +171,7 @@ pub struct PrincipledMaterial {
 }
 
 impl Default for PrincipledMaterial {
-    /// A glTF material without any setting: white rough metal.
+    /// Makes a glTF material without any setting: white rough metal.
     fn default() -> Self {
         let [black, white] = [0.0, 1.0].map(|value| ScaledColor::constant([value; 3]));
         let [zero, one] = [0.0, 1.0].map(ScaledFloat::constant);
@@ -201,7 +201,7 @@ impl Default for PrincipledMaterial {
 }
 
 impl PrincipledMaterial {
-    /// The normal of the coat. None: there is no coat.
+    /// Returns the normal of the coat. None: there is no coat.
     pub(super) fn coat_normal(&self, surface: &SurfacePoint, at: &TexturePoint) -> Option<Vec3> {
         let map = self.coat_normal.as_ref();
         let normal = || map.map_or(surface.shading.z, |map| map.front(surface, at));
@@ -258,7 +258,7 @@ impl PrincipledMaterial {
             .fold(sides, Needs::and)
     }
 
-    /// The scattering at a point. Parts that the material lacks are not looked up.
+    /// Returns the scattering at a point. Parts that the material lacks are not looked up.
     pub(super) fn bsdf(&self, at: &TexturePoint, lanes: Lanes) -> Bsdf {
         let albedo = |of: &ScaledColor| lanes.albedo(unit(of.eval(at)));
         let (ggx, grain) = self.facets(at);

@@ -31,7 +31,7 @@ impl Material {
     }
 }
 
-/// True where slopes may be so small; also where `least` is no number.
+/// Returns true where slopes may be so small; also where `least` is no number.
 fn is_smooth(least: f32) -> bool {
     least.is_nan() || least < SMOOTH_ALPHA
 }
@@ -47,7 +47,7 @@ impl Roughness {
 }
 
 impl CoatSettings {
-    /// True where the interface may mirror; one that bends nothing does not.
+    /// Returns true where the interface may mirror; one that bends nothing does not.
     fn may_mirror(&self) -> bool {
         (self.eta - 1.0).abs() > 0.0 && self.roughness.may_be_smooth()
     }
@@ -68,7 +68,7 @@ impl CoatedConductorMaterial {
 }
 
 impl ScaledFloat {
-    /// Bounds of the product between 0 and 1.
+    /// Returns the bounds of the product between 0 and 1.
     fn shares(&self) -> Range {
         let texels = self
             .texture

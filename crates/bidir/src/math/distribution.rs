@@ -28,7 +28,7 @@ pub struct Distribution1d {
 }
 
 impl Distribution1d {
-    /// The distribution proportional to `weights`, which are finite and not negative. If all are
+    /// Returns the distribution proportional to `weights`, which are finite and not negative. If all are
     /// zero, or there are none, it is uniform over `max(1, n)` cells and its [`total`](Self::total) is zero.
     ///
     /// # Panics
@@ -66,8 +66,8 @@ impl Distribution1d {
         }
     }
 
-    /// The guide table. It has as many parts as there are cells, or up to twice as many; a single one for up to [`FEW`]
-    /// cells.
+    /// Returns the guide table. It has as many parts as there are cells, or up to twice as many; a single one for up to
+    /// [`FEW`] cells.
     fn parts_of(cdf: &[f64]) -> Vec<u32> {
         let cells = cdf.len() - 1;
         assert!(
@@ -93,7 +93,7 @@ impl Distribution1d {
         begins.chain([last as u32]).collect()
     }
 
-    /// The number of cells.
+    /// Returns the number of cells.
     pub fn len(&self) -> usize {
         self.cdf.len() - 1
     }
@@ -103,12 +103,12 @@ impl Distribution1d {
         false
     }
 
-    /// The sum of the weights.
+    /// Returns the sum of the weights.
     pub fn total(&self) -> f64 {
         self.total
     }
 
-    /// The probability of cell `i`. Unitless.
+    /// Returns the probability of cell `i`. Unitless.
     #[inline]
     pub fn prob(&self, i: usize) -> f32 {
         (self.cdf[i + 1] - self.cdf[i]) as f32
@@ -147,7 +147,7 @@ impl Distribution1d {
         (((i as f32 + rest) / n).min(ONE_MINUS_EPSILON), prob * n, i)
     }
 
-    /// The density of [`sample_continuous`](Self::sample_continuous) at `x` in `[0, 1)`.
+    /// Returns the density of [`sample_continuous`](Self::sample_continuous) at `x` in `[0, 1)`.
     #[inline]
     pub fn pdf(&self, x: f32) -> f32 {
         let n = self.len();
@@ -164,7 +164,7 @@ pub struct Distribution2d {
 }
 
 impl Distribution2d {
-    /// The distribution proportional to `weights`, row by row, each row `width` long.
+    /// Returns the distribution proportional to `weights`, row by row, each row `width` long.
     pub fn new(weights: &[f32], width: usize) -> Self {
         let columns: Vec<_> = weights
             .chunks_exact(width.max(1))
@@ -182,7 +182,7 @@ impl Distribution2d {
         (Vec2::new(x, y), pdf_x * pdf_y)
     }
 
-    /// The density of [`sample`](Self::sample) at `p`, over the square's area.
+    /// Returns the density of [`sample`](Self::sample) at `p`, over the square's area.
     #[inline]
     pub fn pdf(&self, p: Vec2) -> f32 {
         let n = self.rows.len();
@@ -190,7 +190,7 @@ impl Distribution2d {
         self.rows.pdf(p.y) * self.columns[row].pdf(p.x)
     }
 
-    /// The mean of the weights.
+    /// Returns the mean of the weights.
     pub fn mean(&self) -> f64 {
         self.rows.total() / (self.columns.len() * self.columns[0].len()) as f64
     }
@@ -204,7 +204,7 @@ pub struct Distribution3d {
 }
 
 impl Distribution3d {
-    /// The distribution proportional to `weights`, x fastest, of so many cells along x and y.
+    /// Returns the distribution proportional to `weights`, x fastest, of so many cells along x and y.
     pub fn new(weights: &[f32], [nx, ny]: [usize; 2]) -> Self {
         let planes: Vec<_> = weights
             .chunks_exact((nx * ny).max(1))
@@ -222,7 +222,7 @@ impl Distribution3d {
         (p.extend(z), pdf * pdf_z)
     }
 
-    /// The density of [`sample`](Self::sample) at `p`, over the cube's volume.
+    /// Returns the density of [`sample`](Self::sample) at `p`, over the cube's volume.
     #[inline]
     pub fn pdf(&self, p: Vec3) -> f32 {
         let n = self.slabs.len();

@@ -9,13 +9,13 @@ pub const MOMENT_SCALE: i32 = 40;
 /// A contribution above this is dropped and counted.
 pub const LARGEST_CONTRIBUTION: f32 = 1_099_511_627_776.0; // 2⁴⁰
 
-/// 2^exponent, exactly.
+/// Returns 2^exponent, exactly.
 #[inline]
 fn power_of_two(exponent: i32) -> f64 {
     f64::from_bits(((1023 + exponent) as u64) << 52)
 }
 
-/// `value`·2^scale, rounded towards zero, which is the same on every machine; 0 for no number.
+/// Returns `value`·2^scale, rounded towards zero, which is the same on every machine; 0 for no number.
 #[inline]
 pub fn from_f64(value: f64, scale: i32) -> i128 {
     let scaled = value * power_of_two(scale);
@@ -27,7 +27,7 @@ pub fn from_f64(value: f64, scale: i32) -> i128 {
     }
 }
 
-/// A number of 2⁶³ or more is an integer: 53 bits that are shifted, in a tenth of the time of a conversion to
+/// Returns a number of 2⁶³ or more is an integer: 53 bits that are shifted, in a tenth of the time of a conversion to
 /// 128 bits.
 fn large_from_f64(value: f64) -> i128 {
     let (bits, fraction) = (value.to_bits(), (1 << 52) - 1);
@@ -40,14 +40,14 @@ fn large_from_f64(value: f64) -> i128 {
     if value < 0.0 { -magnitude } else { magnitude }
 }
 
-/// `fixed`·2^-scale, rounded to nearest.
+/// Returns `fixed`·2^-scale, rounded to nearest.
 #[inline]
 pub fn to_f64(fixed: i128, scale: i32) -> f64 {
     let value = i64::try_from(fixed).map_or_else(|_| large_to_f64(fixed), |small| small as f64);
     value * power_of_two(-scale)
 }
 
-/// The first 63 bits round as all of them do if the last one stands for what is behind them.
+/// Returns the first 63 bits round as all of them do if the last one stands for what is behind them.
 fn large_to_f64(fixed: i128) -> f64 {
     let magnitude = fixed.unsigned_abs();
     let shift = 65 - magnitude.leading_zeros();

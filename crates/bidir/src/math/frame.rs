@@ -27,7 +27,7 @@ impl Frame {
         }
     }
 
-    /// The frame around the unit vector `z` whose x is nearest to `tangent`; some frame where
+    /// Returns the frame around the unit vector `z` whose x is nearest to `tangent`; some frame where
     /// `tangent` is zero or parallel to `z`.
     #[inline]
     pub fn from_z_and_tangent(z: Vec3, tangent: Vec3) -> Self {

@@ -6,19 +6,19 @@ use glam::{Mat4, Vec4};
 /// The coordinates of four vectors.
 pub(crate) type Vec3x4 = [Vec4; 3];
 
-/// `p` less each of `from`.
+/// Returns `p` less each of `from`.
 #[inline]
 pub(crate) fn offset(p: Vec3, from: &Vec3x4) -> Vec3x4 {
     [p.x - from[0], p.y - from[1], p.z - from[2]]
 }
 
-/// The scalar products of pairs.
+/// Returns the scalar products of pairs.
 #[inline]
 pub(crate) fn dot(a: &Vec3x4, b: &Vec3x4) -> Vec4 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// The scalar products of `v` with each of four.
+/// Returns the scalar products of `v` with each of four.
 #[inline]
 pub(crate) fn dot_each(v: Vec3, of: &Vec3x4) -> Vec4 {
     v.x * of[0] + v.y * of[1] + v.z * of[2]

@@ -28,19 +28,19 @@ pub fn sin_cos(x: f32) -> (f32, f32) {
     (libm::sinf(x), libm::cosf(x))
 }
 
-/// The square.
+/// Returns the square.
 #[inline]
 pub fn sqr(x: f32) -> f32 {
     x * x
 }
 
-/// The square root, zero below zero: for arguments that rounding pushed under zero.
+/// Returns the square root, zero below zero: for arguments that rounding pushed under zero.
 #[inline]
 pub fn safe_sqrt(x: f32) -> f32 {
     x.max(0.0).sqrt()
 }
 
-/// The smallest power of two not below `n`, as an exponent.
+/// Returns the smallest power of two not below `n`, as an exponent.
 pub fn ceil_log2(n: u64) -> u32 {
     n.max(1).next_power_of_two().trailing_zeros()
 }

@@ -4,7 +4,7 @@
 use super::{PI, safe_sqrt, sin_cos};
 use glam::{Vec2, Vec3};
 
-/// The direction of a point of the unit square under the equal-area octahedral map \[Clarberg08\].
+/// Returns the direction of a point of the unit square under the equal-area octahedral map \[Clarberg08\].
 ///
 /// The centre is +z, the corners are -z; equal areas go to equal solid angles (4π per unit area).
 #[inline]
@@ -29,7 +29,7 @@ pub fn square_to_direction(p: Vec2) -> Vec3 {
     )
 }
 
-/// The point of the unit square whose direction is the unit vector `d`: the inverse of
+/// Returns the point of the unit square whose direction is the unit vector `d`: the inverse of
 /// [`square_to_direction`].
 #[inline]
 pub fn direction_to_square(d: Vec3) -> Vec2 {

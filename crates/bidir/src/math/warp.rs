@@ -6,7 +6,7 @@
 use super::{INV_PI, PI, safe_sqrt, sin_cos};
 use glam::{Vec2, Vec3};
 
-/// A uniform point of the unit disk \[Shirley97\]. Measure: area, density 1/π.
+/// Returns a uniform point of the unit disk \[Shirley97\]. Measure: area, density 1/π.
 #[inline]
 pub fn concentric_disk(u: Vec2) -> Vec2 {
     let offset = u * 2.0 - Vec2::ONE;
@@ -22,26 +22,26 @@ pub fn concentric_disk(u: Vec2) -> Vec2 {
     Vec2::new(cos, sin) * radius
 }
 
-/// A cosine-distributed direction around +z. Measure: solid angle, density cosθ/π.
+/// Returns a cosine-distributed direction around +z. Measure: solid angle, density cosθ/π.
 #[inline]
 pub fn cosine_hemisphere(u: Vec2) -> Vec3 {
     let d = concentric_disk(u);
     d.extend(safe_sqrt(1.0 - d.length_squared()))
 }
 
-/// The density of [`cosine_hemisphere`]. Measure: solid angle, 1/sr.
+/// Returns the density of [`cosine_hemisphere`]. Measure: solid angle, 1/sr.
 #[inline]
 pub fn cosine_hemisphere_pdf(cos_theta: f32) -> f32 {
     cos_theta.max(0.0) * INV_PI
 }
 
-/// A uniform direction. Measure: solid angle, density 1/(4π).
+/// Returns a uniform direction. Measure: solid angle, density 1/(4π).
 #[inline]
 pub fn uniform_sphere(u: Vec2) -> Vec3 {
     uniform_cone(u, 2.0)
 }
 
-/// A uniform direction within the cone around +z of `height = 1 - cosθ_max`; 2 is the sphere.
+/// Returns a uniform direction within the cone around +z of `height = 1 - cosθ_max`; 2 is the sphere.
 /// Measure: solid angle, density 1/(2π·height). The height is the argument because 1 - cosθ_max
 /// keeps its digits for narrow cones.
 #[inline]

@@ -32,13 +32,13 @@ pub(super) struct Cubes {
 }
 
 impl Line {
-    /// The point at `t`.
+    /// Returns the point at `t`.
     #[inline]
     pub(super) fn at(&self, t: f32) -> Vec3 {
         self.origin + self.direction * t
     }
 
-    /// The part of `range` between two corners. None: the line passes by.
+    /// Returns the part of `range` between two corners. None: the line passes by.
     pub(super) fn within(&self, [low, high]: [Vec3; 2], range: Range) -> Option<Range> {
         let [mut begin, mut end] = range;
         for axis in 0..3 {
@@ -56,7 +56,7 @@ impl Line {
         (begin < end).then_some([begin, end])
     }
 
-    /// The cubes of `within`, of this side and with corners at multiples of it, along a part of the line.
+    /// Returns the cubes of `within`, of this side and with corners at multiples of it, along a part of the line.
     pub(super) fn cubes(&self, side: f32, within: CubeBox, range: Range) -> Cubes {
         let start = self.at(range[0]) / side;
         let nearest = |axis: usize| {

@@ -33,7 +33,7 @@ pub(crate) struct Flight {
 }
 
 impl Stretch<'_> {
-    /// The length of a part, in m.
+    /// Returns the length of a part, in m.
     #[inline]
     fn length(&self, [begin, end]: [f32; 2]) -> f32 {
         (end - begin) * self.unit
@@ -41,7 +41,7 @@ impl Stretch<'_> {
 }
 
 impl Medium {
-    /// τ of a stretch, in the detail asked for. `lanes` makes lanes of coefficients.
+    /// Returns τ of a stretch, in the detail asked for. `lanes` makes lanes of coefficients.
     pub(crate) fn depth(
         &self,
         stretch: &Stretch<'_>,
@@ -58,7 +58,7 @@ impl Medium {
         }
     }
 
-    /// The way through a stretch of a walk that drew a depth. It ends within only a medium with vertices.
+    /// Returns the way through a stretch of a walk that drew a depth. It ends within only a medium with vertices.
     pub(crate) fn fly(
         &self,
         stretch: &Stretch<'_>,
@@ -82,7 +82,7 @@ impl Medium {
     }
 }
 
-/// σ_t times a length.
+/// Returns σ_t times a length.
 fn depth_of(extinction: Spectrum, length: f32) -> Spectrum {
     if length.is_infinite() {
         return Spectrum::splat(f32::INFINITY);
@@ -108,7 +108,7 @@ fn fly_straight(extinction: Spectrum, stretch: &Stretch<'_>, drawn: Drawn) -> Fl
     }
 }
 
-/// The integrals of a grid over a stretch.
+/// Returns the integrals of a grid over a stretch.
 fn integral<const N: usize>(grid: &Grid<N>, stretch: &Stretch<'_>, detail: Detail) -> [f32; N] {
     let mut sum = [0.0; N];
     let _ = grid.visit(stretch.ray, stretch.range, detail, |piece| {
@@ -150,8 +150,8 @@ fn fly_through<const N: usize>(
     }
 }
 
-/// The place in a piece where the drawn depth, less than that of the whole piece, is reached: by Newton's method, and
-/// by halves where it would leave the bracket \[Press07, §9.4\].
+/// Returns the place in a piece where the drawn depth, less than that of the whole piece, is reached: by Newton's
+/// method, and by halves where it would leave the bracket \[Press07, §9.4\].
 fn reach<const N: usize>(
     piece: &Piece<N>,
     unit: f32,

@@ -42,7 +42,7 @@ impl Glow {
         }
     }
 
-    /// The cells of a grid in which σ_a is given by the number of a cell.
+    /// Returns the cells of a grid in which σ_a is given by the number of a cell.
     fn cells<const N: usize>(
         &self,
         grid: &Grid<N>,
@@ -98,7 +98,7 @@ impl Medium {
         })
     }
 
-    /// The largest L_e. Unit: luminance.
+    /// Returns the largest L_e. Unit: luminance.
     pub(crate) fn brightest(&self) -> f32 {
         match &self.glow {
             None => 0.0,
@@ -110,13 +110,13 @@ impl Medium {
         }
     }
 
-    /// True where light begins.
+    /// Returns true where light begins.
     #[inline]
     pub const fn glows(&self) -> bool {
         self.glow.is_some()
     }
 
-    /// σ_a L_e at a point, which lies in the medium. Unit: W/(m³ sr).
+    /// Returns σ_a L_e at a point, which lies in the medium. Unit: W/(m³ sr).
     #[inline]
     pub fn emission(&self, point: Vec3) -> Rgb {
         let Some(glow) = &self.glow else {
@@ -126,8 +126,8 @@ impl Medium {
         std::array::from_fn(|i| absorption[i] * radiance[i])
     }
 
-    /// The cells that glow. A medium without an end is asked for between the corners of `bounds`. None: there is no
-    /// such box, or it is flat.
+    /// Returns the cells that glow. A medium without an end is asked for between the corners of `bounds`. None: there
+    /// is no such box, or it is flat.
     pub(crate) fn glow_cells(&self, bounds: Option<Aabb>) -> Option<GlowCells> {
         let glow = self.glow.as_ref()?;
         match &self.field {

@@ -60,8 +60,8 @@ enum Field<const N: usize> {
 }
 
 impl<const N: usize> Grid<N> {
-    /// A grid of `size` cells, x fastest, over the unit cube that `world_from_cube` places. None: `values` are not as
-    /// many, there are none, one is negative or not finite, or the box is flat.
+    /// Makes a grid of `size` cells, x fastest, over the unit cube that `world_from_cube` places. None: `values` are
+    /// not as many, there are none, one is negative or not finite, or the box is flat.
     pub fn new(size: [usize; 3], values: Vec<[f32; N]>, world_from_cube: Affine3A) -> Option<Self> {
         let count = size.iter().try_fold(1_usize, |n, &k| n.checked_mul(k))?;
         let is_valid = |value: &f32| (0.0..=f32::MAX).contains(value);
@@ -87,32 +87,32 @@ impl<const N: usize> Grid<N> {
         Some(grid)
     }
 
-    /// The bounds of the box in the world.
+    /// Returns the bounds of the box in the world.
     pub fn bounds(&self) -> Aabb {
         self.bounds
     }
 
-    /// The number of cells along each axis.
+    /// Returns the number of cells along each axis.
     pub(super) fn size(&self) -> [usize; 3] {
         self.size
     }
 
-    /// The values at the centres of cells, x fastest.
+    /// Returns the values at the centres of cells, x fastest.
     pub(super) fn values(&self) -> &[[f32; N]] {
         &self.values
     }
 
-    /// The place of its box, as a unit cube, in the world.
+    /// Returns the place of its box, as a unit cube, in the world.
     pub(super) fn world_from_cube(&self) -> Affine3A {
         self.lattice_from_world.inverse() * lattice_from_cube(self.size)
     }
 
-    /// True where the other grid has the same box and cells.
+    /// Returns true where the other grid has the same box and cells.
     pub(super) fn has_cells_of<const M: usize>(&self, other: &Grid<M>) -> bool {
         self.size == other.size && self.lattice_from_world == other.lattice_from_world
     }
 
-    /// The means over each cell of values that are given by the number of a cell, and linear between centres:
+    /// Returns the means over each cell of values that are given by the number of a cell, and linear between centres:
     /// along an axis, (f(i - 1) + 6 f(i) + f(i + 1)) / 8.
     pub(super) fn cell_means(&self, value: impl Fn(usize) -> f32) -> Vec<f32> {
         let mut means: Vec<f32> = (0..self.values.len()).map(value).collect();
@@ -130,7 +130,7 @@ impl<const N: usize> Grid<N> {
         means
     }
 
-    /// The largest number.
+    /// Returns the largest number.
     pub(super) fn most(&self) -> f32 {
         self.values
             .as_flattened()
@@ -139,14 +139,14 @@ impl<const N: usize> Grid<N> {
             .fold(0.0, f32::max)
     }
 
-    /// True where the other grid has the same box and cells, and nowhere smaller numbers.
+    /// Returns true where the other grid has the same box and cells, and nowhere smaller numbers.
     pub(super) fn is_nowhere_above(&self, other: &Self) -> bool {
         let ours = self.values.as_flattened();
         let theirs = other.values.as_flattened();
         self.has_cells_of(other) && ours.iter().zip(theirs).all(|(our, their)| our <= their)
     }
 
-    /// The values at a point of the box; outside, those of the nearest face.
+    /// Returns the values at a point of the box; outside, those of the nearest face.
     pub fn at(&self, point: Vec3) -> [f32; N] {
         let origin = self.lattice_from_world.transform_point3(point);
         let [low, high] = self.faces();
@@ -195,13 +195,13 @@ impl<const N: usize> Grid<N> {
         ControlFlow::Continue(())
     }
 
-    /// The corners of the box in the lattice.
+    /// Returns the corners of the box in the lattice.
     fn faces(&self) -> [Vec3; 2] {
         let far = self.size.map(|n| n as f32 + 0.5);
         [Vec3::splat(0.5), Vec3::from_array(far)]
     }
 
-    /// The cells of a block.
+    /// Returns the cells of a block.
     fn cells_of(&self, block: [usize; 3]) -> CubeBox {
         let first = block.map(|n| n * BLOCK);
         let last =
@@ -212,7 +212,7 @@ impl<const N: usize> Grid<N> {
         }
     }
 
-    /// The values at the corners of a cell, of which there is one more than centres along each axis.
+    /// Returns the values at the corners of a cell, of which there is one more than centres along each axis.
     #[inline]
     fn corners(&self, cell: [usize; 3]) -> [[f32; N]; 8] {
         let ends: [[usize; 2]; 3] = std::array::from_fn(|axis| {
@@ -272,7 +272,7 @@ impl<const N: usize> Grid<N> {
 }
 
 impl<const N: usize> Piece<N> {
-    /// The values at `t`.
+    /// Returns the values at `t`.
     #[inline]
     pub(super) fn at(&self, t: f32) -> [f32; N] {
         let (corners, line) = match &self.field {
@@ -288,7 +288,7 @@ impl<const N: usize> Piece<N> {
         })
     }
 
-    /// The means from the beginning to `end`.
+    /// Returns the means from the beginning to `end`.
     #[inline]
     pub(super) fn mean(&self, end: f32) -> [f32; N] {
         /// 1 / (2 √3)
@@ -300,13 +300,13 @@ impl<const N: usize> Piece<N> {
     }
 }
 
-/// The map from the box as a unit cube.
+/// Returns the map from the box as a unit cube.
 fn lattice_from_cube(size: [usize; 3]) -> Affine3A {
     let cells = Vec3::from_array(size.map(|n| n as f32));
     Affine3A::from_translation(Vec3::splat(0.5)) * Affine3A::from_scale(cells)
 }
 
-/// The number of a cell, x fastest, in an array of so many.
+/// Returns the number of a cell, x fastest, in an array of so many.
 #[inline]
 fn index([x, y, z]: [usize; 3], [nx, ny, _]: [usize; 3]) -> usize {
     (z * ny + y) * nx + x

@@ -50,7 +50,7 @@ impl MediumId {
         u8::try_from(index + 1).ok().map(Self)
     }
 
-    /// The number among the media of a scene. None: the vacuum.
+    /// Returns the number among the media of a scene. None: the vacuum.
     #[inline]
     pub(crate) fn index(self) -> Option<usize> {
         usize::from(self.0).checked_sub(1)
@@ -78,13 +78,13 @@ impl MediumSides {
         }
     }
 
-    /// True where two media meet.
+    /// Returns true where two media meet.
     #[inline]
     pub fn is_boundary(self) -> bool {
         self.outside != self.inside
     }
 
-    /// The medium of a ray that leaves along `w`, where `cos` is that of `w` to the geometric normal.
+    /// Returns the medium of a ray that leaves along `w`, where `cos` is that of `w` to the geometric normal.
     #[inline]
     pub fn toward(self, cos: f32) -> MediumId {
         if cos < 0.0 { self.inside } else { self.outside }
@@ -123,7 +123,7 @@ enum Field {
 }
 
 impl Coefficients {
-    /// σ_a + σ_s and σ_s. None: a coefficient is negative, or the sum is not finite.
+    /// Returns σ_a + σ_s and σ_s. None: a coefficient is negative, or the sum is not finite.
     pub fn new(absorption: Rgb, scattering: Rgb) -> Option<Self> {
         let valid = 0.0..=f32::MAX;
         let mut pairs = absorption.iter().zip(&scattering);
@@ -136,18 +136,18 @@ impl Coefficients {
         })
     }
 
-    /// True where σ_s is not 0.
+    /// Returns true where σ_s is not 0.
     const fn scatter(&self) -> bool {
         let [r, g, b] = self.scattering;
         r > 0.0 || g > 0.0 || b > 0.0
     }
 
-    /// σ_a.
+    /// Returns σ_a.
     fn absorption(&self) -> Rgb {
         std::array::from_fn(|i| (self.extinction[i] - self.scattering[i]).max(0.0))
     }
 
-    /// Both coefficients times a density.
+    /// Returns both coefficients times a density.
     fn scaled(self, density: f32) -> Self {
         let scale = |rgb: Rgb| rgb.map(|channel| channel * density);
         Self {
@@ -157,7 +157,7 @@ impl Coefficients {
     }
 }
 
-/// The largest channel.
+/// Returns the largest channel.
 fn largest(rgb: Rgb) -> f32 {
     rgb.into_iter().fold(0.0, f32::max)
 }
@@ -166,7 +166,7 @@ impl Medium {
     /// The largest σ_t of a grid, so that products with lengths stay finite.
     pub const DENSEST: f32 = 1e12;
 
-    /// A medium that is the same everywhere.
+    /// Makes a medium that is the same everywhere.
     pub const fn homogeneous(coefficients: Coefficients, phase: HenyeyGreenstein) -> Self {
         Self {
             field: Field::Homogeneous(coefficients),
@@ -176,8 +176,8 @@ impl Medium {
         }
     }
 
-    /// A medium with the coefficients times the density of a grid, and outside of its box nothing. None: σ_t is above
-    /// [`DENSEST`](Self::DENSEST) somewhere.
+    /// Makes a medium with the coefficients times the density of a grid, and outside of its box nothing. None: σ_t is
+    /// above [`DENSEST`](Self::DENSEST) somewhere.
     pub fn of_density(
         coefficients: Coefficients,
         density: Grid<1>,
@@ -192,8 +192,8 @@ impl Medium {
         })
     }
 
-    /// A medium with the coefficients of two grids, 1/m, and outside of their box nothing. None: the grids have not
-    /// the same box and size, σ_s is above σ_t somewhere, or that above [`DENSEST`](Self::DENSEST).
+    /// Makes a medium with the coefficients of two grids, 1/m, and outside of their box nothing. None: the grids have
+    /// not the same box and size, σ_s is above σ_t somewhere, or that above [`DENSEST`](Self::DENSEST).
     pub fn chromatic(
         extinction: Grid<3>,
         scattering: Grid<3>,
@@ -212,7 +212,7 @@ impl Medium {
         })
     }
 
-    /// The name of its kind.
+    /// Returns the name of its kind.
     pub const fn kind(&self) -> &'static str {
         match &self.field {
             Field::Homogeneous(_) => "homogeneous",
@@ -221,7 +221,7 @@ impl Medium {
         }
     }
 
-    /// The box that the medium fills. None: it has no end.
+    /// Returns the box that the medium fills. None: it has no end.
     pub fn bounds(&self) -> Option<Aabb> {
         match &self.field {
             Field::Homogeneous(_) => None,
@@ -230,19 +230,19 @@ impl Medium {
         }
     }
 
-    /// True where it is the same everywhere.
+    /// Returns true where it is the same everywhere.
     pub fn is_even(&self) -> bool {
         self.bounds().is_none()
     }
 
-    /// True where paths have vertices: where light scatters or begins. A medium that only absorbs stops no walk: its
-    /// light is weighted by T.
+    /// Returns true where paths have vertices: where light scatters or begins. A medium that only absorbs stops no
+    /// walk: its light is weighted by T.
     #[inline]
     pub const fn stops_walks(&self) -> bool {
         self.scatters || self.glow.is_some()
     }
 
-    /// The largest σ_t. Unit: 1/m.
+    /// Returns the largest σ_t. Unit: 1/m.
     fn most(&self) -> f32 {
         match &self.field {
             Field::Homogeneous(at) => largest(at.extinction),
@@ -251,7 +251,7 @@ impl Medium {
         }
     }
 
-    /// The coefficients at a point, which lies in the medium.
+    /// Returns the coefficients at a point, which lies in the medium.
     fn at(&self, point: Vec3) -> Coefficients {
         match &self.field {
             Field::Homogeneous(coefficients) => *coefficients,
@@ -269,13 +269,13 @@ impl Medium {
         }
     }
 
-    /// σ_t at a point. Unit: 1/m.
+    /// Returns σ_t at a point. Unit: 1/m.
     #[inline]
     pub fn extinction(&self, point: Vec3, lanes: Lanes) -> Spectrum {
         lanes.unbounded(self.at(point).extinction)
     }
 
-    /// The scattering of a vertex in the medium.
+    /// Returns the scattering of a vertex in the medium.
     #[inline]
     pub fn scattering(&self, point: Vec3, lanes: Lanes) -> MediumScattering {
         let at = self.at(point);

@@ -15,7 +15,7 @@ impl HenyeyGreenstein {
     /// The largest |g|: beyond, rounding decides.
     pub const MOST: f32 = 0.999;
 
-    /// The function whose mean cosine is `g`. None: `g` is no number between -1 and 1; nearer to these than
+    /// Returns the function whose mean cosine is `g`. None: `g` is no number between -1 and 1; nearer to these than
     /// [`MOST`](Self::MOST) it is brought back.
     pub fn new(g: f32) -> Option<Self> {
         let is_valid = -1.0 < g && g < 1.0;
@@ -24,13 +24,13 @@ impl HenyeyGreenstein {
         })
     }
 
-    /// g.
+    /// Returns g.
     pub const fn mean_cosine(self) -> f32 {
         self.g
     }
 
-    /// p of light that arrives from `wo` and leaves to `wi`, or the other way round; both unit, away from the vertex.
-    /// It is the density of [`sample`](Self::sample) too.
+    /// Returns p of light that arrives from `wo` and leaves to `wi`, or the other way round; both unit, away from the
+    /// vertex. It is the density of [`sample`](Self::sample) too.
     #[inline(never)] // Out of line, so that code for surfaces stays small.
     pub fn eval(self, wo: Vec3, wi: Vec3) -> f32 {
         let g = self.g;
@@ -39,7 +39,7 @@ impl HenyeyGreenstein {
         (1.0 - g * g) / (4.0 * PI * base * base.sqrt())
     }
 
-    /// cosθ for g ≥ 0, else -cosθ.
+    /// Returns cosθ for g ≥ 0, else -cosθ.
     #[inline]
     fn alignment(self, wo: Vec3, wi: Vec3) -> f32 {
         (-wo.dot(wi)).clamp(-1.0, 1.0) * 1f32.copysign(self.g)

@@ -11,7 +11,7 @@ fn vector(reach: f32) -> impl Strategy<Value = Vec3> {
     (number.clone(), number.clone(), number).prop_map(Vec3::from)
 }
 
-/// Directions of which some are along axes.
+/// Returns directions of which some are along axes.
 fn direction() -> impl Strategy<Value = Vec3> {
     let some = (vector(1.0), 0..8_u32).prop_map(|(w, axes)| {
         let keep = |axis: u32| if axes & 1 << axis == 0 { 1.0 } else { 0.0 };
@@ -20,7 +20,7 @@ fn direction() -> impl Strategy<Value = Vec3> {
     some.prop_filter("a length", |w| w.length() > 0.1)
 }
 
-/// A turned, stretched and shifted box.
+/// Returns a turned, stretched and shifted box.
 fn place() -> Affine3A {
     let turned = Affine3A::from_axis_angle(Vec3::new(0.6, 0.0, 0.8), 0.7);
     Affine3A::from_translation(Vec3::new(0.3, -0.2, 0.1))
@@ -28,7 +28,7 @@ fn place() -> Affine3A {
         * Affine3A::from_scale(Vec3::new(2.0, 1.5, 1.0))
 }
 
-/// A grid with an empty corner of several blocks.
+/// Returns a grid with an empty corner of several blocks.
 fn grid() -> Grid<1> {
     let size = [37, 20, 11];
     let at = |i: usize| [i % 37, i / 37 % 20, i / 740];
@@ -59,7 +59,7 @@ fn stretch(ray: &Ray, range: [f32; 2]) -> Stretch<'_> {
     Stretch { ray, range, unit }
 }
 
-/// ∫ of the density along a ray by the midpoints of many parts, with zero outside of the box.
+/// Returns ∫ of the density along a ray by the midpoints of many parts, with zero outside of the box.
 fn sum(grid: &Grid<1>, ray: &Ray, [begin, end]: [f32; 2]) -> f64 {
     const PARTS: u32 = 20_000;
     let cube_from_world = place().inverse();

@@ -25,7 +25,7 @@ pub struct Arrival {
 }
 
 impl Arrival {
-    /// The arrival at a vertex of the walk. None: it is on no light.
+    /// Returns the arrival at a vertex of the walk. None: it is on no light.
     #[inline]
     pub fn at(vertex: &Vertex) -> Option<Self> {
         Some(Self {
@@ -38,7 +38,7 @@ impl Arrival {
         })
     }
 
-    /// The arrivals at the lights at infinity that the walk escaped to.
+    /// Returns the arrivals at the lights at infinity that the walk escaped to.
     #[inline]
     pub fn of_escape(scene: &Scene, escape: Escape) -> impl Iterator<Item = Self> {
         scene.environment().iter().map(move |&light| Self {
@@ -51,8 +51,8 @@ impl Arrival {
         })
     }
 
-    /// The arrival at `light` of a walk that hit it after its first `i` vertices, or left the scene there. None:
-    /// it did neither.
+    /// Returns the arrival at `light` of a walk that hit it after its first `i` vertices, or left the scene there.
+    /// None: it did neither.
     pub fn of(scene: &Scene, camera: &Subpath<'_>, i: usize, light: u32) -> Option<Self> {
         match camera.vertices.get(i) {
             Some(vertex) => Self::at(vertex),
@@ -60,13 +60,13 @@ impl Arrival {
         }
     }
 
-    /// C = β L_e: the contribution before its weight.
+    /// Returns C = β L_e: the contribution before its weight.
     #[inline]
     pub fn contribution(&self, job: &Job<'_>) -> Spectrum {
         self.beta * job.emitted(self.light, &self.at, self.wo)
     }
 
-    /// The light as the first vertex of the path, with the density of the walk as that of the other
+    /// Returns the light as the first vertex of the path, with the density of the walk as that of the other
     /// direction.
     pub fn vertex(&self, job: &Job<'_>) -> Vertex {
         // Without media, the ends of the segment know the way back.

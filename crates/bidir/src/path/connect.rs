@@ -37,7 +37,7 @@ pub struct JoinedPath<'a> {
 }
 
 impl<'a> JoinedPath<'a> {
-    /// The path that connects the ends of two subpaths.
+    /// Returns the path that connects the ends of two subpaths.
     #[inline]
     pub fn connection(light: &'a [Vertex], camera: &'a [Vertex]) -> Self {
         let (z, y) = (&light[light.len() - 1], &camera[camera.len() - 1]);
@@ -54,8 +54,8 @@ impl<'a> JoinedPath<'a> {
         Self::new(light, camera, Junction::Connection, segment)
     }
 
-    /// The path of a camera walk that went from the last vertex of `camera` to the light at `x0`, which knows the way
-    /// back where that goes through media.
+    /// Returns the path of a camera walk that went from the last vertex of `camera` to the light at `x0`, which knows
+    /// the way back where that goes through media.
     #[inline]
     pub fn hit(x0: &'a Vertex, camera: &'a [Vertex]) -> Self {
         let segment = x0.segment_to(&camera[camera.len() - 1]);
@@ -92,25 +92,25 @@ impl<'a> JoinedPath<'a> {
         self.segment.pass(edge);
     }
 
-    /// The light vertex at the junction.
+    /// Returns the light vertex at the junction.
     #[inline]
     pub(crate) fn z(&self) -> &'a Vertex {
         &self.light[self.light.len() - 1]
     }
 
-    /// The camera vertex at the junction.
+    /// Returns the camera vertex at the junction.
     #[inline]
     pub(crate) fn y(&self) -> &'a Vertex {
         &self.camera[self.camera.len() - 1]
     }
 
-    /// z and y, each between the vertex before it and the other.
+    /// Returns z and y, each between the vertex before it and the other.
     #[inline]
     pub(super) fn turns(&self) -> &[Turn<'a>; 2] {
         &self.turns
     }
 
-    /// x_i.
+    /// Returns x_i.
     #[inline]
     pub(super) fn vertex(&self, i: usize) -> &'a Vertex {
         let s = self.light.len();
@@ -121,13 +121,13 @@ impl<'a> JoinedPath<'a> {
         }
     }
 
-    /// The number of vertices.
+    /// Returns the number of vertices.
     #[inline]
     pub(super) fn len(&self) -> usize {
         self.light.len() + self.camera.len()
     }
 
-    /// The contribution of a connection, before weight and visibility:
+    /// Returns the contribution of a connection, before weight and visibility:
     /// β_L · scatter(z) · G(z, y) · scatter(y) · β_C. Zero where either end is a Dirac scattering. Unit: that
     /// of a pixel's radiance.
     #[inline]
@@ -147,7 +147,7 @@ impl<'a> JoinedPath<'a> {
         z.beta * at_light * at_camera * y.beta * geometry_term
     }
 
-    /// The weight of making the path in this way.
+    /// Returns the weight of making the path in this way.
     #[inline]
     pub fn weight(&self, job: &Job<'_>, densities: &mut PathDensities) -> f32 {
         densities.gather(job, self);
@@ -155,7 +155,7 @@ impl<'a> JoinedPath<'a> {
         mis_weight(densities, count, job.settings.mis, self.strategy()) as f32
     }
 
-    /// s of the strategy that made the path.
+    /// Returns s of the strategy that made the path.
     #[inline]
     pub(super) fn strategy(&self) -> usize {
         match self.junction {
@@ -165,7 +165,7 @@ impl<'a> JoinedPath<'a> {
     }
 }
 
-/// A light point drawn for the vertex `x1` of a camera subpath: the light's index, and the point with
+/// Returns a light point drawn for the vertex `x1` of a camera subpath: the light's index, and the point with
 /// its density e(x_0 | x_1), the light's probability included.
 ///
 /// The number `u_light` is asked for where there is a choice of lights, `u_depth` in media that glow. None: there is no
@@ -194,7 +194,7 @@ pub fn sample_next_event(
     is_there.then_some((light, sample))
 }
 
-/// The density e(x_0 | x_1) with which [`sample_next_event`] draws the point `at` of light number
+/// Returns the density e(x_0 | x_1) with which [`sample_next_event`] draws the point `at` of light number
 /// `light` for `x1`, a vertex of any subpath. Measure: that of the point, as in the table of [`crate::light`].
 #[inline]
 pub fn next_event_pdf(job: &Job<'_>, x1: &Vertex, light: u32, at: &LightPoint) -> f32 {
@@ -214,7 +214,7 @@ pub fn next_event_pdf(job: &Job<'_>, x1: &Vertex, light: u32, at: &LightPoint) -
     prob * of_light.pdf_next_event(&lights, part, x1.locus.point, at)
 }
 
-/// A light that was chosen as a whole.
+/// Returns a light that was chosen as a whole.
 #[inline]
 fn by_power((light, prob): (usize, f32)) -> ChosenEmitter {
     ChosenEmitter {
@@ -225,20 +225,20 @@ fn by_power((light, prob): (usize, f32)) -> ChosenEmitter {
 }
 
 impl Job<'_> {
-    /// True where strategy (s, t) takes part.
+    /// Returns true where strategy (s, t) takes part.
     #[inline]
     pub fn takes(&self, s: usize, t: usize) -> bool {
         self.settings.strategies.contains(s, t)
     }
 
-    /// How light subpaths choose the light that they begin on.
+    /// Returns how light subpaths choose the light that they begin on.
     #[inline]
     pub(super) fn emission(&self) -> &LightChoice {
         let learned = self.guide.light_start;
         learned.unwrap_or_else(|| self.scene.light_choice())
     }
 
-    /// √V̂ of the shadow ray between a light vertex `z` and a camera vertex `y`: 1 if nothing is learned, and
+    /// Returns √V̂ of the shadow ray between a light vertex `z` and a camera vertex `y`: 1 if nothing is learned, and
     /// at infinity, where there are no places.
     #[inline]
     pub(crate) fn root_visibility(&self, z: &Vertex, y: &Vertex) -> f32 {

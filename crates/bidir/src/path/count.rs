@@ -34,7 +34,7 @@ impl SampleCounts {
 }
 
 impl Job<'_> {
-    /// n_j: how many samples strategy (s, t) takes in a pass of a path that it makes by linking its last light
+    /// Returns n_j: how many samples strategy (s, t) takes in a pass of a path that it makes by linking its last light
     /// vertex, in the cell `z`, with its last camera vertex, in the cell `y`. Camera densities
     /// count per pixel, so every strategy that begins at the camera takes one; the light image takes
     /// one per light subpath.
@@ -53,7 +53,8 @@ impl Job<'_> {
         }
     }
 
-    /// n_j of a strategy that takes part and links a vertex of a light subpath with camera vertex number `t` ≥ 2.
+    /// Returns n_j of a strategy that takes part and links a vertex of a light subpath with camera vertex number `t` ≥
+    /// 2.
     #[inline]
     fn count_walked(&self, t: usize, [z, y]: [Cell; 2]) -> f64 {
         self.count_from(t, self.guide.of_camera(y), z)
@@ -65,7 +66,7 @@ impl Job<'_> {
         self.counts.connections[usize::from(t > 2)] * of_camera.count_factor(z)
     }
 
-    /// n_j of s = 0, which links nothing.
+    /// Returns n_j of s = 0, which links nothing.
     #[inline]
     pub fn count_hits(&self, t: usize) -> f64 {
         f64::from(self.takes(0, t))
@@ -73,7 +74,7 @@ impl Job<'_> {
 }
 
 impl JoinedPath<'_> {
-    /// n_j of this path, as its weight takes it.
+    /// Returns n_j of this path, as its weight takes it.
     pub(super) fn count(&self, job: &Job<'_>, j: usize) -> f64 {
         match (j, self.len() - j) {
             (0, t) | (_, t @ 0) => job.count_hits(t),

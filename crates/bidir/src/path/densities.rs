@@ -145,7 +145,7 @@ impl JoinedPath<'_> {
     }
 }
 
-/// e, the density with which strategy s = 1 draws x_0 where `x1` is the next vertex.
+/// Returns e, the density with which strategy s = 1 draws x_0 where `x1` is the next vertex.
 #[inline]
 pub(super) fn next_event_density(job: &Job<'_>, x0: &Vertex, x1: &Vertex) -> f32 {
     let Some(index) = x0.light else { return 0.0 };
@@ -159,7 +159,7 @@ pub(super) fn next_event_density(job: &Job<'_>, x0: &Vertex, x1: &Vertex) -> f32
     }
 }
 
-/// The roulette's part of the density of vertex number `index` of a walk (0 is its end of the
+/// Returns the roulette's part of the density of vertex number `index` of a walk (0 is its end of the
 /// path), with the albedo that the walk meets at the vertex before it.
 #[inline]
 pub(super) fn factor(job: &Job<'_>, index: usize, albedo: impl FnOnce() -> f32) -> f32 {
@@ -171,14 +171,14 @@ pub(super) fn factor(job: &Job<'_>, index: usize, albedo: impl FnOnce() -> f32) 
     }
 }
 
-/// The density with which its walk drew the last vertex of a subpath.
+/// Returns the density with which its walk drew the last vertex of a subpath.
 #[inline]
 fn drawn_density(job: &Job<'_>, subpath: &[Vertex]) -> f32 {
     let (last, index) = (&subpath[subpath.len() - 1], subpath.len() - 1);
     last.pdf_fwd * factor(job, index, || subpath[index - 1].albedo_fwd)
 }
 
-/// The densities of a subpath's vertices as stored: by its own walk, and by one from the other end
+/// Returns the densities of a subpath's vertices as stored: by its own walk, and by one from the other end
 /// of a path of `n` vertices. The latter is not valid for the last two.
 pub(super) fn walked_densities(
     job: &Job<'_>,

@@ -72,9 +72,10 @@ impl DiffuseEnd {
         flux: Spectrum::ZERO,
     };
 
-    /// `vertex` of a walk of `mode`, with the sums there, which hold for all of its connections. [None](Self::NONE)
-    /// where it is not diffuse, where nothing is scattered, where the camera sees another shading normal, where rays from it may go through media, or where weights
-    /// are not those of the balance heuristic with one roulette for paths of any length.
+    /// Returns `vertex` of a walk of `mode`, with the sums there, which hold for all of its connections.
+    /// [None](Self::NONE) where it is not diffuse, where nothing is scattered, where the camera sees another shading
+    /// normal, where rays from it may go through media, or where weights are not those of the balance heuristic with
+    /// one roulette for paths of any length.
     pub(super) fn new(job: &Job<'_>, vertex: &Vertex, sums: &EndSums, mode: TransportMode) -> Self {
         let settings = job.settings;
         let is_even = settings.roulette.density_start().unwrap_or(0) == 0;
@@ -114,8 +115,8 @@ impl DiffuseEnd {
         }
     }
 
-    /// The density of the vertex before `vertex`, which this is, drawn from its other side: the albedo is that of any
-    /// direction.
+    /// Returns the density of the vertex before `vertex`, which this is, drawn from its other side: the albedo is that
+    /// of any direction.
     #[inline]
     fn before(&self, vertex: &Vertex) -> f64 {
         f64::from(self.n_s.dot(vertex.wo) * self.density * vertex.to_previous)
@@ -127,14 +128,14 @@ impl DiffuseEnd {
         self.is_diffuse.then_some(self)
     }
 
-    /// Its cell.
+    /// Returns its cell.
     #[inline]
     pub(crate) fn cell(&self) -> Cell {
         self.cell
     }
 
-    /// C and the weight of next-event estimation at this vertex, number `t` of a camera subpath: `x0` was drawn for it
-    /// with density `e`, and `segment` leads there. None: C is zero.
+    /// Returns C and the weight of next-event estimation at this vertex, number `t` of a camera subpath: `x0` was drawn
+    /// for it with density `e`, and `segment` leads there. None: C is zero.
     #[inline]
     pub fn next_event(
         &self,
@@ -155,15 +156,15 @@ impl DiffuseEnd {
         Some((contribution, (n / (n + others)) as f32))
     }
 
-    /// True where the direction `w` from this light vertex towards the camera sees another shading normal.
+    /// Returns true where the direction `w` from this light vertex towards the camera sees another shading normal.
     #[inline]
     pub fn is_turned(&self, w: Vec3) -> bool {
         let cos_g = self.n_g.dot(w);
         cos_g > 0.0 && self.n_s.dot(w) < least_cosine(cos_g)
     }
 
-    /// C and the weight of the light image of `vertex`, which this is, number `s` of a light subpath with these `sums`:
-    /// `segment` leads to the lens point, by whose direction nothing [turns](Self::is_turned). None: C is zero.
+    /// Returns C and the weight of the light image of `vertex`, which this is, number `s` of a light subpath with these
+    /// `sums`: `segment` leads to the lens point, by whose direction nothing [turns](Self::is_turned). None: C is zero.
     #[inline]
     pub fn light_image(
         &self,
@@ -180,8 +181,8 @@ impl DiffuseEnd {
         Some((contribution, (n / (n + others)) as f32))
     }
 
-    /// C of a connection with the `end` of a path, to which `segment` leads, where `cos` is that to n_s at a camera
-    /// vertex, to n_g at a light vertex. None: it is zero.
+    /// Returns C of a connection with the `end` of a path, to which `segment` leads, where `cos` is that to n_s at a
+    /// camera vertex, to n_g at a light vertex. None: it is zero.
     #[inline]
     fn contribution(
         &self,
@@ -199,8 +200,8 @@ impl DiffuseEnd {
         (!contribution.is_black()).then_some(contribution)
     }
 
-    /// The connections of the camera vertex `self` with four light vertices, before visibility, where the strategy of
-    /// each takes so many samples.
+    /// Returns the connections of the camera vertex `self` with four light vertices, before visibility, where the
+    /// strategy of each takes so many samples.
     #[inline]
     pub fn connect(&self, z: [&Self; 4], counts: [f32; 4]) -> DiffuseConnections {
         let (y, lanes, counts) = (self, DiffuseLanes::of(z), Vec4::from(counts));
@@ -237,7 +238,7 @@ pub struct DiffuseConnections {
 }
 
 impl DiffuseConnections {
-    /// C and the weight of number `lane`. None: it has to be found as that of any two vertices.
+    /// Returns C and the weight of number `lane`. None: it has to be found as that of any two vertices.
     #[inline]
     pub fn get(&self, lane: usize) -> Option<(Spectrum, f32)> {
         let is_turned = self.turned >> lane & 1 == 1;
@@ -270,7 +271,7 @@ impl DiffuseLanes {
     }
 }
 
-/// 1 / `x` lane by lane; 0 where that is infinite or no number.
+/// Returns 1 / `x` lane by lane; 0 where that is infinite or no number.
 #[inline]
 fn inverse(x: Vec4) -> Vec4 {
     let inverse = Vec4::ONE / x;

@@ -18,7 +18,7 @@ named!(LightPointChoice {
 });
 
 impl LightPointChoice {
-    /// The fewest light vertices of connections that use a light subpath.
+    /// Returns the fewest light vertices of connections that use a light subpath.
     #[inline]
     pub fn first_walked(self) -> usize {
         match self {

@@ -27,7 +27,7 @@ named!(MisHeuristic {
 });
 
 impl MisHeuristic {
-    /// The share of a strategy with n_j p_j = `density`, relative to another.
+    /// Returns the share of a strategy with n_j p_j = `density`, relative to another.
     #[inline]
     pub(super) fn share(self, density: f64) -> f64 {
         match self {
@@ -37,7 +37,7 @@ impl MisHeuristic {
         }
     }
 
-    /// The share of (1, 1), the light image of a lamp or a sky, where that of (0, 2), which hits it, is
+    /// Returns the share of (1, 1), the light image of a lamp or a sky, where that of (0, 2), which hits it, is
     /// `hit`: a billionth of it where the image has at most twice as many samples there (the cutoff heuristic
     /// \[Veach97, §9.2.3\] for these two).
     ///
@@ -52,7 +52,7 @@ impl MisHeuristic {
         if image > cutoff { image } else { LEFT * image }
     }
 
-    /// The weight of a strategy with density `p`, where one other, with density `q` in the same
+    /// Returns the weight of a strategy with density `p`, where one other, with density `q` in the same
     /// measure, is all that can make the path too: share(p) / (share(p) + share(q)).
     #[inline]
     pub fn weight_of_two(self, p: f32, q: f32) -> f32 {
@@ -60,7 +60,7 @@ impl MisHeuristic {
     }
 }
 
-/// The weight of strategy `s`: share(n_s p_s) / Σ_j share(n_j p_j).
+/// Returns the weight of strategy `s`: share(n_s p_s) / Σ_j share(n_j p_j).
 ///
 /// `counts(j)` is n_j, the expected number of samples that strategy j takes of this path in a pass; 0
 /// switches it off.
@@ -119,7 +119,7 @@ pub(super) fn for_each_other(path: &PathDensities, s: usize, mut visit: impl FnM
     }
 }
 
-/// True where strategy `j` can make the path: it links x_{j-1} with x_j, and a Dirac scattering at
+/// Returns true where strategy `j` can make the path: it links x_{j-1} with x_j, and a Dirac scattering at
 /// either of them forbids that, as does a light that cannot be hit (j = 0), or that next-event
 /// estimation does not find (j = 1). t = 0 is no strategy.
 #[inline]
@@ -174,7 +174,7 @@ mod tests {
             })
     }
 
-    /// p_j by its definition, as a product over the whole path.
+    /// Returns p_j by its definition, as a product over the whole path.
     fn density(path: &PathDensities, j: usize) -> f64 {
         let product: f64 = path
             .vertices

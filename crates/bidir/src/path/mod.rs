@@ -95,7 +95,7 @@ impl Default for PathSettings {
 }
 
 impl PathSettings {
-    /// The most vertices of a path, both ends included.
+    /// Returns the most vertices of a path, both ends included.
     #[inline]
     pub fn max_vertices(&self) -> usize {
         self.max_depth
@@ -141,7 +141,7 @@ impl<'a> Job<'a> {
     }
 }
 
-/// The medium around the camera. One of parallel rays has that of its middle all over.
+/// Returns the medium around the camera. One of parallel rays has that of its middle all over.
 pub fn camera_medium(scene: &Scene, view: &View) -> MediumId {
     if scene.has_media() {
         scene.medium_at(view.camera().pose().origin)

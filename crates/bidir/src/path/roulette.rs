@@ -34,7 +34,7 @@ impl Default for PathRoulette {
 }
 
 impl PathRoulette {
-    /// The probability that a walk goes on at `bounce`. `throughput` is relative to the walk's
+    /// Returns the probability that a walk goes on at `bounce`. `throughput` is relative to the walk's
     /// start and includes the scattering at hand.
     #[inline]
     pub fn survival_prob(self, bounce: usize, albedo: f32, throughput: f32) -> f32 {
@@ -45,7 +45,7 @@ impl PathRoulette {
         }
     }
 
-    /// The part of the survival probability that belongs to the density of the next vertex. The
+    /// Returns the part of the survival probability that belongs to the density of the next vertex. The
     /// albedo is asked for where it matters.
     #[inline]
     pub fn density_factor(self, bounce: usize, albedo: impl FnOnce() -> f32) -> f32 {
@@ -56,7 +56,7 @@ impl PathRoulette {
         }
     }
 
-    /// The first bounce that changes a density; None: none does.
+    /// Returns the first bounce that changes a density; None: none does.
     #[inline]
     pub(super) fn density_start(self) -> Option<usize> {
         match self {

@@ -89,7 +89,7 @@ impl EndSums {
         sum: 0.0,
     };
 
-    /// The share of these strategies, relative to one that links this vertex with `others` more, where h(r) is
+    /// Returns the share of these strategies, relative to one that links this vertex with `others` more, where h(r) is
     /// `end` and h(r') is `before`.
     #[inline]
     fn shares(&self, others: usize, end: f64, before: f64) -> f64 {
@@ -97,8 +97,8 @@ impl EndSums {
         chain(0.0, self.per_drawn * end, chain(links, before, self.slope))
     }
 
-    /// The factor of r in the share of these strategies under the balance heuristic, where the rest of the path is
-    /// `others` vertices and r' is `before`.
+    /// Returns the factor of r in the share of these strategies under the balance heuristic, where the rest of the path
+    /// is `others` vertices and r' is `before`.
     #[inline]
     pub(super) fn per_density(&self, others: usize, before: f64) -> f64 {
         self.shares(others, 1.0, before)
@@ -188,13 +188,13 @@ impl RunningSums {
         }
     }
 
-    /// The sums at the vertex of this number; none where none were added.
+    /// Returns the sums at the vertex of this number; none where none were added.
     #[inline]
     pub fn at(&self, vertex: usize) -> &EndSums {
         self.ends.get(vertex).unwrap_or(&EndSums::NONE)
     }
 
-    /// The vertex of this number for connections with diffuse ones. None: it is no diffuse one of a walk.
+    /// Returns the vertex of this number for connections with diffuse ones. None: it is no diffuse one of a walk.
     #[inline]
     pub fn diffuse(&self, vertex: usize) -> Option<&DiffuseEnd> {
         self.diffuse.get(vertex).and_then(DiffuseEnd::get)
@@ -225,12 +225,12 @@ impl Weights {
         };
     }
 
-    /// True where some weights use sums.
+    /// Returns true where some weights use sums.
     pub fn uses_sums(&self) -> bool {
         self.shortest < usize::MAX
     }
 
-    /// The number that [`JoinedPath::weight`] finds, but for rounding, by sums along the walks that the path's
+    /// Returns the number that [`JoinedPath::weight`] finds, but for rounding, by sums along the walks that the path's
     /// subpaths begin.
     ///
     /// It is the pure form itself where not all strategies take part, and where a subpath is so short that the
@@ -248,7 +248,7 @@ impl Weights {
 }
 
 impl PathSums<'_> {
-    /// s = 0: all others have more light vertices.
+    /// Returns the weight for s = 0: all others have more light vertices.
     fn hit(&self, job: &Job<'_>, path: &JoinedPath<'_>) -> f64 {
         let (y, t) = (path.y(), path.camera.len());
         let share = |ratio| job.settings.mis.share(ratio);
@@ -266,14 +266,14 @@ impl PathSums<'_> {
         1.0 / (1.0 + others)
     }
 
-    /// x_0 of a path of which the rest is one subpath.
+    /// Returns x_0 of a path of which the rest is one subpath.
     #[inline]
     fn start(&self, job: &Job<'_>, path: &JoinedPath<'_>) -> PathStart {
         let next_event = || next_event_density(job, path.z(), path.y());
         PathStart::new(job, path.z(), self.next_event.unwrap_or_else(next_event))
     }
 
-    /// s ≥ 1: the strategies with fewer light vertices, and those with fewer camera vertices.
+    /// Returns the weight for s ≥ 1, by the strategies with fewer light vertices, and those with fewer camera vertices.
     fn connection(&self, job: &Job<'_>, path: &JoinedPath<'_>) -> f64 {
         let (s, t) = (path.light.len(), path.camera.len());
         let share = |ratio| job.settings.mis.share(ratio);
@@ -315,7 +315,7 @@ impl PathStart {
         }
     }
 
-    /// The sums at x_0: s = 0 alone has fewer light vertices, and p_0 / p_1 = b_0 / e.
+    /// Returns the sums at x_0: s = 0 alone has fewer light vertices, and p_0 / p_1 = b_0 / e.
     #[inline]
     fn sums(&self, job: &Job<'_>) -> EndSums {
         EndSums {
@@ -326,14 +326,14 @@ impl PathStart {
         }
     }
 
-    /// The factor of a_1 / b_1 in p_2 / p_1.
+    /// Returns the factor of a_1 / b_1 in p_2 / p_1.
     #[inline]
     pub(super) fn up(&self) -> f64 {
         self.emission / self.next_event
     }
 }
 
-/// `share` + `ratio` · `sum`, where a sum of nothing is nothing whatever the ratio. Never infinite:
+/// Returns `share` + `ratio` · `sum`, where a sum of nothing is nothing whatever the ratio. Never infinite:
 /// a ratio of zero further on must still leave nothing of it.
 #[inline]
 fn chain(share: f64, ratio: f64, sum: f64) -> f64 {
@@ -344,7 +344,7 @@ fn chain(share: f64, ratio: f64, sum: f64) -> f64 {
     }
 }
 
-/// The largest number in place of an infinite one.
+/// Returns the largest number in place of an infinite one.
 #[inline]
 fn finite(number: f64) -> f64 {
     number.min(f64::MAX)

@@ -60,7 +60,7 @@ impl Side {
         }
     }
 
-    /// A direction where there are no normals.
+    /// Makes a direction where there are no normals.
     #[inline]
     fn in_space(world: Vec3) -> Self {
         Self {
@@ -70,7 +70,7 @@ impl Side {
         }
     }
 
-    /// True where both normals see it on the same side.
+    /// Returns true where both normals see it on the same side.
     #[inline]
     fn agrees(&self) -> bool {
         self.local.z * self.cos_g > 0.0
@@ -94,14 +94,14 @@ impl Side {
 }
 
 impl<'a> Turn<'a> {
-    /// The vertex.
+    /// Returns the vertex.
     #[inline]
     pub fn vertex(&self) -> &'a Vertex {
         self.vertex
     }
 
-    /// The value of a surface or of a medium, f with the ratio of [`scatter`](Self::scatter); cameras and lights have
-    /// none.
+    /// Returns the value of a surface or of a medium, f with the ratio of [`scatter`](Self::scatter); cameras and
+    /// lights have none.
     #[inline]
     fn value(&self) -> BsdfValue {
         self.value.get().unwrap_or_else(|| {
@@ -133,7 +133,7 @@ impl<'a> Turn<'a> {
         BsdfValue { f, ..value }
     }
 
-    /// The value of the vertex in the measurement contribution: scattering, emission or
+    /// Returns the value of the vertex in the measurement contribution: scattering, emission or
     /// importance.
     ///
     /// The whole integrand is Π scatter · Π G over **geometric** cosines, so scattering carries
@@ -150,7 +150,7 @@ impl<'a> Turn<'a> {
         }
     }
 
-    /// Density of drawing `wi` by a walk that came along -`wo`. Measure: solid angle, 1/sr; from a
+    /// Returns the density of drawing `wi` by a walk that came along -`wo`. Measure: solid angle, 1/sr; from a
     /// light at infinity area of the disk that its rays cross, 1/m². Without Dirac lobes: it integrates
     /// to the probability of the others.
     #[inline]
@@ -161,8 +161,8 @@ impl<'a> Turn<'a> {
         }
     }
 
-    /// Density of drawing `wo` by a walk that comes along -`wi`, in the measure of [`pdf`](Self::pdf), and the largest
-    /// lane of the albedo that the walk meets. At a camera or a light the density is 0, as paths end there.
+    /// Returns the density of drawing `wo` by a walk that comes along -`wi`, in the measure of [`pdf`](Self::pdf), and
+    /// the largest lane of the albedo that the walk meets. At a camera or a light the density is 0, as paths end there.
     #[inline]
     pub(super) fn reversed(&self) -> (f32, f32) {
         match &self.vertex.scattering {
@@ -175,7 +175,7 @@ impl<'a> Turn<'a> {
     }
 }
 
-/// σ_s p and the densities of a medium, which are p in both directions.
+/// Returns σ_s p and the densities of a medium, which are p in both directions.
 #[inline]
 fn phase_value(medium: &MediumScattering, wo: Vec3, wi: Vec3) -> BsdfValue {
     let p = medium.phase.eval(wo, wi);
@@ -187,7 +187,8 @@ fn phase_value(medium: &MediumScattering, wo: Vec3, wi: Vec3) -> BsdfValue {
     }
 }
 
-/// The albedo of a surface of these shading frame and geometric normal along `w`, seen from the side of that normal.
+/// Returns the albedo of a surface of these shading frame and geometric normal along `w`, seen from the side of that
+/// normal.
 #[inline]
 pub(super) fn albedo_seen(bsdf: &Bsdf, (frame, n_g): (&Frame, Vec3), w: Vec3) -> Spectrum {
     // A diffuse albedo is the same in all directions, so the local one is not needed.
@@ -200,7 +201,7 @@ pub(super) fn albedo_seen(bsdf: &Bsdf, (frame, n_g): (&Frame, Vec3), w: Vec3) ->
 }
 
 impl Vertex {
-    /// The emission or importance of the first vertex of a walk along `w`; zero for other vertices.
+    /// Returns the emission or importance of the first vertex of a walk along `w`; zero for other vertices.
     #[inline]
     pub(super) fn leaving(&self, job: &Job<'_>, w: Vec3) -> Spectrum {
         match (&self.scattering, self.light) {
@@ -210,7 +211,7 @@ impl Vertex {
         }
     }
 
-    /// The density of `w` in walks that begin here, in the measure of [`Turn::pdf`]; zero where none does.
+    /// Returns the density of `w` in walks that begin here, in the measure of [`Turn::pdf`]; zero where none does.
     #[inline]
     pub(super) fn pdf_leaving(&self, job: &Job<'_>, w: Vec3) -> f32 {
         let scene = job.scene;
@@ -224,7 +225,7 @@ impl Vertex {
         }
     }
 
-    /// The albedo for a walk that comes along -`w`; 1 at the ends of paths.
+    /// Returns the albedo for a walk that comes along -`w`; 1 at the ends of paths.
     #[inline]
     pub fn albedo(&self, w: Vec3) -> Spectrum {
         match &self.scattering {
@@ -234,7 +235,7 @@ impl Vertex {
         }
     }
 
-    /// The vertex of a walk of `mode` that came along -`wo` and goes on along `wi`.
+    /// Returns the vertex of a walk of `mode` that came along -`wo` and goes on along `wi`.
     #[inline]
     pub fn turn(&self, wo: Vec3, wi: Vec3, mode: TransportMode) -> Turn<'_> {
         let side = |w| match self.scattering {
@@ -335,8 +336,8 @@ impl Vertex {
         })
     }
 
-    /// The direction `wi`, drawn from the lobes that are not Dirac, where frames depend on the camera. None: nothing is
-    /// scattered there.
+    /// Returns the direction `wi`, drawn from the lobes that are not Dirac, where frames depend on the camera. None:
+    /// nothing is scattered there.
     #[cold]
     #[inline(never)]
     fn finite_scattered(&self, bsdf: &Bsdf, wi: Vec3, mode: TransportMode) -> Option<Scattered> {
@@ -369,7 +370,7 @@ impl Vertex {
 }
 
 impl Job<'_> {
-    /// The emission of light number `light` from `at` along the unit direction `w`: radiance, intensity or
+    /// Returns the emission of light number `light` from `at` along the unit direction `w`: radiance, intensity or
     /// irradiance, as [`Light::emitted`](crate::light::Light::emitted) says.
     #[inline]
     pub(crate) fn emitted(&self, light: u32, at: &LightPoint, w: Vec3) -> Spectrum {

@@ -22,7 +22,7 @@ pub struct Segment {
 }
 
 impl Segment {
-    /// The segment between two ends.
+    /// Returns the segment between two ends.
     #[inline]
     pub fn between(a: &Locus, b: &Locus) -> Self {
         if b.is_infinite() {
@@ -75,7 +75,7 @@ impl Segment {
     }
 }
 
-/// 1 / `x`; 0 where that is no number.
+/// Returns 1 / `x`; 0 where that is no number.
 #[inline]
 pub(super) fn inverse(x: f32) -> f32 {
     let inverse = 1.0 / x;

@@ -27,7 +27,7 @@ pub(crate) struct Shares {
 }
 
 impl JoinedPath<'_> {
-    /// The shares of the path, by the balance heuristic. `parts` gets those of single connections.
+    /// Returns the shares of the path, by the balance heuristic. `parts` gets those of single connections.
     pub(crate) fn shares(
         &self,
         job: &Job<'_>,
@@ -74,7 +74,7 @@ impl JoinedPath<'_> {
         }
     }
 
-    /// The albedo with which a camera walk goes on at surface number `bounce`.
+    /// Returns the albedo with which a camera walk goes on at surface number `bounce`.
     fn camera_albedo(&self, bounce: usize) -> f32 {
         let (t, c) = (self.camera.len(), bounce + 1);
         match c {

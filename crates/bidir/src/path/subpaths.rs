@@ -50,7 +50,7 @@ impl Subpaths {
         self.walks.clear();
     }
 
-    /// The number of walks.
+    /// Returns the number of walks.
     pub fn count(&self) -> usize {
         self.walks.len()
     }
@@ -85,7 +85,7 @@ impl Subpaths {
         accel::load_ahead(std::slice::from_ref(&self.vertices[i].locus));
     }
 
-    /// The number of vertices of walks, behind which the single points are.
+    /// Returns the number of vertices of walks, behind which the single points are.
     #[inline]
     pub(crate) fn walked(&self) -> usize {
         self.walks.last().map_or(0, |walk| walk.end)

@@ -72,7 +72,7 @@ pub struct Vertex {
 const _: () = assert!(size_of::<Vertex>() == 304);
 
 impl Vertex {
-    /// A vertex without the data of a walk.
+    /// Makes a vertex without the data of a walk.
     fn new(locus: Locus, scattering: Scattering) -> Self {
         Self {
             locus,
@@ -96,7 +96,7 @@ impl Vertex {
         }
     }
 
-    /// A lens point in a medium, or a camera at infinity; `beta` is one over its density.
+    /// Makes a lens point in a medium, or a camera at infinity; `beta` is one over its density.
     pub fn camera(lens: &LensSample, medium: MediumId) -> Self {
         let media = MediumSides::all(medium);
         Self {
@@ -106,7 +106,7 @@ impl Vertex {
         }
     }
 
-    /// A point on light number `light`, which light subpaths draw with density `pdf_fwd`.
+    /// Makes a point on light number `light`, which light subpaths draw with density `pdf_fwd`.
     pub fn light(job: &Job<'_>, light: u32, at: &LightPoint) -> Self {
         let scene = job.scene;
         let prob = job.emission().prob(light as usize);
@@ -114,7 +114,7 @@ impl Vertex {
         Self::on_light(job, light, at, prob * pdf_position)
     }
 
-    /// A point on light number `light`, the density of which is known.
+    /// Makes a point on light number `light`, the density of which is known.
     pub(super) fn on_light(job: &Job<'_>, light: u32, at: &LightPoint, pdf_fwd: f32) -> Self {
         let scene = job.scene;
         let mut locus = at.locus;
@@ -130,7 +130,7 @@ impl Vertex {
         }
     }
 
-    /// A surface point reached along `-wo` with throughput `beta`. The number `u_mix` chooses among
+    /// Makes a surface point reached along `-wo` with throughput `beta`. The number `u_mix` chooses among
     /// mixed materials; others do not ask for it.
     pub fn surface(
         job: &Job<'_>,
@@ -171,7 +171,7 @@ impl Vertex {
         }
     }
 
-    /// A point in a medium reached along `-wo` with throughput `beta`.
+    /// Makes a point in a medium reached along `-wo` with throughput `beta`.
     pub fn medium(
         job: &Job<'_>,
         locus: Locus,
@@ -189,7 +189,7 @@ impl Vertex {
         }
     }
 
-    /// The vertex as a point of the light that it lies on.
+    /// Returns the vertex as a point of the light that it lies on.
     #[inline]
     pub fn light_point(&self) -> LightPoint {
         LightPoint {
@@ -198,7 +198,7 @@ impl Vertex {
         }
     }
 
-    /// Its point and its unit normal: that of the shading frame where there is one.
+    /// Returns its point and its unit normal: that of the shading frame where there is one.
     pub(crate) fn place(&self) -> [Vec3; 2] {
         let n = match &self.scattering {
             Scattering::Surface(_) => self.frame.z,
@@ -207,8 +207,8 @@ impl Vertex {
         [self.locus.point, n]
     }
 
-    /// The vertex as a receiver of light, on a path that goes on along `w`, of any length: towards the light, or
-    /// towards the camera. Both give the same receiver, as both are on one side of an opaque surface.
+    /// Returns the vertex as a receiver of light, on a path that goes on along `w`, of any length: towards the light,
+    /// or towards the camera. Both give the same receiver, as both are on one side of an opaque surface.
     #[inline]
     pub fn receiver(&self, w: Vec3) -> Receiver {
         let facing = match &self.scattering {
@@ -225,7 +225,7 @@ impl Vertex {
         Receiver { point, facing }
     }
 
-    /// True if all scattering is a Dirac distribution, or there is none: nothing can connect here.
+    /// Returns true if all scattering is a Dirac distribution, or there is none: nothing can connect here.
     /// [`went_by_delta`](Self::went_by_delta) is about the walk's own step.
     #[inline]
     pub fn is_delta(&self) -> bool {
@@ -236,13 +236,13 @@ impl Vertex {
         }
     }
 
-    /// True for a point on the lens, or a camera at infinity.
+    /// Returns true for a point on the lens, or a camera at infinity.
     #[inline]
     pub fn is_camera(&self) -> bool {
         matches!(self.scattering, Scattering::Camera)
     }
 
-    /// True on a light that no ray can hit by chance.
+    /// Returns true on a light that no ray can hit by chance.
     #[inline]
     pub(crate) fn is_on_delta_light(&self, job: &Job<'_>) -> bool {
         self.light

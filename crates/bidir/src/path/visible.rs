@@ -24,20 +24,20 @@ pub(super) const MOST_LEAST: f32 = 0.15;
 /// The greatest part of o·N that κ is.
 pub(super) const LEAST_PART: f32 = 0.75;
 
-/// The least cosine between o and S', or between the mirrored direction and N, where o·N is `cos`.
+/// Returns the least cosine between o and S', or between the mirrored direction and N, where o·N is `cos`.
 #[inline]
 pub(super) fn least_cosine(cos: f32) -> f32 {
     (LEAST_PART * cos).min(MOST_LEAST)
 }
 
-/// κ_d: the least cosine between o and S' of a diffuse layer under facets of this gloss.
+/// Returns κ_d: the least cosine between o and S' of a diffuse layer under facets of this gloss.
 #[inline]
 fn least_diffuse_cosine(cos: f32, gloss: f32) -> f32 {
     let least = least_cosine(cos);
     least + 0.5 * gloss * (cos - least)
 }
 
-/// S' of a layer with `lobes` for the unit direction `o`, on the side of `n_s`; o·N > 0. None: it is `n_s`.
+/// Returns S' of a layer with `lobes` for the unit direction `o`, on the side of `n_s`; o·N > 0. None: it is `n_s`.
 fn turned(n_s: Vec3, n_g: Vec3, o: Vec3, lobes: Lobes) -> Option<Vec3> {
     let side = 1f32.copysign(n_g.dot(o));
     let (n_s, n_g) = (n_s * side, n_g * side);
@@ -75,7 +75,7 @@ pub(super) struct Frames {
 }
 
 impl Frames {
-    /// A direction in each frame.
+    /// Returns a direction in each frame.
     fn to_local(self, w: Vec3) -> [Vec3; 2] {
         let base = self.base.to_local(w);
         [base, self.coat.map_or(base, |coat| coat.to_local(w))]
@@ -107,8 +107,8 @@ impl Frames {
     }
 }
 
-/// `w` or its opposite, by the sign of `agreement`: walks from a light that draw a direction which the normals see on
-/// different sides take its opposite. These two parts of the sphere are images of each other.
+/// Returns `w` or its opposite, by the sign of `agreement`: walks from a light that draw a direction which the normals
+/// see on different sides take its opposite. These two parts of the sphere are images of each other.
 pub(super) fn on_side(w: Vec3, agreement: f32) -> Vec3 {
     if agreement < 0.0 { -w } else { w }
 }
@@ -122,8 +122,8 @@ pub(super) enum Drawn {
 }
 
 impl Vertex {
-    /// True if the base scatters between `o`, towards the camera, and any other direction by the frame of the vertex,
-    /// and so does all else.
+    /// Returns true if the base scatters between `o`, towards the camera, and any other direction by the frame of the
+    /// vertex, and so does all else.
     #[inline]
     pub(super) fn is_seen_plainly(&self, bsdf: &Bsdf, o: &Side) -> bool {
         let (along, cos) = (o.local.z * 1f32.copysign(o.cos_g), o.cos_g.abs());
@@ -139,7 +139,7 @@ impl Vertex {
         turned(self.frame.z, self.locus.n_g, o, bsdf.lobes()).is_none()
     }
 
-    /// The frames as they are.
+    /// Returns the frames as they are.
     pub(super) fn frames(&self, bsdf: &Bsdf) -> Frames {
         let coat = bsdf.coat_normal().map(|n| self.frame.to_world(n));
         Frames {
@@ -148,7 +148,7 @@ impl Vertex {
         }
     }
 
-    /// The frames that the direction `o` towards the camera sees. None: those that they are.
+    /// Returns the frames that the direction `o` towards the camera sees. None: those that they are.
     pub(super) fn frames_toward(&self, bsdf: &Bsdf, o: Vec3) -> Option<Frames> {
         let plain = self.frames(bsdf);
         let turn = |frame: &Frame, lobes: Lobes| {
@@ -214,14 +214,14 @@ impl Vertex {
         }
     }
 
-    /// True where a layer sees `w` on the side that the surface is on.
+    /// Returns true where a layer sees `w` on the side that the surface is on.
     pub(super) fn faces(&self, frames: &Frames, w: Vec3) -> bool {
         let cos_g = self.locus.n_g.dot(w);
         frames.to_local(w).iter().any(|local| local.z * cos_g > 0.0)
     }
 
-    /// The value by these frames, where both directions are `locals`, f with the ratio of cosines of each layer that
-    /// sees the light.
+    /// Returns the value by these frames, where both directions are `locals`, f with the ratio of cosines of each layer
+    /// that sees the light.
     fn value_in(
         &self,
         bsdf: &Bsdf,

@@ -223,7 +223,7 @@ impl Walker<'_> {
         Vertex::surface(self.job, hit, -step.direction, step.beta, u_mix)
     }
 
-    /// The escape of a walk from the place `from` past media of this T. None: nothing arrives.
+    /// Returns the escape of a walk from the place `from` past media of this T. None: nothing arrives.
     #[inline(never)]
     fn escape(
         &self,
@@ -302,7 +302,7 @@ fn reach(vertices: &mut Vec<Vertex>, step: &Step, edge: Option<&Edge>) -> Option
     None
 }
 
-/// The largest lane, whatever its sign: a filter may be negative. Never zero, so that throughput
+/// Returns the largest lane, whatever its sign: a filter may be negative. Never zero, so that throughput
 /// relative to it is defined.
 #[inline]
 fn magnitude(beta: Spectrum) -> f32 {

@@ -53,20 +53,20 @@ pub enum Purpose {
 pub struct Dimension(u64);
 
 impl Dimension {
-    /// The number that decides `purpose` at vertex `vertex` of the subpath.
+    /// Returns the number that decides `purpose` at vertex `vertex` of the subpath.
     #[inline]
     pub const fn at(vertex: usize, purpose: Purpose) -> Self {
         Self(((vertex as u64) << 8) | purpose as u64)
     }
 
-    /// The number that decides another purpose at the same vertex.
+    /// Returns the number that decides another purpose at the same vertex.
     #[inline]
     #[must_use]
     pub const fn with_purpose(self, purpose: Purpose) -> Self {
         Self::at((self.0 >> 8) as usize, purpose)
     }
 
-    /// A well-spread key: an odd multiple, so that neighbouring dimensions differ in many bits.
+    /// Returns a well-spread key: an odd multiple, so that neighbouring dimensions differ in many bits.
     #[inline]
     pub(super) const fn key(self) -> u64 {
         self.0.wrapping_add(1).wrapping_mul(0xd1b5_4a32_d192_ed03)

@@ -1,6 +1,6 @@
 //! The hash that all keys of random numbers go through \[Steele14\].
 
-/// A bijection of 64 bits whose output bits each depend on every input bit: the finaliser of
+/// Returns a bijection of 64 bits whose output bits each depend on every input bit: the finaliser of
 /// SplitMix64 \[Steele14\].
 #[inline]
 pub(super) fn mix(x: u64) -> u64 {

@@ -77,12 +77,12 @@ pub struct Sampler {
 }
 
 impl Sampler {
-    /// A sampler; different seeds give unrelated renders.
+    /// Makes a sampler; different seeds give unrelated renders.
     pub fn new(kind: SamplerKind, seed: u64) -> Self {
         Self { kind, seed }
     }
 
-    /// The numbers of point `index` of a stream, which is unrelated to other streams.
+    /// Returns the numbers of point `index` of a stream, which is unrelated to other streams.
     #[inline]
     pub fn stream(&self, domain: Domain, stream: u64, index: u64) -> SampleStream {
         let key = mix(self.key(domain) ^ stream);
@@ -96,7 +96,7 @@ impl Sampler {
         }
     }
 
-    /// The numbers of point `index` of one of many streams that complement each other: the points
+    /// Returns the numbers of point `index` of one of many streams that complement each other: the points
     /// of a member are stratified over the indices, and the points of an index over the members.
     ///
     /// A point is S(index) ⊕ S'(member), digit by digit: either sequence, moved by a digital shift,
@@ -119,7 +119,7 @@ impl Sampler {
     }
 }
 
-/// The low 32 bits of an index in reverse order.
+/// Returns the low 32 bits of an index in reverse order.
 #[inline]
 fn reversed(index: u64) -> u32 {
     (index as u32).reverse_bits()
@@ -152,13 +152,13 @@ impl SampleStream {
         }
     }
 
-    /// The number of `dimension`. Range: `[0, 1)`.
+    /// Returns the number of `dimension`. Range: `[0, 1)`.
     #[inline]
     pub fn get_1d(&self, dimension: Dimension) -> f32 {
         unit(self.get_bits(dimension))
     }
 
-    /// The number of `dimension` in units of 2⁻³², of which [`get_1d`](Self::get_1d) has the upper 24 bits.
+    /// Returns the number of `dimension` in units of 2⁻³², of which [`get_1d`](Self::get_1d) has the upper 24 bits.
     #[inline]
     pub fn get_bits(&self, dimension: Dimension) -> u32 {
         let key = mix(self.key ^ dimension.key());
@@ -169,7 +169,7 @@ impl SampleStream {
         }
     }
 
-    /// The number of `dimension` for one of many things that have no order, each with a key of its own.
+    /// Returns the number of `dimension` for one of many things that have no order, each with a key of its own.
     /// The numbers of different things are unrelated. Range: `[0, 1)`.
     #[inline]
     pub fn get_for(&self, dimension: Dimension, key: u64) -> f32 {
@@ -185,7 +185,7 @@ impl SampleStream {
         unit(mix(of_sample ^ key) as u32)
     }
 
-    /// The pair of numbers of `dimension`. Range: `[0, 1)²`.
+    /// Returns the pair of numbers of `dimension`. Range: `[0, 1)²`.
     #[inline]
     pub fn get_2d(&self, dimension: Dimension) -> Vec2 {
         let key = mix(self.key ^ dimension.key());
@@ -201,7 +201,7 @@ impl SampleStream {
     }
 }
 
-/// The upper 24 bits as a number of `[0, 1)`: exact in `f32`, never rounded up to 1.
+/// Returns the upper 24 bits as a number of `[0, 1)`: exact in `f32`, never rounded up to 1.
 #[inline]
 fn unit(bits: u32) -> f32 {
     (bits >> 8) as f32 * (1.0 / 16_777_216.0)

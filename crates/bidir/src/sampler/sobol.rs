@@ -15,7 +15,7 @@ pub(super) struct Digits {
 }
 
 impl Digits {
-    /// The point of the sequence that `key` shuffles and scrambles. `reversed_index` is its number with
+    /// Returns the point of the sequence that `key` shuffles and scrambles. `reversed_index` is its number with
     /// the bits in reverse order.
     #[inline]
     pub(super) fn new(reversed_index: u32, key: u64) -> Self {
@@ -25,7 +25,7 @@ impl Digits {
         }
     }
 
-    /// The point moved, digit by digit, by one of another sequence, whose number in reverse order is `other`.
+    /// Returns the point moved, digit by digit, by one of another sequence, whose number in reverse order is `other`.
     #[inline]
     pub(super) fn moved(reversed_index: u32, other: u32, key: u64) -> Self {
         // The sum is as uniform as one of the two.
@@ -37,13 +37,13 @@ impl Digits {
         }
     }
 
-    /// The first coordinate as a fraction of 2³².
+    /// Returns the first coordinate as a fraction of 2³².
     #[inline]
     pub(super) fn x(self) -> u32 {
         self.scrambled_x().reverse_bits()
     }
 
-    /// Both coordinates as fractions of 2³².
+    /// Returns both coordinates as fractions of 2³².
     #[inline]
     pub(super) fn xy(self) -> [u32; 2] {
         let seed = (self.key >> 32) as u32 ^ 0x27d4_eb2f;
@@ -59,26 +59,26 @@ impl Digits {
     }
 }
 
-/// A number by its lower and its upper half: the halves of its reversal are theirs, exchanged.
+/// Returns a number by its lower and its upper half: the halves of its reversal are theirs, exchanged.
 #[inline]
 fn pair(lower: u32, upper: u32) -> u64 {
     u64::from(upper) << 32 | u64::from(lower)
 }
 
-/// The lower and the upper half.
+/// Returns the lower and the upper half.
 #[inline]
 fn halves(x: u64) -> [u32; 2] {
     [x as u32, (x >> 32) as u32]
 }
 
-/// The reversed index after a nested uniform scramble: aligned ranges of the sequence change places.
+/// Returns the reversed index after a nested uniform scramble: aligned ranges of the sequence change places.
 #[inline]
 fn shuffled(reversed_index: u32, key: u64) -> u32 {
     let seed = (key as u32).rotate_left(16) ^ (key >> 32) as u32;
     scramble(reversed_index, seed)
 }
 
-/// The products of Pascal's matrix modulo 2 with the bits of both halves of `x`.
+/// Returns the products of Pascal's matrix modulo 2 with the bits of both halves of `x`.
 ///
 /// Bit i of a result is the parity of the bits j of its half with C(j, i) odd, which by Lucas' theorem
 /// are those whose position j contains all the binary digits of i. That is a sum over supersets,
@@ -92,7 +92,7 @@ fn pascal(mut x: u64) -> u64 {
     x ^ ((x >> 16) & 0x0000_ffff_0000_ffff)
 }
 
-/// A permutation in which bit i of the result depends on bits 0..=i only: on reversed bits, a
+/// Returns a permutation in which bit i of the result depends on bits 0..=i only: on reversed bits, a
 /// nested uniform scramble \[Laine11\]. The multipliers are even, so no bit reaches itself.
 #[inline]
 fn scramble(x: u32, seed: u32) -> u32 {
@@ -107,7 +107,7 @@ fn scramble(x: u32, seed: u32) -> u32 {
 mod tests {
     use super::*;
 
-    /// The second coordinate by its direction numbers, v_k = v_{k-1} ⊕ (v_{k-1} >> 1).
+    /// Returns the second coordinate by its direction numbers, v_k = v_{k-1} ⊕ (v_{k-1} >> 1).
     fn second_by_definition(index: u32) -> u32 {
         let (mut y, mut direction) = (0, 1u32 << 31);
         for k in 0..32 {

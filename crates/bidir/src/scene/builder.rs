@@ -89,7 +89,7 @@ pub enum SceneError {
 }
 
 impl SceneError {
-    /// The shape at fault, in the order of addition.
+    /// Returns the shape at fault, in the order of addition.
     pub fn shape(&self) -> Option<usize> {
         match self {
             Self::VertexIndex { shape, .. }
@@ -124,7 +124,7 @@ pub struct SceneBuilder {
 }
 
 impl SceneBuilder {
-    /// An empty scene.
+    /// Makes an empty scene.
     pub fn new() -> Self {
         Self::default()
     }
@@ -322,7 +322,7 @@ impl SceneBuilder {
         self
     }
 
-    /// The index of the group that a light is added to.
+    /// Returns the index of the group that a light is added to.
     fn group_of(&mut self, light: &Light) -> u32 {
         let name = match &self.group {
             Some(name) => name,
@@ -345,7 +345,7 @@ impl SceneBuilder {
         self.lights.len() as u32 - 1
     }
 
-    /// The number of the next light.
+    /// Returns the number of the next light.
     pub fn next_light(&self) -> u32 {
         self.lights.len() as u32
     }
@@ -425,7 +425,7 @@ impl SceneBuilder {
 }
 
 impl SceneBuilder {
-    /// The volumes with what they enclose, if any touches another. Forgets them where none does.
+    /// Returns the volumes with what they enclose, if any touches another. Forgets them where none does.
     fn nested_volumes(&mut self) -> Vec<Enclosed> {
         let boxes = nesting::boxes(&self.shapes, &self.surfaces, &self.objects);
         if !nesting::keep_touching(&mut self.surfaces, boxes.clone()) {
@@ -452,7 +452,7 @@ impl SceneBuilder {
     }
 }
 
-/// The media on the sides of a light: those of its shape, or the one that some point of it lies in.
+/// Returns the media on the sides of a light: those of its shape, or the one that some point of it lies in.
 fn media_of(scene: &Scene, light: &Light) -> MediumSides {
     let at = match light {
         Light::Area(light) => {
@@ -475,7 +475,7 @@ fn media_of(scene: &Scene, light: &Light) -> MediumSides {
     MediumSides::all(scene.medium_at(at))
 }
 
-/// A sphere around all surfaces, bounded media, and lights in space, with a little room.
+/// Returns a sphere around all surfaces, bounded media, and lights in space, with a little room.
 fn bounding_sphere(bvh: &accel::Bvh, lights: &[Light], media: &[Medium]) -> (Vec3, f32) {
     let boxes = media.iter().filter_map(Medium::bounds);
     let bounds = boxes.fold(bvh.bounds(), accel::Aabb::union);

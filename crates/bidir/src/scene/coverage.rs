@@ -27,7 +27,7 @@ pub struct Chances<'a> {
 }
 
 impl<'a> Chances<'a> {
-    /// The chances of the ray that looks for vertex number `vertex` of a subpath.
+    /// Returns the chances of the ray that looks for vertex number `vertex` of a subpath.
     #[inline]
     pub fn new(stream: &'a SampleStream, vertex: usize) -> Self {
         Self {
@@ -43,14 +43,14 @@ impl<'a> Chances<'a> {
         Self { stop, ..self }
     }
 
-    /// The numbers that decide by which lane of light, and how far, the ray goes through media.
+    /// Returns the numbers that decide by which lane of light, and how far, the ray goes through media.
     #[inline]
     pub(super) fn flight(&self) -> [f32; 2] {
         let dimension = self.dimension.with_purpose(Purpose::Flight);
         self.stream.get_2d(dimension).to_array()
     }
 
-    /// The number that decides about `hit`. A ray may meet a primitive twice, and decides twice.
+    /// Returns the number that decides about `hit`. A ray may meet a primitive twice, and decides twice.
     #[inline]
     fn draw(&self, hit: &Hit) -> f32 {
         let surface = u64::from(hit.instance) << 32 | u64::from(hit.primitive);
@@ -61,7 +61,7 @@ impl<'a> Chances<'a> {
 }
 
 impl Scene {
-    /// α where a surface is hit: 1 where it is opaque, or where a texture is no number.
+    /// Returns α where a surface is hit: 1 where it is opaque, or where a texture is no number.
     #[inline]
     pub(super) fn coverage(&self, ray: &accel::Ray, hit: &Hit) -> f32 {
         let (_, primitive) = self.resolve(hit);
@@ -81,8 +81,8 @@ impl Scene {
         clamped_coverage(texture.eval(&at))
     }
 
-    /// The nearest surface that a ray of a walk does not pass. Calls `cross` for those that it passes, some behind
-    /// that surface perhaps among them.
+    /// Returns the nearest surface that a ray of a walk does not pass. Calls `cross` for those that it passes, some
+    /// behind that surface perhaps among them.
     #[inline]
     pub(super) fn closest(
         &self,
@@ -106,16 +106,16 @@ impl Scene {
         })
     }
 
-    /// True where a surface is there for a ray of a walk.
+    /// Returns true where a surface is there for a ray of a walk.
     #[inline]
     pub(super) fn stops(&self, ray: &accel::Ray, hit: &Hit, chances: Chances<'_>) -> bool {
         let alpha = self.coverage(ray, hit);
         alpha >= 1.0 || alpha > 0.0 && chances.draw(hit) < alpha
     }
 
-    /// Π (1 - α) over everything that a shadow ray meets, but for volumes within each other. Calls `cross` for surfaces
-    /// that it passes, all of them where anything arrives. Any number where nobody waits for it, because `stop` was
-    /// asked for.
+    /// Returns Π (1 - α) over everything that a shadow ray meets, but for volumes within each other. Calls `cross` for
+    /// surfaces that it passes, all of them where anything arrives. Any number where nobody waits for it, because
+    /// `stop` was asked for.
     #[inline]
     pub(super) fn visible_part(
         &self,
@@ -158,7 +158,7 @@ impl Factors {
         self.0.push(factor);
     }
 
-    /// The product in ascending order, rounded once.
+    /// Returns the product in ascending order, rounded once.
     fn product(mut self) -> f32 {
         self.0.sort_unstable_by(f32::total_cmp);
         let product: f64 = self.0.iter().map(|&factor| f64::from(factor)).product();

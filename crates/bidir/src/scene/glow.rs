@@ -30,7 +30,7 @@ impl Surroundings<'_> {
         }
     }
 
-    /// A box around the shapes that the medium ends at. None: there are none.
+    /// Returns a box around the shapes that the medium ends at. None: there are none.
     fn bounds_of(&self, id: MediumId) -> Option<Aabb> {
         let ends_at = |&shape: &usize| {
             let sides = self.surfaces[shape].sides;
@@ -48,7 +48,7 @@ impl Surroundings<'_> {
     }
 }
 
-/// The light that each medium is, by index, if it glows.
+/// Returns the light that each medium is, by index, if it glows.
 pub(super) fn lights_of(media: &[Medium], lights: &[Light]) -> Vec<Option<u32>> {
     let mut glows = vec![None; media.len()];
     for (number, light) in lights.iter().enumerate() {
@@ -73,13 +73,13 @@ impl Scene {
         }
     }
 
-    /// The light that a medium is, by index, if it glows.
+    /// Returns the light that a medium is, by index, if it glows.
     #[inline]
     pub(crate) fn glow(&self, id: MediumId) -> Option<u32> {
         self.glows[id.index()?]
     }
 
-    /// True where a light is there at one of its points: a medium that glows ends where another begins.
+    /// Returns true where a light is there at one of its points: a medium that glows ends where another begins.
     #[inline]
     pub(crate) fn is_lit(&self, light: &Light, at: &LightPoint) -> bool {
         match light {

@@ -138,13 +138,13 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// The space of its shapes and lights, and of the camera that sees them.
+    /// Returns the space of its shapes and lights, and of the camera that sees them.
     #[inline]
     pub fn space(&self) -> &RenderSpace {
         &self.space
     }
 
-    /// All lights.
+    /// Returns all lights.
     #[inline]
     pub fn lights(&self) -> &[Light] {
         &self.lights
@@ -156,37 +156,37 @@ impl Scene {
         &self.lights[i as usize]
     }
 
-    /// The names of the groups of lights, in the order in which lights were added. Every light is
+    /// Returns the names of the groups of lights, in the order in which lights were added. Every light is
     /// in one.
     pub fn group_names(&self) -> &[String] {
         &self.group_names
     }
 
-    /// The group of light number `i`, by index into [`Self::group_names`].
+    /// Returns the group of light number `i`, by index into [`Self::group_names`].
     #[inline]
     pub fn light_group(&self, i: u32) -> u32 {
         self.light_groups[i as usize]
     }
 
-    /// The choice of a light by power.
+    /// Returns the choice of a light by power.
     #[inline]
     pub fn light_choice(&self) -> &LightChoice {
         &self.light_choice
     }
 
-    /// The choice of an emitter for a receiver.
+    /// Returns the choice of an emitter for a receiver.
     #[inline]
     pub fn light_tree(&self) -> &LightTree {
         &self.light_tree
     }
 
-    /// The lights that escaping rays hit, by index.
+    /// Returns the lights that escaping rays hit, by index.
     #[inline]
     pub fn environment(&self) -> &[u32] {
         &self.environment
     }
 
-    /// The parts of the scene that lights need.
+    /// Returns the parts of the scene that lights need.
     #[inline]
     pub fn light_context(&self) -> LightContext<'_> {
         LightContext {
@@ -197,13 +197,13 @@ impl Scene {
         }
     }
 
-    /// All materials.
+    /// Returns all materials.
     #[inline]
     pub fn materials(&self) -> &[Material] {
         &self.materials
     }
 
-    /// The materials of surfaces that rays can meet, once for each surface.
+    /// Returns the materials of surfaces that rays can meet, once for each surface.
     pub fn materials_of_surfaces(&self) -> impl Iterator<Item = &Material> {
         let met =
             |surface: &&Surface| !matches!(surface.presence, Presence::Absent | Presence::Boundary);
@@ -222,17 +222,17 @@ impl Scene {
         &self.shapes
     }
 
-    /// How many objects stand in the world.
+    /// Returns how many objects stand in the world.
     pub fn instance_count(&self) -> usize {
         self.instances.len()
     }
 
-    /// The primitives that are kept: those of an object count once.
+    /// Returns the primitives that are kept: those of an object count once.
     pub fn unique_primitives(&self) -> u64 {
         self.primitives.len() as u64
     }
 
-    /// The primitives that rays meet: those of an object count at every place.
+    /// Returns the primitives that rays meet: those of an object count at every place.
     pub fn placed_primitives(&self) -> u64 {
         let of_instance = |i| {
             let (object, _) = self.bvh.instance(i);
@@ -242,12 +242,12 @@ impl Scene {
         self.bvh.primitive_count() as u64 + of_instances
     }
 
-    /// The acceleration structure.
+    /// Returns the acceleration structure.
     pub fn bvh(&self) -> &accel::Bvh {
         &self.bvh
     }
 
-    /// The nearest surface along a ray of a walk, which passes some by `chances`. None: it escapes.
+    /// Returns the nearest surface along a ray of a walk, which passes some by `chances`. None: it escapes.
     #[inline]
     pub fn intersect(
         &self,
@@ -260,7 +260,7 @@ impl Scene {
         Some(self.surface_hit(&ray, &hit))
     }
 
-    /// The surface that a ray hits.
+    /// Returns the surface that a ray hits.
     #[inline]
     fn surface_hit(&self, ray: &accel::Ray, hit: &accel::Hit) -> SurfaceHit {
         let (placed, primitive) = self.resolve(hit);
@@ -284,7 +284,7 @@ impl Scene {
         }
     }
 
-    /// The point of a surface where a ray meets it.
+    /// Returns the point of a surface where a ray meets it.
     #[inline]
     fn surface_at(&self, ray: &accel::Ray, hit: &accel::Hit) -> SurfacePoint {
         let (placed, primitive) = self.resolve(hit);
@@ -309,14 +309,14 @@ impl Scene {
         }
     }
 
-    /// The media on the sides of light number `i`.
+    /// Returns the media on the sides of light number `i`.
     #[inline]
     pub(crate) fn light_media(&self, i: u32) -> MediumSides {
         let media = self.light_media.get(i as usize);
         media.copied().unwrap_or_default()
     }
 
-    /// The target of a hit: the instance, if it is of one, and the part of a shape.
+    /// Returns the target of a hit: the instance, if it is of one, and the part of a shape.
     #[inline]
     fn resolve(&self, hit: &accel::Hit) -> (Option<&Placed>, PrimitiveRef) {
         let placed = hit.instance.checked_sub(1);

@@ -122,26 +122,26 @@ impl Around {
         }
     }
 
-    /// The volume that fills the point.
+    /// Returns the volume that fills the point.
     fn filling(&self) -> Option<Filling> {
         let mut around = self.0.iter().rev();
         around.find_map(|(filling, &count)| (count > 0).then_some(*filling))
     }
 }
 
-/// The change of the winding number where a ray crosses.
+/// Returns the change of the winding number where a ray crosses.
 fn step(crossing: &Crossing) -> i32 {
     if crossing.leaves { -1 } else { 1 }
 }
 
-/// True where no surface parts what fills two sides.
+/// Returns true where no surface parts what fills two sides.
 fn are_one(a: Option<Filling>, b: Option<Filling>) -> bool {
     let substance = |of: Filling| (of.material, of.volume.medium, of.volume.index.to_bits());
     a == b || a.map(substance) == b.map(substance)
 }
 
 impl Interface {
-    /// The media on the sides of the surface with normal `n_g`, where a ray along `direction` comes to it.
+    /// Returns the media on the sides of the surface with normal `n_g`, where a ray along `direction` comes to it.
     pub(super) fn sides(&self, n_g: Vec3, direction: Vec3) -> MediumSides {
         let [before, behind] = self.media;
         if n_g.dot(direction) > 0.0 {
@@ -159,8 +159,8 @@ impl Interface {
 }
 
 impl Scene {
-    /// The nearest surface that a ray of a walk does not pass, and the boundaries on the way, in a scene where volumes
-    /// lie within each other.
+    /// Returns the nearest surface that a ray of a walk does not pass, and the boundaries on the way, in a scene where
+    /// volumes lie within each other.
     pub(super) fn closest_of_nested(
         &self,
         ray: &Ray,
@@ -193,7 +193,7 @@ impl Scene {
         )
     }
 
-    /// Π (1 - α) of the surfaces of volumes that a shadow ray meets. Settles the boundaries on its way.
+    /// Returns Π (1 - α) of the surfaces of volumes that a shadow ray meets. Settles the boundaries on its way.
     pub(super) fn visible_past_nested(
         &self,
         ray: &Ray,
@@ -282,7 +282,7 @@ impl Scene {
         events
     }
 
-    /// The crossing of a volume's surface. Its media are those around the volume where nothing else is.
+    /// Returns the crossing of a volume's surface. Its media are those around the volume where nothing else is.
     fn event(&self, ray: &Ray, hit: &Hit) -> Option<Event> {
         let filling = self.filling(hit)?;
         let (placed, primitive) = self.resolve(hit);
@@ -303,7 +303,7 @@ impl Scene {
         })
     }
 
-    /// The normal of the side of a closed surface that is not within. Shading normals have no say.
+    /// Returns the normal of the side of a closed surface that is not within. Shading normals have no say.
     fn front(
         &self,
         ray: &Ray,
@@ -320,7 +320,7 @@ impl Scene {
         }
     }
 
-    /// The volume whose surface is hit. None: it is of none, or of one that touches no other.
+    /// Returns the volume whose surface is hit. None: it is of none, or of one that touches no other.
     #[inline]
     fn filling(&self, hit: &Hit) -> Option<Filling> {
         let (placed, primitive) = self.resolve(hit);
@@ -341,19 +341,19 @@ impl Scene {
         })
     }
 
-    /// True where the surface of such a volume is hit.
+    /// Returns true where the surface of such a volume is hit.
     #[inline]
     pub(super) fn is_of_nested(&self, hit: &Hit) -> bool {
         self.nests() && self.filling(hit).is_some()
     }
 
-    /// True where volumes lie within each other, or may.
+    /// Returns true where volumes lie within each other, or may.
     #[inline]
     pub(super) fn nests(&self) -> bool {
         !self.volumes.is_empty()
     }
 
-    /// The boundaries that a ray crosses, with all surfaces of volumes.
+    /// Returns the boundaries that a ray crosses, with all surfaces of volumes.
     pub(super) fn boundaries(&self, ray: &Ray) -> Crossings {
         let mut crossings = Crossings::new();
         let _ = self.bvh.each_hit(ray, |hit| {
@@ -368,7 +368,7 @@ impl Scene {
         crossings
     }
 
-    /// The media on the sides of a volume's surface at a point of it. None: it is not among others.
+    /// Returns the media on the sides of a volume's surface at a point of it. None: it is not among others.
     pub(super) fn sides_of_nested(&self, volume: Option<u32>, point: Vec3) -> Option<MediumSides> {
         let inside = self.volumes.get(volume? as usize)?.volume.medium;
         let outside = self.medium_at(point);
@@ -405,7 +405,7 @@ pub(super) fn reach(of: &Aabb) -> f32 {
     of.min.abs().max(of.max.abs()).max_element()
 }
 
-/// The boxes of volumes' shapes in the world, those of objects at each place.
+/// Returns the boxes of volumes' shapes in the world, those of objects at each place.
 pub(super) fn boxes(shapes: &[Shape], surfaces: &[Surface], objects: &Objects) -> Vec<(u32, Aabb)> {
     let bounds_of = |shape: usize| {
         let volume = surfaces[shape].volume?;
@@ -446,7 +446,7 @@ pub(super) fn keep_touching(surfaces: &mut [Surface], mut boxes: Vec<(u32, Aabb)
     !touching.is_empty()
 }
 
-/// The volumes of boxes that touch another, of boxes by their smallest x.
+/// Returns the volumes of boxes that touch another, of boxes by their smallest x.
 fn touching(boxes: &[(u32, Aabb)]) -> BTreeSet<u32> {
     /// The most boxes that each is compared with; where there are more, all count as touching.
     const MOST: usize = 256;

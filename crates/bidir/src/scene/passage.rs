@@ -46,7 +46,7 @@ pub struct Transmittance {
 }
 
 impl Transmittance {
-    /// True where no lane is so small that a guess raises it.
+    /// Returns true where no lane is so small that a guess raises it.
     #[inline]
     fn is_guessable(&self) -> bool {
         self.drawn.min_lane().min(self.all.min_lane()) >= LEAST_GUESS
@@ -106,8 +106,8 @@ struct Span {
 }
 
 impl Edge {
-    /// T / p, with p the factor of media in the density of b: the factor in the throughput of a walk from a that drew
-    /// the distance, and that met no surface on its way. Zero where it cannot come there.
+    /// Returns T / p, with p the factor of media in the density of b: the factor in the throughput of a walk from a
+    /// that drew the distance, and that met no surface on its way. Zero where it cannot come there.
     #[inline]
     pub(crate) fn walked(&self) -> Spectrum {
         if self.to_b > 0.0 {
@@ -143,7 +143,7 @@ impl Depth {
         }
     }
 
-    /// The smaller of both, lane by lane.
+    /// Returns the smaller of both, lane by lane.
     fn min(self, other: Self) -> Self {
         Self {
             all: self.all.zip(other.all, f32::min),
@@ -151,7 +151,7 @@ impl Depth {
         }
     }
 
-    /// exp(-τ).
+    /// Returns exp(-τ).
     #[inline]
     fn transmittance(self) -> Transmittance {
         if self.all.is_black() {
@@ -172,8 +172,8 @@ impl Depth {
 }
 
 impl<'a> Passage<'a> {
-    /// The passage of a ray that begins in `start` and ends at `end`. Sorts the crossings, and leaves out those behind
-    /// its end.
+    /// Returns the passage of a ray that begins in `start` and ends at `end`. Sorts the crossings, and leaves out those
+    /// behind its end.
     #[inline]
     pub(super) fn new(start: MediumId, crossings: &'a mut Crossings, end: f32) -> Self {
         if !crossings.is_empty() {
@@ -195,7 +195,7 @@ impl<'a> Passage<'a> {
         crossings.sort_unstable_by(order);
     }
 
-    /// The parts up to `end`.
+    /// Returns the parts up to `end`.
     fn spans(&self, end: f32) -> impl Iterator<Item = Span> + '_ {
         let begins = self.crossings.iter().map(|crossing| crossing.t);
         let ends = begins.clone().chain([end]);
@@ -207,21 +207,21 @@ impl<'a> Passage<'a> {
             .map(|((begin, end), medium)| Span { medium, begin, end })
     }
 
-    /// The medium at the start, as the first boundary has it.
+    /// Returns the medium at the start, as the first boundary has it.
     pub(super) fn first(&self) -> MediumId {
         self.crossings
             .first()
             .map_or(self.start, |first| first.from)
     }
 
-    /// The medium at the end.
+    /// Returns the medium at the end.
     fn last(&self) -> MediumId {
         self.crossings.last().map_or(self.start, |last| last.into)
     }
 }
 
 impl Span {
-    /// The span as a part of `ray`, whose unit has the length `unit`.
+    /// Returns the span as a part of `ray`, whose unit has the length `unit`.
     fn of(self, ray: &Ray, unit: f32) -> Stretch<'_> {
         let range = [self.begin, self.end];
         Stretch { ray, range, unit }
@@ -238,54 +238,55 @@ fn draw(chances: Chances<'_>, lanes: Lanes) -> Drawn {
 }
 
 impl Scene {
-    /// True where rays may go through media.
+    /// Returns true where rays may go through media.
     #[inline]
     pub fn has_media(&self) -> bool {
         !self.media.is_empty() || self.nests()
     }
 
-    /// All media.
+    /// Returns all media.
     pub fn media(&self) -> &[Medium] {
         &self.media
     }
 
-    /// The medium around everything.
+    /// Returns the medium around everything.
     pub fn around(&self) -> MediumId {
         self.around
     }
 
-    /// A medium. None: the vacuum.
+    /// Returns a medium. None: the vacuum.
     fn medium(&self, id: MediumId) -> Option<&Medium> {
         id.index().map(|index| &self.media[index])
     }
 
-    /// True where no ray from a place goes through a medium before it meets a surface.
+    /// Returns true where no ray from a place goes through a medium before it meets a surface.
     #[inline]
     pub(crate) fn is_clear_around(&self, place: &Locus) -> bool {
         !self.has_media() || self.is_opaque && place.media == MediumSides::VACUUM
     }
 
-    /// True where it is known, before any ray is traced, that no medium lies between two ends that see each other.
+    /// Returns true where it is known, before any ray is traced, that no medium lies between two ends that see each
+    /// other.
     #[inline]
     pub(crate) fn is_clear(&self, a: &Locus, b: &Locus) -> bool {
         let (start, end) = if a.is_infinite() { (b, a) } else { (a, b) };
         self.is_clear_around(start) && end.kind != LocusKind::Medium
     }
 
-    /// True where the media between ends that see each other are known before any ray is traced: no ray passes a
-    /// boundary, and each medium is the same everywhere.
+    /// Returns true where the media between ends that see each other are known before any ray is traced: no ray passes
+    /// a boundary, and each medium is the same everywhere.
     #[inline]
     pub(crate) fn foresees_media(&self) -> bool {
         self.foresees_media
     }
 
-    /// True where light from infinity arrives through the medium around everything.
+    /// Returns true where light from infinity arrives through the medium around everything.
     pub fn is_open(&self) -> bool {
         let around = self.medium(self.around);
         around.is_none_or(|medium| medium.bounds().is_some())
     }
 
-    /// τ of a stretch in a medium, in the detail asked for.
+    /// Returns τ of a stretch in a medium, in the detail asked for.
     fn depth(
         &self,
         medium: MediumId,
@@ -349,8 +350,8 @@ impl Scene {
         }
     }
 
-    /// The nearest surface that a ray of a walk does not pass; of a volume among others, what is around it. Adds the
-    /// boundaries on the way, some behind it perhaps among them.
+    /// Returns the nearest surface that a ray of a walk does not pass; of a volume among others, what is around it.
+    /// Adds the boundaries on the way, some behind it perhaps among them.
     fn first(
         &self,
         ray: &Ray,
@@ -365,7 +366,7 @@ impl Scene {
         (self.closest(ray, chances, cross), None)
     }
 
-    /// Π (1 - α) over everything that a shadow ray meets. Adds the boundaries that it crosses.
+    /// Returns Π (1 - α) over everything that a shadow ray meets. Adds the boundaries that it crosses.
     pub(super) fn visible(&self, ray: &Ray, stop: Stop<'_>, crossings: &mut Crossings) -> f32 {
         let cross = |hit: &Hit| crossings.extend(self.crossing(ray, hit));
         let visible = self.visible_part(ray, stop, cross);
@@ -376,7 +377,7 @@ impl Scene {
         }
     }
 
-    /// The interaction with medium number `index` at `t` of a ray.
+    /// Returns the interaction with medium number `index` at `t` of a ray.
     fn collide(&self, ray: &Ray, t: f32, index: usize, lanes: Lanes) -> Interaction {
         let point = ray.origin + ray.direction * t;
         let medium = MediumId::new(index).unwrap_or_default();
@@ -384,8 +385,8 @@ impl Scene {
         Interaction::Medium(Locus::in_medium(point, medium), scattering)
     }
 
-    /// The media between two ends, of which at most one is at infinity. None: something opaque is there, nothing
-    /// arrives, or nobody waits for it, because `stop` was asked for.
+    /// Returns the media between two ends, of which at most one is at infinity. None: something opaque is there,
+    /// nothing arrives, or nobody waits for it, because `stop` was asked for.
     #[inline(never)]
     pub fn edge(&self, [a, b]: [&Locus; 2], lanes: Lanes, stop: Stop<'_>) -> Option<Edge> {
         let ray = super::visibility::shadow_ray(a, b);
@@ -402,15 +403,15 @@ impl Scene {
         })
     }
 
-    /// The media between two ends if they see each other, where the scene [foresees](Self::foresees_media) them. None:
-    /// nothing arrives.
+    /// Returns the media between two ends if they see each other, where the scene [foresees](Self::foresees_media)
+    /// them. None: nothing arrives.
     pub(crate) fn foreseen_edge(&self, a: &Locus, b: &Locus, lanes: Lanes) -> Option<Edge> {
         let ray = super::visibility::shadow_ray(a, b);
         let edge = self.edge_across(&ray, &mut Crossings::new(), [a, b], lanes);
         (!edge.transmittance.is_black()).then_some(edge)
     }
 
-    /// The media along `ray` from one end to the other, which crosses these boundaries.
+    /// Returns the media along `ray` from one end to the other, which crosses these boundaries.
     #[inline]
     fn edge_across(
         &self,
@@ -438,8 +439,8 @@ impl Scene {
         }
     }
 
-    /// A guess at the media between two ends from those next to them: the thinner of both, all the way. Something
-    /// always arrives.
+    /// Returns a guess at the media between two ends from those next to them: the thinner of both, all the way.
+    /// Something always arrives.
     #[inline(never)]
     pub(crate) fn guessed_edge(&self, a: &Locus, b: &Locus, lanes: Lanes) -> Edge {
         let ray = super::visibility::shadow_ray(a, b);
@@ -465,7 +466,7 @@ impl Scene {
         self.edge_of(Transmittance { all, drawn }, [a, b], lanes)
     }
 
-    /// The edge of which T is known. Its densities are 0 where nothing arrives.
+    /// Returns the edge of which T is known. Its densities are 0 where nothing arrives.
     #[inline(never)]
     pub(crate) fn edge_of(
         &self,
@@ -491,7 +492,7 @@ impl Scene {
         }
     }
 
-    /// The boundary that a ray crosses at `hit`. None: the surface is none.
+    /// Returns the boundary that a ray crosses at `hit`. None: the surface is none.
     pub(super) fn crossing(&self, ray: &Ray, hit: &Hit) -> Option<Crossing> {
         let sides = self.parted(hit)?;
         let leaves = self.surface_at(ray, hit).n_g.dot(ray.direction) > 0.0;
@@ -504,8 +505,8 @@ impl Scene {
         })
     }
 
-    /// The medium at a point in space: most of some rays say so by the nearest boundary on their way, or else it is the
-    /// one around everything.
+    /// Returns the medium at a point in space: most of some rays say so by the nearest boundary on their way, or else
+    /// it is the one around everything.
     pub fn medium_at(&self, point: Vec3) -> MediumId {
         let is_boundary = |hit: &Hit| self.crosses(hit);
         by_most(|direction| {
@@ -520,7 +521,7 @@ impl Scene {
         })
     }
 
-    /// The medium around everything, where most of some rays from `medium` at a point come to.
+    /// Returns the medium around everything, where most of some rays from `medium` at a point come to.
     pub(super) fn medium_beyond(&self, point: Vec3, medium: MediumId) -> MediumId {
         by_most(|direction| {
             let ray = Ray::new(point, direction);
@@ -532,7 +533,7 @@ impl Scene {
         self.parted(hit).is_some()
     }
 
-    /// The media that the surface at `hit` parts, wherever some of it is there. None: it parts none.
+    /// Returns the media that the surface at `hit` parts, wherever some of it is there. None: it parts none.
     fn parted(&self, hit: &Hit) -> Option<MediumSides> {
         let (_, primitive) = self.resolve(hit);
         let surface = &self.surfaces[primitive.shape as usize];
@@ -541,7 +542,7 @@ impl Scene {
             .filter(|_| surface.presence != Presence::Absent)
     }
 
-    /// A point on shape number `shape`, one of the world, or near it where rays do not meet it.
+    /// Returns a point on shape number `shape`, one of the world, or near it where rays do not meet it.
     pub(super) fn point_on(&self, shape: usize) -> Vec3 {
         let bounds = self.shapes[shape].primitive(0).bounds();
         let (centre, corner) = (bounds.center(), bounds.max + bounds.max - bounds.min);
@@ -555,7 +556,7 @@ impl Scene {
     }
 }
 
-/// The answer of most of three rays, of the second where they differ.
+/// Returns the answer of most of three rays, of the second where they differ.
 fn by_most(answer: impl Fn(Vec3) -> MediumId) -> MediumId {
     /// Far from axes and diagonals, along which people build.
     const RAYS: [Vec3; 3] = [

@@ -30,25 +30,25 @@ impl RenderSpace {
         unit: 1.0,
     };
 
-    /// The map from the world to this space.
+    /// Returns the map from the world to this space.
     pub fn from_world(&self) -> DAffine3 {
         let scale = DVec3::splat(1.0 / self.unit);
         DAffine3::from_scale(scale) * DAffine3::from_translation(-self.origin)
     }
 
-    /// The point `p` of this space in the world.
+    /// Returns the point `p` of this space in the world.
     #[inline]
     pub fn world_point(&self, p: Vec3) -> DVec3 {
         self.origin + self.unit * p.as_dvec3()
     }
 
-    /// A length of this space in the world's unit.
+    /// Returns a length of this space in the world's unit.
     #[inline]
     pub fn world_length(&self, length: f32) -> f32 {
         (self.unit * f64::from(length)) as f32
     }
 
-    /// A radiant intensity of the world in this space: irradiance I / d² stays as it is.
+    /// Returns a radiant intensity of the world in this space: irradiance I / d² stays as it is.
     pub fn intensity(&self, intensity: f32) -> f32 {
         (f64::from(intensity) / (self.unit * self.unit)) as f32
     }

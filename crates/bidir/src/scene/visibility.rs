@@ -18,15 +18,15 @@ pub(crate) struct ShadowRays {
 }
 
 impl Scene {
-    /// How much of the light from one end to the other arrives past surfaces, in `[0, 1]`: 0 where something opaque
-    /// lies between, 1 where nothing does. At most one end is at infinity.
+    /// Returns how much of the light from one end to the other arrives past surfaces, in `[0, 1]`: 0 where something
+    /// opaque lies between, 1 where nothing does. At most one end is at infinity.
     #[inline]
     pub fn transmittance(&self, a: &Locus, b: &Locus) -> f32 {
         self.visible(&shadow_ray(a, b), Stop::NEVER, &mut Crossings::new())
     }
 
-    /// The [transmittance](Self::transmittance) between each of these pairs of ends, in their order: less work for
-    /// each than for one alone. Any numbers once `stop` is asked for.
+    /// Returns the [transmittance](Self::transmittance) between each of these pairs of ends, in their order: less work
+    /// for each than for one alone. Any numbers once `stop` is asked for.
     pub(crate) fn transmittances<'a, 'm>(
         &self,
         ends: impl Iterator<Item = &'a [Locus; 2]>,
@@ -52,7 +52,7 @@ impl Scene {
     }
 }
 
-/// The ray from one end to the other, of which at most one is at infinity.
+/// Returns the ray from one end to the other, of which at most one is at infinity.
 #[inline]
 pub(super) fn shadow_ray(a: &Locus, b: &Locus) -> accel::Ray {
     if a.is_infinite() {

@@ -17,7 +17,7 @@ pub struct Budget {
 }
 
 impl Budget {
-    /// δ with Σ min(1, g_c / δ) = `rays`. None: there are no more candidates than rays, so that all
+    /// Returns δ with Σ min(1, g_c / δ) = `rays`. None: there are no more candidates than rays, so that all
     /// are traced.
     fn threshold(self, candidates: &[Candidate]) -> Option<f64> {
         if candidates.len() <= self.rays as usize {
@@ -49,7 +49,7 @@ impl Budget {
     }
 }
 
-/// min(1, g_c / δ); 1 where there is no δ.
+/// Returns min(1, g_c / δ); 1 where there is no δ.
 #[inline]
 fn prob(candidate: &Candidate, threshold: Option<f64>) -> f64 {
     threshold.map_or(1.0, |delta| (f64::from(candidate.score) / delta).min(1.0))

@@ -25,7 +25,7 @@ pub struct OnePerGroup {
 }
 
 impl OnePerGroup {
-    /// The number of a candidate's group, which is that of its draw, too.
+    /// Returns the number of a candidate's group, which is that of its draw, too.
     #[inline]
     fn number(self, candidate: &Candidate) -> u32 {
         match self.group {
@@ -49,7 +49,7 @@ impl OnePerGroup {
         });
     }
 
-    /// The members of each group, where all are sorted.
+    /// Returns the members of each group, where all are sorted.
     #[inline]
     fn groups<'a>(
         self,
@@ -70,20 +70,20 @@ impl Chosen {
     }
 }
 
-/// Σ g of a group. In f64: scores of one group span ten orders of magnitude.
+/// Returns Σ g of a group. In f64: scores of one group span ten orders of magnitude.
 #[inline]
 fn sum(candidates: &[Candidate], group: &[Chosen]) -> f64 {
     let scores = group.iter().map(|c| f64::from(c.of(candidates).score));
     scores.sum()
 }
 
-/// g_c / Σ g, `sum` being that of the candidate's group.
+/// Returns g_c / Σ g, `sum` being that of the candidate's group.
 #[inline]
 fn prob(candidate: &Candidate, sum: f64) -> f64 {
     f64::from(candidate.score) / sum
 }
 
-/// The member of a group that the number `u` chooses.
+/// Returns the member of a group that the number `u` chooses.
 #[inline]
 fn pick(candidates: &[Candidate], group: &[Chosen], u: f64) -> Chosen {
     let sum = sum(candidates, group);

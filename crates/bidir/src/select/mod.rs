@@ -51,7 +51,7 @@ impl Candidate {
         estimate.max(f32::MIN_POSITIVE)
     }
 
-    /// The ends of its shadow ray, where `light` and `camera` have its vertices.
+    /// Returns the ends of its shadow ray, where `light` and `camera` have its vertices.
     #[inline]
     pub(crate) fn ends(&self, light: &Subpaths, camera: &Subpaths) -> [Locus; 2] {
         let [z, y] = self.vertices.map(|vertex| vertex as usize);
@@ -88,7 +88,7 @@ pub trait Selector: Sync + Send {
     /// Each is appended at most once.
     fn select(&self, candidates: &[Candidate], draws: Draws<'_>, chosen: &mut Vec<Chosen>);
 
-    /// π of every one of `candidates`, chosen or not, for those who look into a selection.
+    /// Returns π of every one of `candidates`, chosen or not, for those who look into a selection.
     fn probabilities(&self, candidates: &[Candidate]) -> Vec<f64>;
 }
 
@@ -116,7 +116,7 @@ impl ShadowRays {
     /// The threshold of `ray-roulette` where none is given.
     pub const DEFAULT_ROULETTE: f32 = 0.1;
 
-    /// The rule, given the image's mean luminance where [`needs_mean`](Self::needs_mean).
+    /// Returns the rule, given the image's mean luminance where [`needs_mean`](Self::needs_mean).
     pub fn selector(self, mean_luminance: f32) -> Box<dyn Selector> {
         match self {
             Self::All => Box::new(All),
@@ -132,7 +132,7 @@ impl ShadowRays {
         }
     }
 
-    /// The score from which on `ray-roulette` is sure to trace a candidate, given the image's mean
+    /// Returns the score from which on `ray-roulette` is sure to trace a candidate, given the image's mean
     /// luminance. None: another rule.
     pub fn threshold(self, mean_luminance: f32) -> Option<f32> {
         match self {
@@ -141,7 +141,7 @@ impl ShadowRays {
         }
     }
 
-    /// True where the rule needs the mean luminance of a training render.
+    /// Returns true where the rule needs the mean luminance of a training render.
     pub fn needs_mean(self) -> bool {
         matches!(self, Self::RayRoulette(_))
     }

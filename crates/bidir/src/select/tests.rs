@@ -59,7 +59,7 @@ const RULES: [ShadowRays; 8] = [
     ShadowRays::Budget(6),
 ];
 
-/// How often each candidate was chosen in `n` draws, and the probability it is said to have, whether
+/// Returns how often each candidate was chosen in `n` draws, and the probability it is said to have, whether
 /// it is chosen or not; `check` sees every draw.
 fn frequencies(
     rule: ShadowRays,

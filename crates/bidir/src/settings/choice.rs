@@ -18,7 +18,7 @@ pub enum Choice<T> {
 pub struct ChoiceError<E: Display>(E);
 
 impl<T> Choice<T> {
-    /// A value, or that it is open.
+    /// Makes a value, or that it is open.
     pub(super) fn new(is_open: bool, value: T) -> Self {
         if is_open {
             Self::Automatic
@@ -27,7 +27,7 @@ impl<T> Choice<T> {
         }
     }
 
-    /// The value, or the integrator's own.
+    /// Returns the value, or the integrator's own.
     pub(super) fn or(self, own: T) -> T {
         match self {
             Self::Automatic => own,
@@ -35,7 +35,7 @@ impl<T> Choice<T> {
         }
     }
 
-    /// True where it is left to an integrator that makes its own choice if `makes_it`.
+    /// Returns true where it is left to an integrator that makes its own choice if `makes_it`.
     pub(super) fn is_open(&self, makes_it: bool) -> bool {
         matches!(self, Self::Automatic) && makes_it
     }

@@ -57,14 +57,14 @@ pub struct Open {
 }
 
 impl Default for Settings {
-    /// The settings of bidirectional path tracing.
+    /// Returns the settings of bidirectional path tracing.
     fn default() -> Self {
         Self::new(IntegratorKind::default())
     }
 }
 
 impl Settings {
-    /// The settings of an estimator where nothing else is asked for.
+    /// Returns the settings of an estimator where nothing else is asked for.
     pub fn new(integrator: IntegratorKind) -> Self {
         let mut settings = Self {
             integrator,
@@ -97,7 +97,7 @@ impl Settings {
         self.lvc.next_events = CandidateCount::NEXT_EVENTS;
     }
 
-    /// True where the estimator learns about connections before the first pass.
+    /// Returns true where the estimator learns about connections before the first pass.
     pub(crate) fn learns(&self) -> bool {
         let learns = self.lvc.proposal == ProposalKind::Learned
             || self.lvc.light_start == LightStart::Learned;
@@ -106,7 +106,7 @@ impl Settings {
 }
 
 impl IntegratorKind {
-    /// The path roulette that suits the estimator: of several scenes the least product of error and
+    /// Returns the path roulette that suits the estimator: of several scenes the least product of error and
     /// time (docs/performance.md). If every vertex is connected with every other, short walks pay.
     pub fn roulette(self) -> PathRoulette {
         match self {
@@ -116,7 +116,7 @@ impl IntegratorKind {
         }
     }
 
-    /// The choice of shadow rays that suits the estimator, likewise. If many candidates are weighed
+    /// Returns the choice of shadow rays that suits the estimator, likewise. If many candidates are weighed
     /// for a few rays, those that matter pay.
     pub fn shadow_rays(self) -> ShadowRays {
         match self {

@@ -176,7 +176,7 @@ pub struct Request {
 pub struct RequestError(String);
 
 impl Request {
-    /// The settings that an image depends on, each with its value: the same request gives the same image.
+    /// Returns the settings that an image depends on, each with its value: the same request gives the same image.
     pub fn of(settings: &Settings) -> Self {
         use IntegratorKind::{Auto, Light, Lvc};
         let Settings {
@@ -211,7 +211,7 @@ impl Request {
         }
     }
 
-    /// `settings` with what is asked for. Another integrator brings what suits it.
+    /// Returns `settings` with what is asked for. Another integrator brings what suits it.
     #[must_use]
     pub fn apply(&self, settings: &Settings) -> Settings {
         let Self {
@@ -294,7 +294,7 @@ impl Request {
         Ok(())
     }
 
-    /// The request of [`Self::texts`]; other names are passed over. None: a setting has no such value.
+    /// Returns the request of [`Self::texts`]; other names are passed over. None: a setting has no such value.
     pub fn read(texts: &BTreeMap<String, String>) -> Option<Self> {
         let mut request = Self::default();
         for name in Self::names() {
@@ -305,7 +305,7 @@ impl Request {
         Some(request)
     }
 
-    /// The settings that are asked for, as texts by the names of flags.
+    /// Returns the settings that are asked for, as texts by the names of flags.
     pub fn texts(&self) -> BTreeMap<String, String> {
         let text = |value| match value {
             Value::String(text) => text,
@@ -317,7 +317,7 @@ impl Request {
             .collect()
     }
 
-    /// The names of the settings that are asked for and that an image by `settings` does not depend on, as
+    /// Returns the names of the settings that are asked for and that an image by `settings` does not depend on, as
     /// flags are spelt.
     pub fn ignored(&self, settings: &Settings) -> Vec<String> {
         let used = Self::of(settings).map();
@@ -326,7 +326,7 @@ impl Request {
         names.into_iter().map(|(name, _)| flag(&name)).collect()
     }
 
-    /// The names of all settings, as flags are spelt.
+    /// Returns the names of all settings, as flags are spelt.
     pub fn names() -> impl Iterator<Item = String> {
         fields(&Self::default())
             .into_iter()
@@ -374,7 +374,7 @@ fn from_map(map: Map<String, Value>) -> Result<Request, serde_json::Error> {
     serde_json::from_value(Value::Object(map))
 }
 
-/// The name of a field as flags are spelt.
+/// Returns the name of a field as flags are spelt.
 fn flag(field: &str) -> String {
     field.replace('_', "-")
 }

@@ -20,7 +20,7 @@ pub struct Cylinder {
 }
 
 impl Cylinder {
-    /// The part of a cylinder of `radius` within `limits`: `z_min`, `z_max` and `phi_max` (radians).
+    /// Returns the part of a cylinder of `radius` within `limits`: `z_min`, `z_max` and `phi_max` (radians).
     pub fn new(
         world_from_local: Affine3A,
         radius: f32,
@@ -44,7 +44,7 @@ impl Cylinder {
         self.phi_max * self.radius * (self.z_max - self.z_min)
     }
 
-    /// The world area by the midpoint rule over φ.
+    /// Returns the world area by the midpoint rule over φ.
     fn integrate_area(&self) -> f32 {
         let n = 1024;
         let scale = |i: i32| {
@@ -55,7 +55,7 @@ impl Cylinder {
         self.local_area() * mean as f32
     }
 
-    /// The local normal where the first parameter is `u`.
+    /// Returns the local normal where the first parameter is `u`.
     #[inline]
     fn normal(&self, u: f32) -> Vec3 {
         let (sin, cos) = sin_cos(self.phi_max * u);
@@ -72,7 +72,7 @@ impl Cylinder {
         }
     }
 
-    /// The area. Unit: m².
+    /// Returns the area. Unit: m².
     pub fn area(&self) -> f32 {
         self.area
     }
@@ -87,7 +87,7 @@ impl Cylinder {
         }
     }
 
-    /// A bound of the coordinates of its points.
+    /// Returns a bound of the coordinates of its points.
     #[inline]
     pub(super) fn magnitude(&self) -> f32 {
         let height = self.z_min.abs().max(self.z_max.abs());

@@ -18,7 +18,7 @@ pub struct Differentials {
 }
 
 impl Differentials {
-    /// The differentials of a flat surface. If the tangents span nothing, some unit tangents around `normal`
+    /// Returns the differentials of a flat surface. If the tangents span nothing, some unit tangents around `normal`
     /// stand for them.
     pub(super) fn flat(normal: Vec3, [dp_du, dp_dv]: [Vec3; 2]) -> Self {
         let area2 = dp_du.cross(dp_dv).length_squared();
@@ -37,7 +37,7 @@ impl Differentials {
         }
     }
 
-    /// ∇u and ∇v: by how much the parameters change along a step on the surface. Unit: 1/m. Zero
+    /// Returns ∇u and ∇v: by how much the parameters change along a step on the surface. Unit: 1/m. Zero
     /// where the tangents are too nearly parallel.
     pub fn gradients(&self) -> [Vec3; 2] {
         let (e, f, g) = (
@@ -56,7 +56,7 @@ impl Differentials {
     }
 }
 
-/// The derivative of the unit normal n = N/|N|, given N and its derivative.
+/// Returns the derivative of the unit normal n = N/|N|, given N and its derivative.
 pub(super) fn normal_derivative(normal: Vec3, derivative: Vec3) -> Vec3 {
     let length2 = normal.length_squared();
     if length2 == 0.0 {
@@ -66,7 +66,7 @@ pub(super) fn normal_derivative(normal: Vec3, derivative: Vec3) -> Vec3 {
 }
 
 impl Placement {
-    /// The derivatives in the world, given the local tangents, the local normal and its derivatives.
+    /// Returns the derivatives in the world, given the local tangents, the local normal and its derivatives.
     pub(super) fn differentials(
         &self,
         tangents: [Vec3; 2],

@@ -19,7 +19,7 @@ pub struct Disk {
 }
 
 impl Disk {
-    /// A ring between `inner_radius` and `radius` at `height`, up to azimuth `phi_max` (radians).
+    /// Makes a ring between `inner_radius` and `radius` at `height`, up to azimuth `phi_max` (radians).
     pub fn new(
         world_from_local: Affine3A,
         height: f32,
@@ -49,7 +49,7 @@ impl Disk {
         }
     }
 
-    /// The area. Unit: m².
+    /// Returns the area. Unit: m².
     pub fn area(&self) -> f32 {
         let local = self.phi_max / 2.0 * (sqr(self.radius) - sqr(self.inner_radius));
         local * self.placement.area_scale(Vec3::Z)
@@ -64,7 +64,7 @@ impl Disk {
         }
     }
 
-    /// A bound of the coordinates of its points.
+    /// Returns a bound of the coordinates of its points.
     #[inline]
     pub(super) fn magnitude(&self) -> f32 {
         self.placement.magnitude(self.radius.max(self.height.abs()))
@@ -78,7 +78,7 @@ impl Disk {
             .surface_point(local, Vec3::Z, self.orientation, uv)
     }
 
-    /// The geometric normal.
+    /// Returns the geometric normal.
     pub(super) fn normal(&self) -> Vec3 {
         self.placement.normal(Vec3::Z).normalize() * self.orientation.sign()
     }

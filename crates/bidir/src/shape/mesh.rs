@@ -30,18 +30,18 @@ pub struct Mesh {
 }
 
 impl Mesh {
-    /// The number of triangles.
+    /// Returns the number of triangles.
     pub fn triangle_count(&self) -> usize {
         self.triangles.len()
     }
 
-    /// The corners of triangle `i`.
+    /// Returns the corners of triangle `i`.
     #[inline]
     pub fn triangle(&self, i: usize) -> [Vec3; 3] {
         self.triangles[i].map(|vertex| self.positions[vertex as usize])
     }
 
-    /// The weights of the second and third corner of triangle `i` at the point `p` of its plane.
+    /// Returns the weights of the second and third corner of triangle `i` at the point `p` of its plane.
     pub(super) fn barycentric(&self, i: usize, p: Vec3) -> Vec2 {
         let [a, b, c] = self.triangle(i);
         let n = (b - a).cross(c - a);
@@ -49,12 +49,12 @@ impl Mesh {
         Vec2::new(part(c, a), part(a, b)).clamp(Vec2::ZERO, Vec2::ONE)
     }
 
-    /// The area of triangle `i`. Unit: m².
+    /// Returns the area of triangle `i`. Unit: m².
     pub fn triangle_area(&self, i: usize) -> f32 {
         self.corners(i).area()
     }
 
-    /// The geometric normals of triangle `i`, which follow the shading normals' side.
+    /// Returns the geometric normals of triangle `i`, which follow the shading normals' side.
     pub(super) fn triangle_normals(&self, i: usize) -> Normals {
         let corners = self.corners(i);
         let [p0, p1, p2] = corners.positions;
@@ -69,7 +69,7 @@ impl Mesh {
         }
     }
 
-    /// The normal of the front of triangle `i` by its winding alone, of any length.
+    /// Returns the normal of the front of triangle `i` by its winding alone, of any length.
     #[inline]
     pub(crate) fn front(&self, place: Option<&Place>, i: usize) -> Vec3 {
         let own = self.corners(i);
@@ -81,7 +81,7 @@ impl Mesh {
         (b - a).cross(c - a) * corners.winding_sign
     }
 
-    /// The volume within a closed mesh, negative where its front is within. Unit: m³.
+    /// Returns the volume within a closed mesh, negative where its front is within. Unit: m³.
     pub(super) fn enclosed(&self) -> f64 {
         let corners = (0..self.triangle_count()).map(|i| self.triangle(i).map(Vec3::as_dvec3));
         let sum: f64 = corners.map(|[a, b, c]| a.dot(b.cross(c))).sum();
@@ -99,7 +99,7 @@ impl Mesh {
         }
     }
 
-    /// The geometry at barycentric coordinates `b` of vertices 1 and 2.
+    /// Returns the geometry at barycentric coordinates `b` of vertices 1 and 2.
     #[inline]
     pub(super) fn surface_point(&self, i: usize, b: Vec2) -> SurfacePoint {
         let corners = self.corners(i);
@@ -116,7 +116,7 @@ impl Mesh {
         moved.surface_point(b, error)
     }
 
-    /// The derivatives along the parameters at barycentric coordinates `b`.
+    /// Returns the derivatives along the parameters at barycentric coordinates `b`.
     pub(super) fn differentials(&self, place: Option<&Place>, i: usize, b: Vec2) -> Differentials {
         let corners = self.corners(i);
         match place {
@@ -162,14 +162,14 @@ struct Corners {
 }
 
 impl Corners {
-    /// The largest coordinate.
+    /// Returns the largest coordinate.
     #[inline]
     fn magnitude(&self) -> f32 {
         let [p0, p1, p2] = self.positions;
         p0.abs().max(p1.abs()).max(p2.abs()).max_element()
     }
 
-    /// The corners in the world. A mirroring map turns the winding, not the front.
+    /// Returns the corners in the world. A mirroring map turns the winding, not the front.
     #[inline]
     fn at(&self, place: &Place) -> Self {
         Self {
@@ -196,7 +196,7 @@ impl Corners {
         }
     }
 
-    /// The area of a triangle that is very large or small.
+    /// Returns the area of a triangle that is very large or small.
     #[cold]
     fn extreme_area(&self) -> f32 {
         let [a, b, c] = self.positions.map(Vec3::as_dvec3);
@@ -209,7 +209,7 @@ impl Corners {
         self.surface_point_in(b, error, |n_s| Frame::from_z_and_tangent(n_s, tangent))
     }
 
-    /// The geometry with the shading frame that `frame` makes of the shading normal.
+    /// Returns the geometry with the shading frame that `frame` makes of the shading normal.
     #[inline]
     fn surface_point_in(
         &self,
@@ -259,14 +259,14 @@ impl Corners {
         }
     }
 
-    /// The interpolated normal. None: there are none, or they cancel.
+    /// Returns the interpolated normal. None: there are none, or they cancel.
     #[inline]
     fn shading_normal(&self, b0: f32, b: Vec2) -> Option<Vec3> {
         let [n0, n1, n2] = self.normals?;
         (n0 * b0 + n1 * b.x + n2 * b.y).try_normalize()
     }
 
-    /// The interpolated tangent, else ∂p/∂u up to scale.
+    /// Returns the interpolated tangent, else ∂p/∂u up to scale.
     #[inline]
     fn tangent(&self, b0: f32, b: Vec2) -> Vec3 {
         match self.tangents {
@@ -281,7 +281,7 @@ fn interpolate([uv0, uv1, uv2]: [Vec2; 3], b: Vec2) -> Vec2 {
     uv0 * (1.0 - b.x - b.y) + uv1 * b.x + uv2 * b.y
 }
 
-/// ∂p/∂u, up to scale; zero where the parameters are degenerate.
+/// Returns ∂p/∂u, up to scale; zero where the parameters are degenerate.
 #[inline]
 fn along_u([p0, p1, p2]: [Vec3; 3], [uv0, uv1, uv2]: [Vec2; 3]) -> Vec3 {
     let (duv1, duv2) = (uv1 - uv0, uv2 - uv0);

@@ -47,7 +47,7 @@ pub struct SurfacePoint {
 }
 
 impl SurfacePoint {
-    /// The place.
+    /// Returns the place.
     #[inline]
     pub fn locus(&self) -> Locus {
         Locus::on_surface(self.point, self.n_g, self.error)
@@ -88,7 +88,7 @@ pub enum Shape {
 }
 
 impl Shape {
-    /// The name of its kind, in one word.
+    /// Returns the name of its kind, in one word.
     pub const fn kind(&self) -> &'static str {
         match self {
             Self::Mesh(_) => "mesh",
@@ -98,7 +98,7 @@ impl Shape {
         }
     }
 
-    /// The number of primitives that [`primitive`](Self::primitive) counts.
+    /// Returns the number of primitives that [`primitive`](Self::primitive) counts.
     pub fn primitive_count(&self) -> usize {
         match self {
             Self::Mesh(mesh) => mesh.triangle_count(),
@@ -116,7 +116,7 @@ impl Shape {
         }
     }
 
-    /// The local geometry where primitive `i` was hit at parameters `uv` of the intersector;
+    /// Returns the local geometry where primitive `i` was hit at parameters `uv` of the intersector;
     /// `point` is the hit as the ray computed it.
     #[inline]
     pub fn surface_point(&self, i: usize, uv: Vec2, point: Vec3) -> SurfacePoint {
@@ -128,7 +128,7 @@ impl Shape {
         }
     }
 
-    /// The intersector's parameters of the point `p` of primitive `i`.
+    /// Returns the intersector's parameters of the point `p` of primitive `i`.
     pub fn parameters(&self, i: usize, p: Vec3) -> Vec2 {
         match self {
             Self::Mesh(mesh) => mesh.barycentric(i, p),
@@ -138,7 +138,7 @@ impl Shape {
         }
     }
 
-    /// The surface's parameters alone at such a hit.
+    /// Returns the surface's parameters alone at such a hit.
     #[inline]
     pub fn uv(&self, i: usize, uv: Vec2) -> Vec2 {
         match self {
@@ -167,7 +167,7 @@ impl Shape {
         surface
     }
 
-    /// The derivatives along the parameters at such a hit, of a shape of the world or of an object at
+    /// Returns the derivatives along the parameters at such a hit, of a shape of the world or of an object at
     /// `place`; `surface` is what [`surface_point`](Self::surface_point) gave.
     pub fn differentials(
         &self,
@@ -192,7 +192,7 @@ impl Shape {
         }
     }
 
-    /// The area of primitive `i`. Unit: m².
+    /// Returns the area of primitive `i`. Unit: m².
     pub fn primitive_area(&self, i: usize) -> f32 {
         match self {
             Self::Mesh(mesh) => mesh.triangle_area(i),
@@ -209,7 +209,7 @@ impl Shape {
         [all.min, all.max]
     }
 
-    /// The volume that the shape encloses by itself; 0 for pieces that do not. Unit: m³.
+    /// Returns the volume that the shape encloses by itself; 0 for pieces that do not. Unit: m³.
     pub fn enclosed(&self) -> f64 {
         match self {
             Self::Mesh(mesh) => mesh.enclosed(),
@@ -218,7 +218,7 @@ impl Shape {
         }
     }
 
-    /// The geometric normals of primitive `i`.
+    /// Returns the geometric normals of primitive `i`.
     pub fn normals(&self, i: usize) -> Normals {
         match self {
             Self::Mesh(mesh) => mesh.triangle_normals(i),
@@ -238,7 +238,7 @@ impl Shape {
         }
     }
 
-    /// The density of [`sample`](Self::sample) at `point`. Measure: area, 1/m².
+    /// Returns the density of [`sample`](Self::sample) at `point`. Measure: area, 1/m².
     #[inline]
     pub fn pdf(&self, i: usize, point: Vec3) -> f32 {
         match self {
@@ -258,7 +258,7 @@ impl Shape {
         }
     }
 
-    /// The density of [`sample_from`](Self::sample_from) at `point`, whose normal is `n_g`.
+    /// Returns the density of [`sample_from`](Self::sample_from) at `point`, whose normal is `n_g`.
     /// Measure: area, 1/m².
     #[inline]
     pub fn pdf_from(&self, i: usize, reference: Vec3, point: Vec3, n_g: Vec3) -> f32 {
@@ -269,7 +269,7 @@ impl Shape {
     }
 }
 
-/// The azimuth of a local point, as part of `phi_max`.
+/// Returns the azimuth of a local point, as part of `phi_max`.
 #[inline]
 fn azimuth_part(local: Vec3, phi_max: f32) -> f32 {
     let phi = libm::atan2f(local.y, local.x);
@@ -288,7 +288,7 @@ pub enum Orientation {
 }
 
 impl Orientation {
-    /// 1, or -1 where reversed.
+    /// Returns 1, or -1 where reversed.
     #[inline]
     pub fn sign(self) -> f32 {
         match self {
@@ -298,7 +298,7 @@ impl Orientation {
     }
 }
 
-/// A bound of the rounding error of a surface point computed from coordinates up to `magnitude`:
+/// Returns a bound of the rounding error of a surface point computed from coordinates up to `magnitude`:
 /// interpolation, the intersector's translation and its own arithmetic, with room.
 #[inline]
 pub(crate) fn position_error(magnitude: f32) -> f32 {
@@ -329,7 +329,7 @@ impl Placement {
         Self::new(place.compose(&self.world_from_local))
     }
 
-    /// A bound of the coordinates of points up to `distance` from the local origin.
+    /// Returns a bound of the coordinates of points up to `distance` from the local origin.
     #[inline]
     fn magnitude(&self, distance: f32) -> f32 {
         let (m, origin) = (
@@ -340,7 +340,7 @@ impl Placement {
         (origin.abs() + reach).max_element()
     }
 
-    /// The inverse transpose applied to a local normal: not normalised.
+    /// Returns the inverse transpose applied to a local normal: not normalised.
     #[inline]
     fn normal(&self, local: Vec3) -> Vec3 {
         self.local_from_world.matrix3.transpose() * local
@@ -352,7 +352,7 @@ impl Placement {
         self.volume_scale * self.normal(n).length()
     }
 
-    /// The surface point of local geometry.
+    /// Returns the surface point of local geometry.
     #[inline]
     fn surface_point(
         &self,

@@ -13,19 +13,19 @@ use glam::{DMat3, DVec3};
 pub struct Place(pub DAffine3);
 
 impl Place {
-    /// A point of the object in the world.
+    /// Returns a point of the object in the world.
     #[inline]
     pub(super) fn point(&self, p: Vec3) -> Vec3 {
         self.0.transform_point3(p.as_dvec3()).as_vec3()
     }
 
-    /// A vector of the object in the world.
+    /// Returns a vector of the object in the world.
     #[inline]
     pub(super) fn vector(&self, v: Vec3) -> Vec3 {
         self.0.transform_vector3(v.as_dvec3()).as_vec3()
     }
 
-    /// A normal of the object in the world, unit length; zero where there is none.
+    /// Returns a normal of the object in the world, unit length; zero where there is none.
     #[inline]
     pub(super) fn normal(&self, n: Vec3) -> Vec3 {
         (self.cofactors() * n.as_dvec3())
@@ -41,14 +41,14 @@ impl Place {
         DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y))
     }
 
-    /// 1, or -1 where the map mirrors.
+    /// Returns 1, or -1 where the map mirrors.
     #[inline]
     pub(super) fn sign(&self) -> f32 {
         let [x, y, z] = self.columns();
         if x.dot(y.cross(z)) < 0.0 { -1.0 } else { 1.0 }
     }
 
-    /// A box in the world around a box of the object.
+    /// Returns a box in the world around a box of the object.
     pub(crate) fn bounds(&self, own: Aabb) -> Aabb {
         let corners = [own.min, own.max];
         let corner = |i: usize| {
@@ -70,7 +70,7 @@ impl Place {
         [m.x_axis, m.y_axis, m.z_axis]
     }
 
-    /// A bound of the error in the world of a point in the object's space, with coordinates up to
+    /// Returns a bound of the error in the world of a point in the object's space, with coordinates up to
     /// `magnitude`.
     #[inline]
     pub(super) fn error(&self, magnitude: f32) -> f32 {
@@ -79,7 +79,7 @@ impl Place {
         stretch * position_error(magnitude)
     }
 
-    /// The map of a quadric of the object to the world.
+    /// Returns the map of a quadric of the object to the world.
     #[inline]
     pub(super) fn compose(&self, object_from_local: &Affine3A) -> Affine3A {
         let m = object_from_local.matrix3;

@@ -26,13 +26,13 @@ pub struct Sphere {
 }
 
 impl Sphere {
-    /// A whole sphere of `radius` around the origin of its own space.
+    /// Makes a whole sphere of `radius` around the origin of its own space.
     pub fn new(world_from_local: Affine3A, radius: f32, orientation: Orientation) -> Self {
         let whole = Vec3::new(-radius, radius, 2.0 * PI);
         Self::partial(world_from_local, radius, whole, orientation)
     }
 
-    /// The part of a sphere within `limits`: `z_min`, `z_max` and `phi_max` (radians).
+    /// Returns the part of a sphere within `limits`: `z_min`, `z_max` and `phi_max` (radians).
     pub fn partial(
         world_from_local: Affine3A,
         radius: f32,
@@ -60,7 +60,7 @@ impl Sphere {
         self.phi_max * self.radius * (self.z_max - self.z_min)
     }
 
-    /// The world area by the midpoint rule over (z, φ), in which local area is even.
+    /// Returns the world area by the midpoint rule over (z, φ), in which local area is even.
     fn integrate_area(&self) -> f32 {
         let n = 64;
         let scale = |i: i32| {
@@ -71,12 +71,12 @@ impl Sphere {
         self.local_area() * mean as f32
     }
 
-    /// True where nothing is cut off.
+    /// Returns true where nothing is cut off.
     pub fn is_whole(&self) -> bool {
         self.z_min <= -self.radius && self.z_max >= self.radius && self.phi_max >= 2.0 * PI - 1e-6
     }
 
-    /// The volume within, negative where the front is; 0 for parts. Unit: m³.
+    /// Returns the volume within, negative where the front is; 0 for parts. Unit: m³.
     pub(super) fn enclosed(&self) -> f64 {
         let [radius, scale] = [self.radius, self.placement.volume_scale].map(f64::from);
         let ball = 4.0 / 3.0 * std::f64::consts::PI * radius * radius * radius * scale;
@@ -111,7 +111,7 @@ impl Sphere {
         }
     }
 
-    /// The area. Unit: m².
+    /// Returns the area. Unit: m².
     pub fn area(&self) -> f32 {
         self.area
     }
@@ -125,7 +125,7 @@ impl Sphere {
         }
     }
 
-    /// A bound of the coordinates of its points.
+    /// Returns a bound of the coordinates of its points.
     #[inline]
     pub(super) fn magnitude(&self) -> f32 {
         self.placement.magnitude(self.radius)
@@ -160,7 +160,7 @@ impl Sphere {
             .differentials(tangents, changes, self.orientation)
     }
 
-    /// The local point with even local area over the unit square.
+    /// Returns the local point with even local area over the unit square.
     #[inline]
     fn local_point(&self, u: Vec2) -> Vec3 {
         let z = self.z_min + (self.z_max - self.z_min) * u.x;
@@ -186,7 +186,7 @@ impl Sphere {
         1.0 / (self.local_area() * self.placement.area_scale(n))
     }
 
-    /// 1 - cosθ of the cone in which `reference` sees the ball, the distance, and the ball.
+    /// Returns 1 - cosθ of the cone in which `reference` sees the ball, the distance, and the ball.
     ///
     /// None: this is no ball, or the reference is within it or too near.
     #[inline]
@@ -240,7 +240,7 @@ impl Sphere {
         self.parameters(local.normalize_or(Vec3::Z))
     }
 
-    /// (u, v) of the point with unit local normal `n`, as the intersector gives them.
+    /// Returns (u, v) of the point with unit local normal `n`, as the intersector gives them.
     fn parameters(&self, n: Vec3) -> Vec2 {
         let theta = |z: f32| libm::acosf((z / self.radius).clamp(-1.0, 1.0));
         let (bottom, top) = (theta(self.z_min), theta(self.z_max));

@@ -7,7 +7,7 @@ mod points;
 use super::{Cylinder, Disk, Mesh, Orientation, Shape, Sphere};
 use crate::math::{Affine3A, Mat3, PI, Vec2, Vec3};
 
-/// A map that stretches unevenly, shears and turns.
+/// Returns a map that stretches unevenly, shears and turns.
 fn uneven() -> Affine3A {
     let stretch = Mat3::from_diagonal(Vec3::new(0.5, 2.0, 1.25));
     let shear = Mat3::from_cols(Vec3::X, Vec3::new(0.4, 1.0, 0.0), Vec3::new(0.0, -0.3, 1.0));
@@ -47,7 +47,7 @@ struct Example {
     world_from_local: Affine3A,
 }
 
-/// `map` of a point, in double precision.
+/// Returns `map` of a point, in double precision.
 fn place(map: &Affine3A, p: [f64; 3]) -> [f64; 3] {
     let columns = [
         map.matrix3.x_axis,
@@ -61,7 +61,7 @@ fn place(map: &Affine3A, p: [f64; 3]) -> [f64; 3] {
     })
 }
 
-/// The azimuth of a local point as part of `phi_max`.
+/// Returns the azimuth of a local point as part of `phi_max`.
 fn azimuth(local: Vec3, phi_max: f32) -> f32 {
     if local.truncate().length() < 1e-3 {
         return 0.0; // At the pole it has none.
@@ -208,7 +208,7 @@ fn examples() -> Vec<Example> {
 
 const VARIANTS: usize = 4;
 
-/// A new variant does not compile before it has a number here.
+/// Returns a new variant does not compile before it has a number here.
 fn variant(shape: &Shape) -> usize {
     match shape {
         Shape::Mesh(_) => 0,

@@ -16,32 +16,32 @@ impl FourSpectra {
         Self(transpose(spectra.map(Spectrum::lanes)))
     }
 
-    /// The four one by one.
+    /// Returns the four one by one.
     #[inline]
     pub(crate) fn each(self) -> [Spectrum; 4] {
         transpose(self.0).map(|lanes| Spectrum(lanes.to_array()))
     }
 
-    /// True of each that is exactly zero.
+    /// Returns true of each that is exactly zero.
     #[inline]
     pub(crate) fn are_black(self) -> BVec4A {
         self.all(|lanes| lanes.cmpeq(Vec4::ZERO))
     }
 
-    /// True of each that has no lane that is larger than `limit`, or NaN.
+    /// Returns true of each that has no lane that is larger than `limit`, or NaN.
     #[inline]
     pub(crate) fn are_within(self, limit: f32) -> BVec4A {
         self.all(|lanes| lanes.abs().cmple(Vec4::splat(limit)))
     }
 
-    /// True of each of which `is` holds in every lane.
+    /// Returns true of each of which `is` holds in every lane.
     #[inline]
     fn all(self, is: impl Fn(Vec4) -> BVec4A) -> BVec4A {
         let [a, b, c, d] = self.0.map(is);
         (a & b) & (c & d)
     }
 
-    /// The means of the lanes of the four that carry light, without signs.
+    /// Returns the means of the lanes of the four that carry light, without signs.
     #[inline]
     pub(crate) fn abs_means(self, lanes: Lanes) -> Vec4 {
         match lanes {

@@ -58,12 +58,12 @@ pub struct StageTimes {
 }
 
 impl StageTimes {
-    /// The time of `stage`.
+    /// Returns the time of `stage`.
     pub fn of(&self, stage: Stage) -> Duration {
         self.times[stage as usize]
     }
 
-    /// The time of all stages.
+    /// Returns the time of all stages.
     pub fn total(&self) -> Duration {
         self.times.iter().sum()
     }
@@ -134,7 +134,7 @@ impl Stopwatch {
         }
     }
 
-    /// The times measured since the last call.
+    /// Returns the times measured since the last call.
     pub(crate) fn take(&mut self) -> StageTimes {
         std::mem::take(&mut self.times)
     }

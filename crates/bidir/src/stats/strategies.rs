@@ -44,7 +44,7 @@ impl LayerCounts {
         self.squares = self.squares.saturating_add(square);
     }
 
-    /// The sum of squares.
+    /// Returns the sum of squares.
     pub fn squares(&self) -> f64 {
         fixed::to_f64(self.squares, MOMENT_SCALE)
     }
@@ -71,7 +71,7 @@ pub struct StrategyTable<T = StrategyCounts> {
 }
 
 impl<T: Copy + Default + PartialEq> StrategyTable<T> {
-    /// The counts of a strategy, to be raised.
+    /// Returns the counts of a strategy, to be raised.
     #[inline]
     pub(super) fn of(&mut self, strategy: Strategy) -> &mut T {
         let (s, t) = (usize::from(strategy.s), usize::from(strategy.t));
@@ -86,7 +86,7 @@ impl<T: Copy + Default + PartialEq> StrategyTable<T> {
         &mut self.rows[i]
     }
 
-    /// The counts of a strategy; together with others where paths are too long for counts of their own.
+    /// Returns the counts of a strategy; together with others where paths are too long for counts of their own.
     pub fn get(&self, strategy: Strategy) -> T {
         let (s, t) = (usize::from(strategy.s), usize::from(strategy.t));
         let n = s + t;
@@ -105,7 +105,7 @@ impl<T: Copy + Default + PartialEq> StrategyTable<T> {
             .filter(|(_, counts)| *counts != T::default())
     }
 
-    /// The counts of all strategies of paths that are too long for a row of their own.
+    /// Returns the counts of all strategies of paths that are too long for a row of their own.
     pub fn longer(&self) -> T {
         self.longer
     }

@@ -17,7 +17,7 @@ pub(crate) enum Domain {
 }
 
 impl Domain {
-    /// The sphere of directions, its poles along ±y: the horizon is then a line of every grid, and
+    /// Returns the sphere of directions, its poles along ±y: the horizon is then a line of every grid, and
     /// the lobes in the xz plane lie where cells are near to square.
     pub(crate) fn sphere() -> Self {
         Self::Cone(
@@ -93,7 +93,7 @@ impl Grid {
         self.columns * self.rows
     }
 
-    /// How many points lie in each cell; last, how many are None.
+    /// Returns how many points lie in each cell; last, how many are None.
     pub(super) fn histogram(&self, draws: impl Iterator<Item = Option<Vec3>>) -> Vec<u64> {
         let mut counts = vec![0; self.cells() + 1];
         for draw in draws {
@@ -114,7 +114,7 @@ impl Grid {
         y * self.columns + x
     }
 
-    /// The probability of each cell, exact to far less than `n` samples resolve; last, that of
+    /// Returns the probability of each cell, exact to far less than `n` samples resolve; last, that of
     /// None.
     pub(super) fn expected(&self, pdf: impl Fn(Vec3) -> f32, n: u64) -> Vec<f64> {
         let measure = self.domain.measure();
@@ -190,7 +190,7 @@ impl Rectangle {
     }
 }
 
-/// The chance of counts at least as far from `expected` (probabilities) as `observed`.
+/// Returns the chance of counts at least as far from `expected` (probabilities) as `observed`.
 pub(super) fn p_value(observed: &[u64], expected: &[f64]) -> f64 {
     let n = observed.iter().sum::<u64>() as f64;
     let mut order: Vec<usize> = (0..expected.len()).collect();
@@ -212,7 +212,7 @@ pub(super) fn p_value(observed: &[u64], expected: &[f64]) -> f64 {
     gamma::upper_tail((bins - 1.0) / 2.0, statistic / 2.0)
 }
 
-/// `expected` with its first half of the probability raised by the relative `bias`, and the rest
+/// Returns `expected` with its first half of the probability raised by the relative `bias`, and the rest
 /// lowered to make up for it.
 pub(super) fn biased(expected: &[f64], bias: f64) -> Vec<f64> {
     let mut before = 0.0;

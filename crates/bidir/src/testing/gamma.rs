@@ -1,6 +1,6 @@
 //! Q(a, x) = Γ(a, x)/Γ(a), the tail of the χ² distribution [Press07, §6.2].
 
-/// The upper tail Q(a, x) = Γ(a, x)/Γ(a) of the gamma distribution: by its series below a + 1, by
+/// Returns the upper tail Q(a, x) = Γ(a, x)/Γ(a) of the gamma distribution: by its series below a + 1, by
 /// Lentz's continued fraction above [Press07, §6.2].
 pub(super) fn upper_tail(a: f64, x: f64) -> f64 {
     if x <= 0.0 {

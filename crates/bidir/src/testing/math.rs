@@ -27,7 +27,7 @@ fn add(
     battery.chi2(name, &grid, pdf, numbers.map(draw));
 }
 
-/// A triangle's point as a point of the square: (b1, b2) to ((b1+b2)², b1/(b1+b2)), of even area.
+/// Returns a triangle's point as a point of the square: (b1, b2) to ((b1+b2)², b1/(b1+b2)), of even area.
 fn triangle_to_square(b: Vec2) -> Vec3 {
     let sum = b.x + b.y;
     Vec3::new(sum * sum, if sum > 0.0 { b.x / sum } else { 0.0 }, 0.0)

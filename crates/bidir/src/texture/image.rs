@@ -13,7 +13,7 @@ pub struct Image<const N: usize> {
 }
 
 impl<const N: usize> Image<N> {
-    /// An image of `texels.len() / width` rows. None: empty, or no whole number of rows.
+    /// Makes an image of `texels.len() / width` rows. None: empty, or no whole number of rows.
     pub fn new(width: usize, texels: Vec<[f32; N]>) -> Option<Self> {
         let whole = width > 0 && !texels.is_empty() && texels.len().is_multiple_of(width);
         whole.then(|| Self {
@@ -42,7 +42,7 @@ impl<const N: usize> Image<N> {
         }
     }
 
-    /// The number of smaller copies.
+    /// Returns the number of smaller copies.
     #[inline]
     pub fn copies(&self) -> usize {
         self.smaller.len()
@@ -67,17 +67,17 @@ impl<const N: usize> Image<N> {
         self.height
     }
 
-    /// The texels, row by row from the top.
+    /// Returns the texels, row by row from the top.
     pub fn texels(&self) -> &[[f32; N]] {
         &self.texels
     }
 
-    /// The least and the most of each channel.
+    /// Returns the least and the most of each channel.
     pub fn bounds(&self) -> [[f32; N]; 2] {
         self.bounds
     }
 
-    /// The texel at column `x` of row `y`.
+    /// Returns the texel at column `x` of row `y`.
     #[inline]
     pub fn texel(&self, x: usize, y: usize) -> [f32; N] {
         self.texels[y * self.width + x]
@@ -111,7 +111,7 @@ impl<const N: usize> Image<N> {
     }
 }
 
-/// The least and the most of each channel; NaN becomes any number, by what is done with it.
+/// Returns the least and the most of each channel; NaN becomes any number, by what is done with it.
 fn bounds<const N: usize>(texels: &[[f32; N]]) -> [[f32; N]; 2] {
     let empty = [[f32::INFINITY; N], [f32::NEG_INFINITY; N]];
     let or = |value: f32, bound: f32| if value.is_nan() { bound } else { value };
@@ -137,7 +137,7 @@ impl Shares {
     }
 }
 
-/// The shares of each texel of a row that is half as long as one of `n`, rounded up.
+/// Returns the shares of each texel of a row that is half as long as one of `n`, rounded up.
 fn shares(n: usize) -> Vec<Shares> {
     let short = n.div_ceil(2);
     // Lengths are in units of 1 / (n · short) of the row: all borders are whole numbers.
@@ -192,7 +192,7 @@ mod tests {
         }
     }
 
-    /// The mean over cell (x, y) of `cells`, by summing over a grid that divides both evenly.
+    /// Returns the mean over cell (x, y) of `cells`, by summing over a grid that divides both evenly.
     fn mean_of(image: &Image<1>, [x, y]: [usize; 2], [columns, rows]: [usize; 2]) -> f64 {
         let (width, height) = (image.width(), image.height());
         let mut sum = 0.0;

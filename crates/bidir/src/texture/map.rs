@@ -83,7 +83,7 @@ impl<const N: usize> ImageMap<N> {
         own.and(self.mapping.needs())
     }
 
-    /// The value at a point.
+    /// Returns the value at a point.
     #[inline]
     pub fn eval(&self, at: &TexturePoint) -> [f32; N] {
         let st = self.mapping.st(at);
@@ -102,7 +102,7 @@ impl<const N: usize> ImageMap<N> {
         }
     }
 
-    /// The copy whose texels are as wide as a pixel, as a real number.
+    /// Returns the copy whose texels are as wide as a pixel, as a real number.
     ///
     /// If texels are not square on the surface, this is measured across their longer side: the texture
     /// is never coarser than a pixel. The pixel's samples average the rest.
@@ -162,7 +162,7 @@ impl<const N: usize> ImageMap<N> {
 }
 
 impl Beyond {
-    /// The one of `count` texels in a row that lies at `i`. None: zero does.
+    /// Returns the one of `count` texels in a row that lies at `i`. None: zero does.
     #[inline]
     fn index(self, i: i64, count: i64) -> Option<i64> {
         match self {
@@ -188,7 +188,7 @@ fn countable(place: Vec2) -> Vec2 {
     place.clamp(Vec2::splat(-1e15), Vec2::splat(1e15))
 }
 
-/// The texel of an octahedral map that lies at (`x`, `y`): a step over a border mirrors the
+/// Returns the texel of an octahedral map that lies at (`x`, `y`): a step over a border mirrors the
 /// coordinate along the border, and goes on inwards. Two such steps along an axis lead back.
 fn octahedral([x, y]: [i64; 2], [width, height]: [i64; 2]) -> (i64, i64) {
     let crossings = x.div_euclid(width) + y.div_euclid(height);
@@ -200,7 +200,7 @@ fn octahedral([x, y]: [i64; 2], [width, height]: [i64; 2]) -> (i64, i64) {
     }
 }
 
-/// The square of the smaller singular value of the matrix with rows `s` and `t`: by how much the map
+/// Returns the square of the smaller singular value of the matrix with rows `s` and `t`: by how much the map
 /// stretches the direction that it stretches least.
 fn least_stretch2(s: Vec3, t: Vec3) -> f32 {
     let (a, b, c) = (s.length_squared(), s.dot(t), t.length_squared());

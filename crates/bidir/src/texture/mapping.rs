@@ -21,7 +21,7 @@ impl TextureSpace {
         stretch: 1.0,
     };
 
-    /// The space that `from_world` leads to.
+    /// Returns the space that `from_world` leads to.
     pub fn new(from_world: Affine3A) -> Self {
         let m = from_world.matrix3;
         let columns = [m.x_axis, m.y_axis, m.z_axis].map(|axis| Vec3::from(axis).length());
@@ -31,19 +31,19 @@ impl TextureSpace {
         }
     }
 
-    /// The point in this space.
+    /// Returns the point in this space.
     #[inline]
     pub fn point(&self, at: &TexturePoint) -> Vec3 {
         self.from_world.transform_point3(at.point)
     }
 
-    /// How wide a pixel is in this space, at most.
+    /// Returns how wide a pixel is in this space, at most.
     #[inline]
     pub fn width(&self, at: &TexturePoint) -> f32 {
         self.stretch * at.footprint.width
     }
 
-    /// The gradient over the world of a function with this gradient here.
+    /// Returns the gradient over the world of a function with this gradient here.
     #[inline]
     fn gradient(&self, local: Vec3) -> Vec3 {
         self.from_world.matrix3.transpose() * local
@@ -84,7 +84,7 @@ impl Mapping {
         offset: Vec2::ZERO,
     };
 
-    /// (p·`s`, p·`t`) + `offset` with p in the space that `from_world` leads to.
+    /// Returns (p·`s`, p·`t`) + `offset` with p in the space that `from_world` leads to.
     pub fn planar(from_world: &Affine3A, [s, t]: [Vec3; 2], offset: Vec2) -> Self {
         let space = TextureSpace::new(*from_world);
         let origin = Vec3::from(from_world.translation);
@@ -102,7 +102,7 @@ impl Mapping {
         }
     }
 
-    /// (s, t) of a point.
+    /// Returns (s, t) of a point.
     #[inline]
     pub fn st(&self, at: &TexturePoint) -> Vec2 {
         match self {
@@ -125,7 +125,7 @@ impl Mapping {
         }
     }
 
-    /// ∇s and ∇t over the surface. Unit: 1/m. Zero where they are not known.
+    /// Returns ∇s and ∇t over the surface. Unit: 1/m. Zero where they are not known.
     pub(super) fn gradients(&self, at: &TexturePoint) -> [Vec3; 2] {
         let Footprint {
             gradient_u,

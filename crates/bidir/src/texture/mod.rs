@@ -19,7 +19,7 @@ mod pattern;
 mod point;
 mod range;
 
-/// A texture's number as α.
+/// Returns a texture's number as α.
 #[inline]
 pub(crate) fn clamped_coverage(alpha: f32) -> f32 {
     if alpha < 1.0 { alpha.max(0.0) } else { 1.0 }
@@ -46,21 +46,21 @@ pub trait Value: Copy + Debug {
     /// An image of such values.
     type Map: Clone + Debug;
 
-    /// (1 - `t`)·self + `t`·`other`.
+    /// Returns (1 - `t`)·self + `t`·`other`.
     #[must_use]
     fn lerp(self, other: Self, t: f32) -> Self;
 
-    /// The product with a number.
+    /// Returns the product with a number.
     #[must_use]
     fn scaled(self, factor: f32) -> Self;
 
-    /// The value of an image.
+    /// Returns the value of an image.
     fn look_up(map: &Self::Map, at: &TexturePoint) -> Self;
 
-    /// The dependences of a look-up.
+    /// Returns the dependences of a look-up.
     fn needs(map: &Self::Map) -> Needs;
 
-    /// The colour as such a value: a number is the mean of its channels.
+    /// Returns the colour as such a value: a number is the mean of its channels.
     fn of_color(color: Rgb) -> Self;
 }
 
@@ -178,7 +178,7 @@ pub struct DirectionMix<T: Value> {
 }
 
 impl<T: Value> Texture<T> {
-    /// The value at a point.
+    /// Returns the value at a point.
     #[inline]
     pub fn eval(&self, at: &TexturePoint) -> T {
         match self {
@@ -204,7 +204,7 @@ impl<T: Value> Texture<T> {
         }
     }
 
-    /// The dependences of its values beside the parameters (u, v).
+    /// Returns the dependences of its values beside the parameters (u, v).
     pub fn needs(&self) -> Needs {
         let own = match self {
             Self::Image(map) => T::needs(map),
@@ -220,13 +220,13 @@ impl<T: Value> Texture<T> {
         self.number().map_or(all, |number| all.and(number.needs()))
     }
 
-    /// How many textures it is made of, itself included; one that is used twice counts twice.
+    /// Returns how many textures it is made of, itself included; one that is used twice counts twice.
     pub fn size(&self) -> usize {
         let parts: usize = self.parts().iter().map(Self::size).sum();
         1 + parts + self.number().map_or(0, Texture::size)
     }
 
-    /// The textures that it chooses or mixes its values from.
+    /// Returns the textures that it chooses or mixes its values from.
     fn parts(&self) -> &[Self] {
         match self {
             Self::Scale(scale) => std::slice::from_ref(&scale.texture),
@@ -242,7 +242,7 @@ impl<T: Value> Texture<T> {
         }
     }
 
-    /// The number that it multiplies or mixes by.
+    /// Returns the number that it multiplies or mixes by.
     fn number(&self) -> Option<&FloatTexture> {
         match self {
             Self::Scale(scale) => Some(&scale.factor),
@@ -301,7 +301,7 @@ impl Needs {
         footprint: true,
     };
 
-    /// The dependences of two textures together.
+    /// Returns the dependences of two textures together.
     #[must_use]
     pub fn and(self, other: Self) -> Self {
         Self {

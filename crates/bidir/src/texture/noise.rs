@@ -44,7 +44,7 @@ const GRADIENTS: [Vec3; 16] = [
     Vec3::new(0.0, -1.0, -1.0),
 ];
 
-/// A smooth function of space between about -1 and 1, 0 at whole numbers, with features of size 1.
+/// Returns a smooth function of space between about -1 and 1, 0 at whole numbers, with features of size 1.
 pub(super) fn noise(p: Vec3) -> f32 {
     let cell = p.floor();
     let within = p - cell;
@@ -79,7 +79,7 @@ struct Octaves {
 }
 
 impl Octaves {
-    /// Σ gain^i · `shape`(noise(λ^i p)), where a pixel is `width` wide. An octave left out counts
+    /// Returns Σ gain^i · `shape`(noise(λ^i p)), where a pixel is `width` wide. An octave left out counts
     /// `mean`.
     fn sum(self, p: Vec3, width: f32, mean: f32, shape: impl Fn(f32) -> f32) -> f32 {
         let most = self.count as f32;
@@ -111,7 +111,7 @@ fn smoothstep(x: f32) -> f32 {
     t * t * (3.0 - 2.0 * t)
 }
 
-/// Σ ωⁱ noise(λⁱ p) over `octaves`, with ω = `roughness`, in every detail.
+/// Returns Σ ωⁱ noise(λⁱ p) over `octaves`, with ω = `roughness`, in every detail.
 pub fn fractal_noise(p: Vec3, octaves: u32, roughness: f32) -> f32 {
     let octaves = Octaves {
         count: octaves,
@@ -217,7 +217,7 @@ impl Marble {
     }
 }
 
-/// The cubic Bézier curve, by repeated interpolation.
+/// Returns the cubic Bézier curve, by repeated interpolation.
 fn bezier([a, b, c, d]: [f32; 4], t: f32) -> f32 {
     let (ab, bc, cd) = (lerp(a, b, t), lerp(b, c, t), lerp(c, d, t));
     lerp(lerp(ab, bc, t), lerp(bc, cd, t), t)

@@ -49,7 +49,7 @@ impl Cells {
         }
     }
 
-    /// True where the coordinates of the cell add up to an odd number.
+    /// Returns true where the coordinates of the cell add up to an odd number.
     fn is_odd(&self, at: &TexturePoint) -> bool {
         let cell = match self {
             Self::Plane(mapping) => mapping.st(at).floor().extend(0.0),

@@ -28,7 +28,7 @@ pub enum Handedness {
 }
 
 impl Handedness {
-    /// The sides of these differentials around a normal.
+    /// Returns the sides of these differentials around a normal.
     #[inline]
     pub fn of(differentials: &Differentials, normal: Vec3) -> Self {
         let turn = differentials.dp_du.cross(differentials.dp_dv);
@@ -39,7 +39,7 @@ impl Handedness {
         }
     }
 
-    /// 1, or -1 for left-handed ones.
+    /// Returns 1, or -1 for left-handed ones.
     #[inline]
     pub fn sign(self) -> f32 {
         match self {
@@ -70,7 +70,7 @@ impl Footprint {
 }
 
 impl TexturePoint {
-    /// A point of a surface, without an extent.
+    /// Makes a point of a surface, without an extent.
     #[inline]
     pub fn new(surface: &SurfacePoint) -> Self {
         Self {
@@ -82,7 +82,7 @@ impl TexturePoint {
         }
     }
 
-    /// A point of which only the parameters are known.
+    /// Makes a point of which only the parameters are known.
     #[inline]
     pub fn of_parameters(uv: Vec2) -> Self {
         Self {

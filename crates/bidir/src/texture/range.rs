@@ -40,12 +40,12 @@ impl Range {
         })
     }
 
-    /// The numbers in either, and between them.
+    /// Returns the numbers in either, and between them.
     fn and(self, other: Self) -> Self {
         Self::around([self.least, self.most, other.least, other.most])
     }
 
-    /// Products of its numbers and those of the other.
+    /// Returns the products of its numbers and those of the other.
     #[must_use]
     pub fn times(self, other: Self) -> Self {
         let [a, b] = [self.least, self.most];
@@ -53,7 +53,7 @@ impl Range {
         Self::around([a * c, a * d, b * c, b * d])
     }
 
-    /// The range of `rising` over it, for a function that never falls.
+    /// Returns the range of `rising` over it, for a function that never falls.
     #[must_use]
     pub fn map(self, rising: impl Fn(f32) -> f32) -> Self {
         Self {
@@ -64,7 +64,7 @@ impl Range {
 }
 
 impl FloatTexture {
-    /// Bounds of its values at all points, not always the closest ones.
+    /// Returns the bounds of its values at all points, not always the closest ones.
     pub fn range(&self) -> Range {
         match self {
             Self::Constant(value) => Range::of(*value),

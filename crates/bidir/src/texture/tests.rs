@@ -20,7 +20,7 @@ fn at_point(point: Vec3) -> TexturePoint {
     }
 }
 
-/// A plane whose parameters are metres, seen by pixels of this width.
+/// Returns a plane whose parameters are metres, seen by pixels of this width.
 fn seen(uv: Vec2, width: f32) -> TexturePoint {
     let differentials = Differentials {
         dp_du: Vec3::X,

@@ -40,7 +40,7 @@ pub(super) struct CameraControl {
 pub(super) type Refusal = String;
 
 impl CameraControl {
-    /// The scene's own view.
+    /// Returns the scene's own view.
     pub(super) fn new(scene: &Scene, home: View) -> Self {
         let camera = *home.camera();
         let target = target(scene, &home);
@@ -66,13 +66,13 @@ impl CameraControl {
         self.rest() == Some(Duration::ZERO) && self.moved.take().is_some()
     }
 
-    /// The time that it still has to stand. None: it does not move.
+    /// Returns the time that it still has to stand. None: it does not move.
     pub(super) fn rest(&self) -> Option<Duration> {
         let moved = self.moved?;
         Some(REST.saturating_sub(moved.elapsed()))
     }
 
-    /// The view that is rendered now.
+    /// Returns the view that is rendered now.
     pub(super) fn current(&self) -> Result<View, EmptyCrop> {
         let film = self.home.film();
         if !self.is_preview() {
@@ -84,7 +84,7 @@ impl CameraControl {
         self.home.moved(self.camera.resized(new / old), coarse)
     }
 
-    /// The status of the camera.
+    /// Returns the status of the camera.
     pub(super) fn status(&self) -> CameraStatus {
         let pose = self.camera.pose();
         CameraStatus {
@@ -96,7 +96,7 @@ impl CameraControl {
         }
     }
 
-    /// A point in the coordinates of the scene's file.
+    /// Returns a point in the coordinates of the scene's file.
     fn in_world(&self, point: Vec3) -> [f32; 3] {
         self.space.world_point(point).as_vec3().to_array()
     }
@@ -105,7 +105,7 @@ impl CameraControl {
         self.camera.pose() != self.home.camera().pose()
     }
 
-    /// The view in words that no other view has. None: it is the scene's own.
+    /// Returns the view in words that no other view has. None: it is the scene's own.
     pub(super) fn text(&self) -> Option<String> {
         let pose = self.camera.pose();
         let [origin, forward, up] = [pose.origin, pose.forward, pose.up].map(|v| v.to_array());
@@ -164,7 +164,7 @@ impl CameraControl {
         })
     }
 
-    /// A step and a turn; the target comes along.
+    /// Returns a step and a turn; the target comes along.
     pub(super) fn walk(&mut self, walk: Walk) -> Result<(), Refusal> {
         let (pose, unit) = (self.camera.pose(), self.distance());
         let step = pose.right * walk.right + pose.up * walk.up + pose.forward * walk.forward;
@@ -206,7 +206,7 @@ impl CameraControl {
     }
 }
 
-/// The point in the middle of the picture, in the axes of the camera; where nothing is there, one as far
+/// Returns the point in the middle of the picture, in the axes of the camera; where nothing is there, one as far
 /// as the middle of the scene.
 fn target(scene: &Scene, view: &View) -> Vec3 {
     let (camera, film) = (view.camera(), view.film());
@@ -228,7 +228,7 @@ fn target(scene: &Scene, view: &View) -> Vec3 {
     pose.to_local(point - pose.origin)
 }
 
-/// A film with a fraction of the pixels of `film` to each side.
+/// Returns a film with a fraction of the pixels of `film` to each side.
 fn coarse(film: &FilmSettings) -> FilmSettings {
     let PixelRect { min, max } = film.crop;
     FilmSettings {
@@ -256,7 +256,7 @@ mod tests {
         FilmSettings::new([SIDE as u32; 2], Filter::default())
     }
 
-    /// The view of nothing but a sky.
+    /// Returns the view of nothing but a sky.
     fn view(camera: Camera) -> CameraControl {
         view_in(RenderSpace::WORLD, camera)
     }

@@ -133,7 +133,7 @@ impl RenderController {
         }
     }
 
-    /// The number of the slot that rendered for the least time, of those that are not complete.
+    /// Returns the number of the slot that rendered for the least time, of those that are not complete.
     fn slot_behind(&self) -> Option<usize> {
         if self.state != State::Rendering {
             return None;
@@ -271,7 +271,7 @@ impl RenderController {
     }
 }
 
-/// The layers with those that queries about pixels need.
+/// Returns the layers with those that queries about pixels need.
 fn with_inspected(layers: &Layers) -> Layers {
     let aovs = [layers.aovs(), &[Aov::Samples, Aov::Variance, Aov::Rays]].concat();
     Layers::new(&aovs, layers.light_groups(), layers.strategy_vertices())

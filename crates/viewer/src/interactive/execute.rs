@@ -159,13 +159,13 @@ impl RenderController {
         Ok(message)
     }
 
-    /// The settings of a lane.
+    /// Returns the settings of a lane.
     fn wanted(&self, lane: LaneId) -> Result<&Settings, String> {
         let wanted = self.wanted.get(lane.index());
         wanted.ok_or_else(|| "there is no second lane: `split` makes one".to_owned())
     }
 
-    /// `settings` with another method; roulette is the one that suits it, where none was asked for.
+    /// Returns `settings` with another method; roulette is the one that suits it, where none was asked for.
     fn method(
         &self,
         settings: &Settings,

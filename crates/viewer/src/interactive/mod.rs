@@ -56,7 +56,7 @@ impl InteractiveRender {
         Ok(Self { thread, client })
     }
 
-    /// True where the thread has ended by itself, which is a bug.
+    /// Returns true where the thread has ended by itself, which is a bug.
     pub fn is_finished(&self) -> bool {
         self.thread.is_finished()
     }

@@ -21,7 +21,7 @@ impl Saved {
         Self { folder, names }
     }
 
-    /// The names of the files that were written.
+    /// Returns the names of the files that were written.
     pub(super) fn into_names(self) -> Vec<String> {
         self.names.into_iter().collect()
     }

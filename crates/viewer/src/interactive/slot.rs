@@ -77,7 +77,7 @@ impl RenderSlot {
         self.view.show(&self.render.session, state);
     }
 
-    /// The header of files of the passes so far.
+    /// Returns the header of files of the passes so far.
     pub(super) fn header(&self) -> FilmHeader {
         let stopping = if self.is_complete() {
             Stopping::Fixed
@@ -97,7 +97,7 @@ impl RenderSlot {
     }
 }
 
-/// The settings of a preview, which needs no training: no camera would stand still for as long as
+/// Returns the settings of a preview, which needs no training: no camera would stand still for as long as
 /// `auto` tries estimators. Bidirectional path tracing samples all light paths of the others.
 /// `roulette` is the requested one.
 pub(super) fn without_training(

@@ -32,7 +32,7 @@ fn addresses_are_as_people_write_them() {
     }
 }
 
-/// A crop of a film.
+/// Returns a crop of a film.
 fn view() -> View {
     let mut film = FilmSettings::new([8, 6], Filter::default());
     (film.crop.min, film.crop.max) = ([2, 1], [7, 4]);
@@ -46,7 +46,7 @@ fn view() -> View {
     View::new(Camera::Perspective(camera.unwrap()), film).unwrap()
 }
 
-/// A sky.
+/// Returns a sky.
 fn scene() -> Scene {
     let mut builder = SceneBuilder::new();
     builder.light(Light::Infinite(InfiniteLight::constant([0.1, 0.7, 2.0])));
@@ -62,7 +62,7 @@ fn tev_at(listener: &TcpListener) -> Tev {
     Tev::start(address.parse().unwrap(), "rooms/a.pbrt").unwrap()
 }
 
-/// The packets of a connection, without their lengths.
+/// Returns the packets of a connection, without their lengths.
 fn packets(stream: &mut TcpStream) -> Vec<Vec<u8>> {
     let mut packets = Vec::new();
     let mut length = [0; 4];

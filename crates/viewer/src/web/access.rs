@@ -33,7 +33,7 @@ impl Access {
         Ok(Self { address, token })
     }
 
-    /// The address that a user opens. An address that stands for all of this machine is named as the loopback.
+    /// Returns the address that a user opens. An address that stands for all of this machine is named as the loopback.
     pub(super) fn url(&self) -> String {
         let mut address = self.address;
         if address.ip().is_unspecified() {
@@ -90,7 +90,7 @@ impl Access {
     }
 }
 
-/// A header that is plain text. None: it is not there, or something else.
+/// Returns a header that is plain text. None: it is not there, or something else.
 fn text(headers: &HeaderMap, name: header::HeaderName) -> Option<&str> {
     headers.get(name)?.to_str().ok()
 }
@@ -99,7 +99,7 @@ fn forbidden(message: &str) -> Refusal {
     Refusal::new(StatusCode::FORBIDDEN, message)
 }
 
-/// 128 random bits in hexadecimal.
+/// Returns 128 random bits in hexadecimal.
 fn random_token() -> io::Result<String> {
     let mut bytes = [0; TOKEN];
     getrandom::fill(&mut bytes).map_err(io::Error::other)?;

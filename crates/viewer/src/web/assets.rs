@@ -11,7 +11,7 @@ use rust_embed::{Embed, EmbeddedFile};
 #[folder = "page"]
 struct Page;
 
-/// True for what is embedded beside the page.
+/// Returns true for what is embedded beside the page.
 pub(super) fn is_asset(path: &str) -> bool {
     path.starts_with("/assets/")
 }
@@ -36,7 +36,7 @@ fn answer(name: &str) -> Result<Response, Refusal> {
     Ok((kind, data).into_response())
 }
 
-/// The type of a file by its name's end.
+/// Returns the type of a file by its name's end.
 fn content_type(name: &str) -> &'static str {
     match name.rsplit_once('.').map(|(_, end)| end) {
         Some("html") => "text/html; charset=utf-8",

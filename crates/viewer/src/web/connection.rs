@@ -120,7 +120,7 @@ impl Patient {
         }
     }
 
-    /// The outcome of a write, which may be that the patience has ended.
+    /// Returns the outcome of a write, which may be that the patience has ended.
     fn watched<T>(
         &mut self,
         context: &mut Context<'_>,

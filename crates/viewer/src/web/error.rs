@@ -17,17 +17,17 @@ impl Refusal {
         Self { status, message }
     }
 
-    /// The query is wrong.
+    /// Returns the query is wrong.
     pub(super) fn query(message: impl Into<String>) -> Self {
         Self::new(StatusCode::BAD_REQUEST, message)
     }
 
-    /// The requested thing is not there now, but may be later.
+    /// Returns the requested thing is not there now, but may be later.
     pub(super) fn now(message: impl Into<String>) -> Self {
         Self::new(StatusCode::CONFLICT, message)
     }
 
-    /// A bug.
+    /// Makes a bug.
     pub(super) fn bug(message: impl Into<String>) -> Self {
         Self::new(StatusCode::INTERNAL_SERVER_ERROR, message)
     }

@@ -71,7 +71,7 @@ pub(super) async fn exr(
     Ok(response)
 }
 
-/// A name for a file of the scene `name`, of letters that mean nothing anywhere.
+/// Returns a name for a file of the scene `name`, of letters that mean nothing anywhere.
 fn file_name(name: &str) -> String {
     let stem = name.rsplit_once('.').map_or(name, |(stem, _)| stem);
     let is_plain = |c: char| c.is_ascii_alphanumeric() || matches!(c, '-' | '_');
@@ -134,7 +134,7 @@ pub(super) async fn strategies(
     encode(&site, "image/png", encode_pixels).await
 }
 
-/// A picture, so many stops brighter.
+/// Returns a picture, so many stops brighter.
 fn encode_pixels(mut pixels: Pixels, stops: f32) -> formats::Result<Vec<u8>> {
     let factor = libm::exp2f(stops);
     for channel in pixels.data.as_flattened_mut() {

@@ -182,7 +182,7 @@ async fn changed_after(
     status.changed().await
 }
 
-/// The command in a message. None: it has none, as the answer to a ping.
+/// Returns the command in a message. None: it has none, as the answer to a ping.
 fn heard(message: Option<Result<Message, axum::Error>>) -> Result<Option<Command>, End> {
     match message {
         None | Some(Ok(Message::Close(_))) => Err(End::Gone),
@@ -204,7 +204,7 @@ fn command(text: &str) -> Result<Command, End> {
     })
 }
 
-/// The reason for a client whose message cannot be read.
+/// Returns the reason for a client whose message cannot be read.
 fn broken(error: axum::Error) -> End {
     use tungstenite::Error;
     match error.into_inner().downcast_ref::<Error>() {
@@ -229,7 +229,7 @@ fn close(code: u16, reason: &str) -> End {
     End::Refused(CloseFrame { code, reason })
 }
 
-/// The renderer is gone.
+/// Returns the renderer is gone.
 fn gone(_: watch::error::RecvError) -> End {
     close(close_code::AWAY, "the render has ended")
 }

@@ -76,7 +76,7 @@ impl Server {
         })
     }
 
-    /// The address, with the token where there is one.
+    /// Returns the address, with the token where there is one.
     pub fn url(&self) -> &str {
         &self.url
     }
@@ -93,7 +93,7 @@ impl Drop for Server {
     }
 }
 
-/// A listener on `address`; where its port is taken, on one of the next `more`.
+/// Returns a listener on `address`; where its port is taken, on one of the next `more`.
 ///
 /// Errors: all of them are taken, or the address is not this machine's.
 pub fn listen(address: SocketAddr, more: u16) -> io::Result<TcpListener> {

@@ -47,7 +47,7 @@ pub(super) struct Place {
 }
 
 impl Places {
-    /// A place for a connection from `address`. None: all are taken by connections that are busy.
+    /// Returns a place for a connection from `address`. None: all are taken by connections that are busy.
     pub(super) fn take(self: &Arc<Self>, address: IpAddr) -> Option<Place> {
         let peer = peer(address);
         let mut taken = self.lock();
@@ -89,7 +89,7 @@ impl Taken {
         self.now
     }
 
-    /// The number of places of a peer.
+    /// Returns the number of places of a peer.
     fn count(&self, peer: IpAddr) -> usize {
         let of_peer = self.holders.values().filter(|holder| holder.peer == peer);
         of_peer.count()
@@ -142,7 +142,7 @@ impl Drop for Place {
     }
 }
 
-/// The network that counts as one peer: an address, of IPv6 the network that one host usually has to itself.
+/// Returns the network that counts as one peer: an address, of IPv6 the network that one host usually has to itself.
 fn peer(address: IpAddr) -> IpAddr {
     match address.to_canonical() {
         IpAddr::V6(address) => {

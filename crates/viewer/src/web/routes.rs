@@ -16,7 +16,7 @@ const LONGEST_URI: usize = 2048;
 const POLICY: &str = "default-src 'self'; base-uri 'none'; form-action 'none'; \
                       frame-ancestors 'none'; object-src 'none'";
 
-/// All answers.
+/// Returns all answers.
 pub(super) fn router(site: &Arc<Site>) -> Router {
     Router::new()
         .route("/", get(assets::index))
@@ -86,7 +86,7 @@ async fn log(State(site): State<Arc<Site>>) -> Response {
     (kind, site.client.state().log_text()).into_response()
 }
 
-/// An answer in JSON.
+/// Returns an answer in JSON.
 pub(super) fn json(value: &impl serde::Serialize) -> Result<Response, Refusal> {
     let body = serde_json::to_string(value).map_err(|error| Refusal::bug(error.to_string()))?;
     Ok(([(header::CONTENT_TYPE, "application/json")], body).into_response())

@@ -27,7 +27,7 @@ impl<const N: usize> Curve<N> {
         Self { unit: 1.0, steps }
     };
 
-    /// The cosines that a curve goes through: at the zeros of T_N.
+    /// Returns the cosines that a curve goes through: at the zeros of T_N.
     pub(super) fn cosines() -> [f32; N] {
         std::array::from_fn(|i| {
             let x = LEAST + (1.0 - LEAST) * (libm::cosf(angle::<N>(i)) + 1.0) / 2.0;
@@ -35,7 +35,7 @@ impl<const N: usize> Curve<N> {
         })
     }
 
-    /// The curve with `values` at [`cosines`](Self::cosines).
+    /// Returns the curve with `values` at [`cosines`](Self::cosines).
     pub(super) fn through(values: [f32; N]) -> Self {
         Self::of_series(std::array::from_fn(|k| {
             let term = |(i, value)| value * libm::cosf(k as f32 * angle::<N>(i));
@@ -60,13 +60,13 @@ impl<const N: usize> Curve<N> {
         self.steps.map(|steps| f32::from(steps) * self.unit)
     }
 
-    /// The value at `cos`.
+    /// Returns the value at `cos`.
     #[inline]
     pub(in crate::bsdf) fn at(self, cos: f32) -> f32 {
         self.at_both([cos; 2])[0]
     }
 
-    /// The values at two cosines, by Clenshaw's recurrence.
+    /// Returns the values at two cosines, by Clenshaw's recurrence.
     ///
     /// With u = T_2(s), T_2k(s) = T_k(u) and T_2k+1(s) = s V_k(u), Chebyshev's polynomials of the third kind, which have
     /// the same recurrence: even and odd coefficients at both cosines are four sums of half the length, one in each lane.
@@ -86,7 +86,7 @@ impl<const N: usize> Curve<N> {
         [sums.x + s[0] * sums.y, sums.z + s[1] * sums.w].map(|sum| sum * self.unit)
     }
 
-    /// ∫ 2μ value dμ over `[0, 1]`.
+    /// Returns ∫ 2μ value dμ over `[0, 1]`.
     pub(in crate::bsdf) fn mean(self) -> f32 {
         mean(64, |cos| self.at(cos))
     }
@@ -118,7 +118,7 @@ impl<const N: usize> Curve<N> {
     }
 }
 
-/// θ of the zero number `i` of T_N, which is cosθ.
+/// Returns θ of the zero number `i` of T_N, which is cosθ.
 fn angle<const N: usize>(i: usize) -> f32 {
     std::f32::consts::PI * (i as f32 + 0.5) / N as f32
 }

@@ -64,7 +64,7 @@ impl Filled {
         }
     }
 
-    /// The mean of tables by their weights, which sum to 1.
+    /// Returns the mean of tables by their weights, which sum to 1.
     pub fn mixed(mut parts: impl Iterator<Item = (f32, Self)>) -> Self {
         let Some((first_weight, first)) = parts.next() else {
             return Self::NONE;
@@ -88,7 +88,7 @@ impl Filled {
 /// The light of a walk, by the number of scattering events.
 type Orders = [f32; ORDERS];
 
-/// Σ_k ϖ^k S_k.
+/// Returns Σ_k ϖ^k S_k.
 fn at_albedo(orders: &Orders, albedo: f32) -> f32 {
     orders
         .iter()
@@ -130,7 +130,7 @@ enum End {
 }
 
 impl Slab {
-    /// A layer under `layer`'s interface.
+    /// Makes a layer under `layer`'s interface.
     pub fn new(layer: &Layer, depth: f32, g: f32) -> Self {
         Self {
             interface: layer.interface,
@@ -139,7 +139,7 @@ impl Slab {
         }
     }
 
-    /// The tables for each of `albedos`: nothing is walked where none scatters.
+    /// Returns the tables for each of `albedos`: nothing is walked where none scatters.
     pub fn tables(&self, layer: &Layer, albedos: &[f32]) -> Vec<Filled> {
         let scatters = self.depth > 0.0 && albedos.iter().any(|&albedo| albedo > 0.0);
         let arriving = |cos| self.arriving(cos, scatters);
@@ -162,7 +162,7 @@ impl Slab {
         albedos.iter().map(table).collect()
     }
 
-    /// T, B and E of light with cosine `cos`.
+    /// Returns T, B and E of light with cosine `cos`.
     fn arriving(&self, cos: f32, scatters: bool) -> Arriving {
         let mut sums = Arriving {
             entering: self.interface.transmittance(cos),
@@ -209,7 +209,7 @@ impl Slab {
         }
     }
 
-    /// R.
+    /// Returns R.
     fn returning(&self, scatters: bool) -> Orders {
         let left = |cos: f32| libm::expf(-self.depth / cos.abs());
         let mut sums = [0.0; ORDERS];
@@ -285,7 +285,7 @@ impl Slab {
     }
 }
 
-/// D and ℓ of a curve through what arrives.
+/// Returns D and ℓ of a curve through what arrives.
 fn length(arriving: &[Arriving; LENGTHS], albedo: f32) -> (f32, Curve<LENGTHS>) {
     let depth = |arriving: &Arriving| {
         let left = at_albedo(&arriving.base, albedo) / arriving.entering.max(1e-6);
@@ -300,7 +300,7 @@ fn length(arriving: &[Arriving; LENGTHS], albedo: f32) -> (f32, Curve<LENGTHS>) 
     }
 }
 
-/// Ē and e of a curve through what arrives.
+/// Returns Ē and e of a curve through what arrives.
 fn shape(layer: &Layer, arriving: &[Arriving; SHAPES], albedo: f32) -> (f32, Curve<SHAPES>) {
     let ratio =
         |arriving: &Arriving| at_albedo(&arriving.thrown, albedo) / arriving.entering.max(1e-6);
@@ -313,7 +313,7 @@ fn shape(layer: &Layer, arriving: &[Arriving; SHAPES], albedo: f32) -> (f32, Cur
     }
 }
 
-/// A point of a Kronecker sequence, which fills the unit cube evenly: multiples of the powers of 1/φ,
+/// Returns a point of a Kronecker sequence, which fills the unit cube evenly: multiples of the powers of 1/φ,
 /// φ⁴ = φ + 1.
 fn even_point(index: u32) -> [f32; 3] {
     const STEPS: [f64; 3] = [
@@ -324,13 +324,13 @@ fn even_point(index: u32) -> [f32; 3] {
     STEPS.map(|step| ((f64::from(index) + 0.5) * step).fract() as f32)
 }
 
-/// The numbers of `n` walks.
+/// Returns the numbers of `n` walks.
 fn streams(n: u64) -> impl Iterator<Item = SampleStream> {
     let sampler = Sampler::new(SamplerKind::Sobol, 0);
     (0..n).map(move |index| sampler.stream(Domain::Light, 0, index))
 }
 
-/// The direction after scattering of light along `w`, of mean cosine `g`.
+/// Returns the direction after scattering of light along `w`, of mean cosine `g`.
 fn henyey_greenstein(w: Vec3, g: f32, u: Vec2) -> Vec3 {
     let g = g.clamp(-0.999, 0.999);
     let cos = if g.abs() < 1e-3 {

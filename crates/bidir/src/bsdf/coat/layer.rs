@@ -60,7 +60,7 @@ impl Interface {
         }
     }
 
-    /// The mean of `value` over what `n`² facets do with light of cosine `cos`, from within where it is
+    /// Returns the mean of `value` over what `n`² facets do with light of cosine `cos`, from within where it is
     /// negative.
     pub(super) fn mean(&self, cos: f32, n: usize, value: impl Fn(Split) -> f32) -> f32 {
         let w = Vec3::new(safe_sqrt(1.0 - sqr(cos)), 0.0, cos);
@@ -72,7 +72,7 @@ impl Interface {
         (0..n * n).map(at).sum::<f32>() / (n * n) as f32
     }
 
-    /// T.
+    /// Returns T.
     pub(super) fn transmittance(&self, cos: f32) -> f32 {
         self.mean(cos, FACETS, |split| {
             split.refracted.map_or(0.0, |(_, part)| part)
@@ -122,13 +122,13 @@ impl Layer {
         }
     }
 
-    /// T.
+    /// Returns T.
     pub(super) fn transmittance(&self, cos: f32) -> f32 {
         let through = 1.0 - fresnel::dielectric(spread_cosine(cos, self.grazing), self.eta());
         through * self.ratio.at(cos)
     }
 
-    /// Index of refraction of the layer, divided by that outside.
+    /// Returns the index of refraction of the layer, divided by that outside.
     #[inline]
     pub(super) fn eta(&self) -> f32 {
         self.interface.eta
@@ -147,7 +147,7 @@ impl Layer {
     }
 }
 
-/// The cosine at which a smooth interface transmits as much: by bisection, since F falls with it.
+/// Returns the cosine at which a smooth interface transmits as much: by bisection, since F falls with it.
 fn grazing_cosine(eta: f32, transmittance: f32) -> f32 {
     let (mut low, mut high) = (0.0f32, 1.0);
     for _ in 0..24 {

@@ -60,7 +60,7 @@ pub(super) struct Seen {
 }
 
 impl<const R: usize, const L: usize> Coat<R, L> {
-    /// A coat with facets of `ggx` under the interface of `layer`, which `ratio` gives the
+    /// Makes a coat with facets of `ggx` under the interface of `layer`, which `ratio` gives the
     /// transmittance.
     pub(super) fn new(
         layer: &Layer,
@@ -83,7 +83,7 @@ impl<const R: usize, const L: usize> Coat<R, L> {
         self.eta
     }
 
-    /// An index-matched interface reflects nothing, and bends nothing.
+    /// Returns an index-matched interface reflects nothing, and bends nothing.
     #[inline]
     pub(super) fn is_smooth(&self) -> bool {
         self.ggx.is_smooth()
@@ -95,7 +95,7 @@ impl<const R: usize, const L: usize> Coat<R, L> {
         fresnel::dielectric(spread_cosine(w.z, self.grazing).max(1e-7), self.eta)
     }
 
-    /// T(w): the part of light along `w` that the interface lets through to the base.
+    /// Returns T(w): the part of light along `w` that the interface lets through to the base.
     #[inline]
     pub(super) fn transmittance(&self, w: Vec3) -> f32 {
         self.interface(w).through
@@ -122,7 +122,7 @@ impl<const R: usize, const L: usize> Coat<R, L> {
         })
     }
 
-    /// The direction within the layer, on the same side, as a smooth interface bends it. None: total
+    /// Returns the direction within the layer, on the same side, as a smooth interface bends it. None: total
     /// reflection.
     #[inline]
     pub(super) fn refracted(&self, w: Vec3) -> Option<Vec3> {
@@ -131,7 +131,7 @@ impl<const R: usize, const L: usize> Coat<R, L> {
         (cos2 > 0.0).then(|| Vec3::new(x, y, cos2.sqrt().copysign(w.z)))
     }
 
-    /// The direction outside of one within the layer. None: total reflection.
+    /// Returns the direction outside of one within the layer. None: total reflection.
     #[inline]
     pub(super) fn emerging(&self, w: Vec3) -> Option<Vec3> {
         let (x, y) = (w.x * self.eta, w.y * self.eta);
@@ -139,7 +139,7 @@ impl<const R: usize, const L: usize> Coat<R, L> {
         (cos2 > 0.0).then(|| Vec3::new(x, y, cos2.sqrt().copysign(w.z)))
     }
 
-    /// A(wo) A(wi): the part of light that the layer leaves after crossing along both.
+    /// Returns A(wo) A(wi): the part of light that the layer leaves after crossing along both.
     #[inline]
     pub(super) fn attenuation(&self, wo: Vec3, wi: Vec3) -> Spectrum {
         if self.depth.is_black() {
@@ -159,8 +159,8 @@ impl<const R: usize, const L: usize> Coat<R, L> {
         })
     }
 
-    /// f of the interface's reflection, and the densities with which [`sample`](Self::sample) draws `wi` for `wo`, and
-    /// `wo` for `wi`. Unit of all: 1/sr. Zero where it is smooth.
+    /// Returns f of the interface's reflection, and the densities with which [`sample`](Self::sample) draws `wi` for
+    /// `wo`, and `wo` for `wi`. Unit of all: 1/sr. Zero where it is smooth.
     #[inline]
     pub(super) fn eval(&self, wo: Vec3, wi: Vec3) -> (f32, [f32; 2]) {
         if self.is_smooth() {
@@ -178,13 +178,13 @@ impl<const R: usize, const L: usize> Coat<R, L> {
     }
 }
 
-/// ∫ 2μ value(μ) dμ over `[0, 1]`, with `points` even in μ².
+/// Returns ∫ 2μ value(μ) dμ over `[0, 1]`, with `points` even in μ².
 fn mean(points: usize, value: impl Fn(f32) -> f32) -> f32 {
     let at = |i| f64::from(value(((i as f32 + 0.5) / points as f32).sqrt()));
     ((0..points).map(at).sum::<f64>() / points as f64) as f32
 }
 
-/// The facets of a metal as they look through those of an interface `coat` of index `eta`.
+/// Returns the facets of a metal as they look through those of an interface `coat` of index `eta`.
 ///
 /// A facet of the interface that is tilted by t bends what it refracts by t (1 - 1/η), twice on the
 /// way; one of the metal, what it reflects by 2t.
@@ -201,13 +201,13 @@ pub(super) fn seen_through(metal: Ggx, coat: Ggx, eta: f32) -> Ggx {
     }
 }
 
-/// μ̂ = √(μ² + (1-μ²) g²).
+/// Returns μ̂ = √(μ² + (1-μ²) g²).
 #[inline]
 fn spread_cosine(cos: f32, grazing: f32) -> f32 {
     (sqr(cos) + (1.0 - sqr(cos)).max(0.0) * sqr(grazing)).sqrt()
 }
 
-/// Σ x^k over all k: light that is thrown back k times. Finite even where a layer keeps all of it.
+/// Returns Σ x^k over all k: light that is thrown back k times. Finite even where a layer keeps all of it.
 #[inline]
 pub(super) fn all_orders(x: f32) -> f32 {
     1.0 / (1.0 - x.min(0.9999))

@@ -168,7 +168,7 @@ impl Reflections {
         }
     }
 
-    /// Σ m_k F^k a^(k-1) over k ≥ 2: the part of E for a metal of reflectance `fresnel`, under a layer
+    /// Returns Σ m_k F^k a^(k-1) over k ≥ 2: the part of E for a metal of reflectance `fresnel`, under a layer
     /// that leaves the part `trip` between two reflections.
     #[inline]
     pub(in crate::bsdf) fn remaining(&self, fresnel: f32, trip: f32) -> f32 {
@@ -178,18 +178,18 @@ impl Reflections {
     }
 }
 
-/// The direction of cosine `cos` in the plane of incidence.
+/// Returns the direction of cosine `cos` in the plane of incidence.
 fn along(cos: f32) -> Vec3 {
     Vec3::new(safe_sqrt(1.0 - sqr(cos)), 0.0, cos)
 }
 
 impl Surfaces {
-    /// The way of one reflection, in thicknesses and halved, at the cosines of q.
+    /// Returns the way of one reflection, in thicknesses and halved, at the cosines of q.
     fn crossings(&self, leaving: &[Leaving; KNOTS]) -> [f32; KNOTS] {
         leaving.map(|of| crossing(of.once[0] / of.parts[0].max(1e-6), self.depth))
     }
 
-    /// The coat whose q scatters E₁ in the closed form of one reflection, and whose ℓ absorbs as much.
+    /// Returns the coat whose q scatters E₁ in the closed form of one reflection, and whose ℓ absorbs as much.
     fn fitted_coat(&self, layer: &Layer, leaving: &[Leaving; KNOTS]) -> MetalCoat {
         let ggx = self.coat.ggx;
         let cosines = Curve::<KNOTS>::cosines();
@@ -220,7 +220,7 @@ impl Surfaces {
         coat(ratios, lengths)
     }
 
-    /// s, by least squares.
+    /// Returns s, by least squares.
     fn steepness(&self, coat: &MetalCoat, leaving: &[Leaving; KNOTS]) -> f32 {
         if self.coat.ggx.is_smooth() {
             return 0.0;
@@ -238,7 +238,7 @@ impl Surfaces {
         (products / squares).clamp(0.0, 1.0)
     }
 
-    /// The part of light with cosine `cos` that leaves.
+    /// Returns the part of light with cosine `cos` that leaves.
     fn leaving(&self, cos: f32) -> Leaving {
         let wo = along(cos);
         let sampler = Sampler::new(SamplerKind::Sobol, 0);
@@ -318,7 +318,7 @@ impl Surfaces {
     }
 }
 
-/// The way that leaves the part `left` at the optical depth `depth`, in thicknesses and halved.
+/// Returns the way that leaves the part `left` at the optical depth `depth`, in thicknesses and halved.
 fn crossing(left: f32, depth: f32) -> f32 {
     -libm::logf(left.clamp(1e-9, 1.0)) / (2.0 * depth)
 }
@@ -339,8 +339,8 @@ impl Once {
     }
 }
 
-/// The part of light with cosine `cos` that white metal reflects once under `coat`, as `CoatedConductor` has it,
-/// but for the number of points.
+/// Returns the part of light with cosine `cos` that white metal reflects once under `coat`, as `CoatedConductor` has
+/// it, but for the number of points.
 fn once_in_closed_form(coat: &MetalCoat, metal: Ggx, cos: f32) -> Once {
     let wo = along(cos);
     let mut once = Once::default();

@@ -21,7 +21,7 @@ const UPRIGHT: f32 = 0.35;
 /// Indices of the fits; k fades out beyond them.
 const INDICES: [f32; 2] = [1.2, 3.0];
 
-/// k of facets that reflect all light.
+/// Returns k of facets that reflect all light.
 #[inline]
 pub(in crate::bsdf) fn of_mirrors(ggx: Ggx, w: Vec3) -> f32 {
     let [along, across] = slopes(ggx, w);
@@ -29,7 +29,7 @@ pub(in crate::bsdf) fn of_mirrors(ggx: Ggx, w: Vec3) -> f32 {
     (fit - SLACK_OF_MIRRORS).max(0.0)
 }
 
-/// k of facets between two media, `across` the index of the other side over that of `w`.
+/// Returns k of facets between two media, `across` the index of the other side over that of `w`.
 #[inline]
 pub(in crate::bsdf) fn of_interface(ggx: Ggx, across: f32, w: Vec3) -> f32 {
     let eta = across.max(1.0 / across);
@@ -65,7 +65,7 @@ fn slopes(ggx: Ggx, w: Vec3) -> [f32; 2] {
     [along.sqrt(), across.sqrt()]
 }
 
-/// The polynomial, of variables between 0 and 1.
+/// Returns the polynomial, of variables between 0 and 1.
 #[inline]
 fn value(table: &Polynomial, variables: [f32; 3]) -> f32 {
     let [t, a, y] = variables.map(|x| 2.0 * x - 1.0);

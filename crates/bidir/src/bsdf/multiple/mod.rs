@@ -58,7 +58,7 @@ impl Spread {
         INV_PI * cos.abs() / (self.range * (sqr(cos) + self.c2))
     }
 
-    /// The cosine above which the part `u` of directions is not: u = ln(1 + μ²/c²) / ln(1 + 1/c²).
+    /// Returns the cosine above which the part `u` of directions is not: u = ln(1 + μ²/c²) / ln(1 + 1/c²).
     #[inline]
     fn cosine(self, u: f32) -> f32 {
         let squared = self.c2 * (libm::expf(u * self.range) - 1.0);
@@ -72,7 +72,7 @@ impl Spread {
         around(cos.copysign(w.z), 2.0 * PI * u.y)
     }
 
-    /// ∫ 2μ k dμ, the mean over azimuths.
+    /// Returns ∫ 2μ k dμ, the mean over azimuths.
     fn mean(self, azimuths: u16, k: impl Fn(Vec3) -> f32) -> f32 {
         let at = |index: u16| {
             let cos = self.cosine((f32::from(index % COSINES) + 0.5) / f32::from(COSINES));
@@ -84,7 +84,7 @@ impl Spread {
     }
 }
 
-/// The direction of cosine `cos` at azimuth `phi`.
+/// Returns the direction of cosine `cos` at azimuth `phi`.
 #[inline]
 fn around(cos: f32, phi: f32) -> Vec3 {
     let (y, x) = sin_cos(phi);
@@ -97,7 +97,7 @@ fn azimuths(ggx: Ggx) -> u16 {
     if ggx.is_isotropic() { 1 } else { AZIMUTHS }
 }
 
-/// k̄ of facets that mirror.
+/// Returns k̄ of facets that mirror.
 pub(super) fn mean_of_mirrors(ggx: Ggx) -> f32 {
     Spread::new(ggx).mean(azimuths(ggx), |w| of_mirrors(ggx, w))
 }
@@ -109,7 +109,7 @@ pub(super) fn remaining(mean: Spectrum, lost: f32) -> Spectrum {
     mean.map(|f| sqr(f) * (1.0 - lost) / (1.0 - f * lost).max(1e-6))
 }
 
-/// ∫ 2μ F dμ by Gauss's rule for this weight, exact for cubics.
+/// Returns ∫ 2μ F dμ by Gauss's rule for this weight, exact for cubics.
 #[inline]
 pub(super) fn mean_fresnel(fresnel: impl Fn(f32) -> Spectrum) -> Spectrum {
     fresnel(0.355_051_03) * 0.363_917_24 + fresnel(0.844_948_97) * 0.636_082_76
@@ -122,7 +122,7 @@ pub(super) struct Sides([f32; 2]);
 impl Sides {
     pub(super) const NONE: Self = Self([0.0; 2]);
 
-    /// Those of an interface of index `eta`, inside over outside.
+    /// Returns the factors of an interface of index `eta`, inside over outside.
     pub(super) fn new(ggx: Ggx, eta: f32) -> Self {
         let spread = Spread::new(ggx);
         let mean = |across| spread.mean(azimuths(ggx), |w| of_interface(ggx, across, w));
@@ -134,13 +134,14 @@ impl Sides {
         self.0[0] <= 0.0 || self.0[1] <= 0.0
     }
 
-    /// k̄ on the side of `w`.
+    /// Returns k̄ on the side of `w`.
     #[inline]
     pub(super) fn of(self, w: Vec3) -> f32 {
         self.0[usize::from(w.z < 0.0)]
     }
 
-    /// x: the part of light from the side of `w` that leaves on the other. `across` is the index there over that here.
+    /// Returns x: the part of light from the side of `w` that leaves on the other. `across` is the index there over
+    /// that here.
     #[inline]
     pub(super) fn crossing(self, w: Vec3, across: f32) -> f32 {
         let (here, there) = (self.of(w), self.of(-w));
@@ -153,14 +154,14 @@ impl Sides {
     }
 }
 
-/// x on the less dense side: 1 - F̄ \[Kulla17\], unless the other side's were above 1. `ratio` is k̄ of the denser side over
-/// that of this.
+/// Returns x on the less dense side: 1 - F̄ \[Kulla17\], unless the other side's were above 1. `ratio` is k̄ of the
+/// denser side over that of this.
 #[inline]
 fn outer_crossing(eta: f32, ratio: f32) -> f32 {
     mean_transmittance(eta).min(sqr(eta) * ratio)
 }
 
-/// 1 - ∫ 2μ F dμ of an interface of index `eta` above 1, from the less dense side \[Kulla17\].
+/// Returns 1 - ∫ 2μ F dμ of an interface of index `eta` above 1, from the less dense side \[Kulla17\].
 #[inline]
 pub(super) fn mean_transmittance(eta: f32) -> f32 {
     1.0 - (eta - 1.0) / (4.08567 + 1.00071 * eta)

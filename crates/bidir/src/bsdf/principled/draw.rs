@@ -9,7 +9,7 @@ use crate::math::{ONE_MINUS_EPSILON, Vec2, Vec3, sqr, warp};
 use crate::spectrum::Spectrum;
 
 impl Principled {
-    /// The probability that light which is scattered diffusely stays on its side.
+    /// Returns the probability that light which is scattered diffusely stays on its side.
     #[inline]
     pub(super) fn diffuse_reflection_prob(&self) -> f32 {
         let [back, through] = [self.tint * self.diffuse, self.through].map(Spectrum::max_lane);
@@ -47,7 +47,7 @@ impl Principled {
         })
     }
 
-    /// `wi` with value and densities; both directions in the axes of the grain.
+    /// Returns `wi` with value and densities; both directions in the axes of the grain.
     #[inline]
     fn finite_sample(&self, wo: Vec3, wi: Vec3, mode: TransportMode) -> Option<BsdfSample> {
         let along = Self {
@@ -102,7 +102,7 @@ impl Principled {
         (wi.z != 0.0 && !same_hemisphere(wo, wi)).then_some(wi)
     }
 
-    /// The mirrored direction, by all Dirac lobes that lead there.
+    /// Returns the mirrored direction, by all Dirac lobes that lead there.
     #[inline]
     fn mirror(&self, wo: Vec3) -> BsdfSample {
         let (mut reflectance, mut prob) = (Spectrum::ZERO, 0.0);
@@ -124,7 +124,7 @@ impl Principled {
         }
     }
 
-    /// The probabilities that a smooth base is drawn and reflects, and that it lets through.
+    /// Returns the probabilities that a smooth base is drawn and reflects, and that it lets through.
     #[inline]
     fn smooth_probs(&self, w: Vec3) -> [f32; 2] {
         let facets = self.probs(w).map_or(0.0, |probs| probs.facets);
@@ -162,7 +162,7 @@ impl Principled {
 }
 
 impl Probs {
-    /// The lobe of the number `u`, and what of `u` is left to choose by.
+    /// Returns the lobe of the number `u`, and what of `u` is left to choose by.
     #[inline]
     pub(super) fn choose(self, u: f32) -> (Lobe, f32) {
         let lobes = [

@@ -25,7 +25,7 @@ pub enum Layer {
 }
 
 impl Principled {
-    /// How its base scatters.
+    /// Returns how its base scatters.
     pub(in crate::bsdf) fn lobes(&self) -> Lobes {
         let is_glossy = self.diffuse <= 0.0 && self.through.is_black() && self.sheen.is_black();
         if is_glossy {
@@ -36,7 +36,7 @@ impl Principled {
         }
     }
 
-    /// The normal of the coat, in the frame of the base. None: they have one frame.
+    /// Returns the normal of the coat, in the frame of the base. None: they have one frame.
     #[inline]
     pub(in crate::bsdf) fn coat_normal(&self) -> Option<Vec3> {
         let normal = || Vec3::from(self.coat_normal.map(f32::from)).normalize();

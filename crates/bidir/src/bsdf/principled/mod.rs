@@ -109,7 +109,7 @@ struct Layers {
 }
 
 impl Layers {
-    /// The part of light that coat and sheen leave for the base.
+    /// Returns the part of light that coat and sheen leave for the base.
     #[inline]
     fn below(&self) -> f32 {
         (1.0 - self.coat) * (1.0 - self.sheen)
@@ -117,7 +117,7 @@ impl Layers {
 }
 
 impl Principled {
-    /// The slope that bounds go by.
+    /// Returns the slope that bounds go by.
     #[inline]
     fn alpha(&self) -> f32 {
         self.ggx.mean_alpha()
@@ -128,13 +128,13 @@ impl Principled {
         Ggx::new(self.coat_alpha, self.coat_alpha)
     }
 
-    /// True where no coat and no sheen lies on the side of `w`: within a solid.
+    /// Returns true where no coat and no sheen lies on the side of `w`: within a solid.
     #[inline]
     fn is_bare(&self, w: Vec3) -> bool {
         self.wall == Wall::Solid && w.z < 0.0
     }
 
-    /// Ẽ of the coat, times how much it covers.
+    /// Returns Ẽ of the coat, times how much it covers.
     #[inline]
     fn coat_albedo(&self, w: Vec3) -> f32 {
         if self.coat <= 0.0 || self.is_bare(w) {
@@ -144,7 +144,7 @@ impl Principled {
         self.coat * (COAT_F0 + (1.0 - COAT_F0) * weight).min(1.0)
     }
 
-    /// Ẽ of the sheen's brightest lane.
+    /// Returns Ẽ of the sheen's brightest lane.
     #[inline]
     fn sheen_albedo(&self, w: Vec3) -> f32 {
         if self.sheen.is_black() || self.is_bare(w) {
@@ -153,13 +153,13 @@ impl Principled {
         self.sheen.max_lane() * under::sheen_albedo(w.z.abs(), self.sheen_alpha)
     }
 
-    /// Albedos of the layers for light along `w`.
+    /// Returns the albedos of the layers for light along `w`.
     #[inline]
     fn layers(&self, w: Vec3) -> Layers {
         self.layers_between([w; 2])
     }
 
-    /// Albedos of the layers for light along a direction, which base and coat see in frames of their own.
+    /// Returns the albedos of the layers for light along a direction, which base and coat see in frames of their own.
     #[inline]
     fn layers_between(&self, [base, coat]: [Vec3; 2]) -> Layers {
         Layers {
@@ -169,14 +169,14 @@ impl Principled {
         }
     }
 
-    /// k: the part that the dielectric's reflection leaves for a diffuse base.
+    /// Returns k: the part that the dielectric's reflection leaves for a diffuse base.
     #[inline]
     fn uncovered(&self, seen: &Layers) -> f32 {
         let [f0, f90] = self.cover;
         (1.0 - f0 - (f90 - f0) * seen.weight).clamp(0.0, 1.0)
     }
 
-    /// The part of light that facets of the transparent part reflect; `cos` is positive outside.
+    /// Returns the part of light that facets of the transparent part reflect; `cos` is positive outside.
     #[inline]
     fn clear_reflectance(&self, cos: f32) -> f32 {
         let cos = if self.wall == Wall::Solid {
@@ -190,13 +190,13 @@ impl Principled {
         }
     }
 
-    /// f₀ of metal and opaque dielectric.
+    /// Returns f₀ of metal and opaque dielectric.
     #[inline]
     fn normal_reflectance(&self) -> Spectrum {
         self.tint * self.metal + self.f0
     }
 
-    /// F, where light meets facets at the cosine `cos` and Schlick's weight is `weight`.
+    /// Returns F, where light meets facets at the cosine `cos` and Schlick's weight is `weight`.
     #[inline]
     fn reflectance(&self, cos: f32, weight: f32) -> Spectrum {
         let opaque = self
@@ -208,7 +208,7 @@ impl Principled {
         opaque + Spectrum::splat(self.glass * self.clear_reflectance(cos))
     }
 
-    /// F and T at the cosine `cos` between a direction and a facet.
+    /// Returns F and T at the cosine `cos` between a direction and a facet.
     #[inline]
     fn facet(&self, cos: f32) -> (Spectrum, Spectrum) {
         let reflected = self.reflectance(cos, fresnel::schlick(cos.abs()));
@@ -219,7 +219,7 @@ impl Principled {
         (reflected, self.tint * crossing)
     }
 
-    /// The probability that a facet met at `cos` reflects, where it is drawn. None: it is black.
+    /// Returns the probability that a facet met at `cos` reflects, where it is drawn. None: it is black.
     #[inline]
     fn reflection_prob(&self, cos: f32) -> Option<f32> {
         let (reflected, crossing) = self.facet(cos);
@@ -243,14 +243,14 @@ impl Principled {
         ]
     }
 
-    /// The probabilities of drawing from each lobe, for light along `w`; they depend on |cosθ| and the side alone. None:
-    /// nothing is scattered.
+    /// Returns the probabilities of drawing from each lobe, for light along `w`; they depend on |cosθ| and the side
+    /// alone. None: nothing is scattered.
     #[inline]
     fn probs(&self, w: Vec3) -> Option<Probs> {
         self.probs_of(&self.shares(w, &self.layers(w)))
     }
 
-    /// The probabilities of drawing from each lobe, given the shares.
+    /// Returns the probabilities of drawing from each lobe, given the shares.
     #[inline]
     fn probs_of(&self, shares: &[Spectrum; 4]) -> Option<Probs> {
         let mut shares = shares.map(Spectrum::max_lane);
@@ -288,13 +288,13 @@ impl Principled {
         Self::albedo_of(&self.shares(wo, &self.layers(wo)))
     }
 
-    /// The albedo: the sum of the shares, in `[0, 1]`.
+    /// Returns the albedo: the sum of the shares, in `[0, 1]`.
     #[inline]
     fn albedo_of([coat, facets, diffuse, sheen]: &[Spectrum; 4]) -> Spectrum {
         (*coat + *facets + *diffuse + *sheen).map(|lane| lane.clamp(0.0, 1.0))
     }
 
-    /// A direction in the axes of the grain.
+    /// Returns a direction in the axes of the grain.
     #[inline]
     fn along_grain(&self, w: Vec3) -> Vec3 {
         let Vec2 { x: cos, y: sin } = self.grain;
@@ -307,7 +307,7 @@ impl Principled {
         Vec3::new(w.x * cos - w.y * sin, w.y * cos + w.x * sin, w.z)
     }
 
-    /// The transparent part alone.
+    /// Returns the transparent part alone.
     #[inline]
     fn interface(&self) -> Dielectric {
         Dielectric {

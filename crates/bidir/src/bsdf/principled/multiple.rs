@@ -52,13 +52,13 @@ impl Principled {
         metal + multiple::remaining(mean(self.f0, self.f90 - self.metal), self.lost)
     }
 
-    /// The share of a thin wall's light that leaves on the other side.
+    /// Returns the share of a thin wall's light that leaves on the other side.
     #[inline]
     fn pane_crossing(&self) -> f32 {
         multiple::mean_transmittance(self.eta.max(1.0 / self.eta))
     }
 
-    /// The part of the surface that is a transparent thin wall.
+    /// Returns the part of the surface that is a transparent thin wall.
     #[inline]
     fn pane(&self) -> f32 {
         if self.wall == Wall::Thin {
@@ -68,14 +68,14 @@ impl Principled {
         }
     }
 
-    /// The part of the surface that is a transparent solid, as far as its facets reflect as Fresnel's equations say: what
-    /// refraction alone would lose is not known, so that the rest keeps its loss.
+    /// Returns the part of the surface that is a transparent solid, as far as its facets reflect as Fresnel's equations
+    /// say: what refraction alone would lose is not known, so that the rest keeps its loss.
     #[inline]
     fn solid(&self) -> f32 {
         (self.glass - self.pane()) * self.specular
     }
 
-    /// The parts of the light that mirroring facets lose which leave on its side, and on the other.
+    /// Returns the parts of the light that mirroring facets lose which leave on its side, and on the other.
     #[inline]
     fn mirrored_parts(&self) -> [Spectrum; 2] {
         let (pane, crossing) = (self.pane(), self.pane_crossing());
@@ -83,8 +83,8 @@ impl Principled {
         [stays, self.tint * (pane * crossing)]
     }
 
-    /// The probabilities, where facets are drawn, that light along `w` leaves after more than one, on its side and on the
-    /// other.
+    /// Returns the probabilities, where facets are drawn, that light along `w` leaves after more than one, on its side
+    /// and on the other.
     #[inline]
     pub(super) fn multiple_probs(&self, w: Vec3) -> [f32; 2] {
         let lost = self.lost_of(w);
@@ -107,7 +107,7 @@ impl Principled {
         often.map(|share| share / sum)
     }
 
-    /// `once`, and light that more than one facet scatters between the two directions.
+    /// Returns `once`, and light that more than one facet scatters between the two directions.
     #[inline]
     pub(super) fn with_multiple(
         &self,

@@ -60,7 +60,7 @@ pub struct PrincipledParameters {
 }
 
 impl PrincipledParameters {
-    /// A dielectric of index 1.5 over a diffuse base of `color`, with facets of `ggx`.
+    /// Makes a dielectric of index 1.5 over a diffuse base of `color`, with facets of `ggx`.
     pub const fn plain(color: Spectrum, ggx: Ggx) -> Self {
         Self {
             color,
@@ -84,7 +84,7 @@ impl PrincipledParameters {
     }
 }
 
-/// The wall that a surface of this relative index is. Indices closer to 1 bend nothing that could be seen.
+/// Returns the wall that a surface of this relative index is. Indices closer to 1 bend nothing that could be seen.
 fn wall(described: Wall, eta: f32) -> Wall {
     const LEAST_BEND: f32 = 1e-3;
     if (eta - 1.0).abs() > LEAST_BEND && eta > 0.0 {
@@ -95,7 +95,7 @@ fn wall(described: Wall, eta: f32) -> Wall {
 }
 
 impl Principled {
-    /// The scattering of what `parameters` describe.
+    /// Returns the scattering of what `parameters` describe.
     pub fn new(parameters: &PrincipledParameters) -> Self {
         let p = parameters;
         let dielectric = 1.0 - p.metallic;
@@ -152,7 +152,7 @@ impl Principled {
         .with_lost_through()
     }
 
-    /// The surface of a solid with `index` around it in place of air.
+    /// Returns the surface of a solid with `index` around it in place of air.
     pub(in crate::bsdf) fn within(self, index: f32) -> Self {
         let eta = self.eta / index;
         Self {

@@ -14,7 +14,7 @@ const FITS: [[f32; 5]; 2] = [
     [25.3245, 3.32435, 0.16801, -1.27393, -4.85967],
 ];
 
-/// f of white fibres for directions on one side.
+/// Returns f of white fibres for directions on one side.
 #[inline]
 pub(super) fn eval(wo: Vec3, wi: Vec3, alpha: f32) -> f32 {
     // Λ is finite at the rim, where its fit was not made: cosines end where f is at its largest.

@@ -13,7 +13,7 @@ fn direction(cos: f32) -> Vec3 {
 const SLOPES: [f32; 8] = [0.02, 0.05, 0.1, 0.2, 0.35, 0.5, 0.75, 1.0];
 const COSINES: [f32; 8] = [0.01, 0.05, 0.1, 0.2, 0.4, 0.6, 0.8, 1.0];
 
-/// The centres of the cells of a square grid.
+/// Returns the centres of the cells of a square grid.
 fn grid(n: usize) -> impl Iterator<Item = Vec2> {
     let at = move |i: usize| (i as f32 + 0.5) / n as f32;
     (0..n * n).map(move |i| Vec2::new(at(i % n), at(i / n)))

@@ -8,7 +8,7 @@
 use crate::bsdf::fresnel;
 use crate::math::sqr;
 
-/// W̃(μ): a bound of ∫ (1 - wo·m)⁵ D G₂ / (4 |cosθ_o cosθ_i|) cosθ_i dω for facets of slope `alpha`.
+/// Returns W̃(μ): a bound of ∫ (1 - wo·m)⁵ D G₂ / (4 |cosθ_o cosθ_i|) cosθ_i dω for facets of slope `alpha`.
 #[inline]
 pub(super) fn facet_weight(cos: f32, alpha: f32) -> f32 {
     let cos = cos.clamp(0.0, 1.0);
@@ -18,14 +18,14 @@ pub(super) fn facet_weight(cos: f32, alpha: f32) -> f32 {
     smooth / (1.0 + smooth * spread) + tail
 }
 
-/// A bound from below of ∫ 2μ W̃(μ) dμ.
+/// Returns a bound from below of ∫ 2μ W̃(μ) dμ.
 #[inline]
 pub(super) fn mean_facet_weight(alpha: f32) -> f32 {
     let alpha = alpha.clamp(0.0, 1.0);
     0.047 / (1.0 + 3.4 * alpha - 0.6 * sqr(alpha))
 }
 
-/// A bound of the directional albedo of [`sheen`](super::sheen), for slopes from
+/// Returns a bound of the directional albedo of [`sheen`](super::sheen), for slopes from
 /// [`SHEEN_ALPHA`](super::sheen::SHEEN_ALPHA) to 1.
 #[inline]
 pub(super) fn sheen_albedo(cos: f32, alpha: f32) -> f32 {

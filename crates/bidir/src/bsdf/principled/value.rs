@@ -80,7 +80,7 @@ impl Principled {
         }
     }
 
-    /// f of reflection by all lobes but the coat; `facets` is f of the base's facets.
+    /// Returns f of reflection by all lobes but the coat; `facets` is f of the base's facets.
     #[inline]
     fn reflected(&self, [wo, wi]: [Vec3; 2], [o, i]: &[Layers; 2], facets: Spectrum) -> Spectrum {
         let mut base = facets;
@@ -95,7 +95,7 @@ impl Principled {
         base + self.sheen * (sheen::eval(wo, wi, self.sheen_alpha) * under_coat)
     }
 
-    /// f of transmission by all lobes; `facets` is f of the base's facets.
+    /// Returns f of transmission by all lobes; `facets` is f of the base's facets.
     #[inline]
     fn crossed(&self, [o, i]: &[Layers; 2], facets: Spectrum) -> Spectrum {
         let diffuse = self.through * (self.uncovered(o) * self.uncovered(i));

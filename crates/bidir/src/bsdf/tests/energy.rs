@@ -6,7 +6,7 @@ use crate::sampler::SampleStream;
 use crate::spectrum::Spectrum;
 use crate::testing::{means, samples};
 
-/// The part of the light from `wo` that is scattered, by lane, and the largest weight.
+/// Returns the part of the light from `wo` that is scattered, by lane, and the largest weight.
 fn scattered(bsdf: &Bsdf, wo: Vec3, case: &str) -> ([f64; 4], f32) {
     let n = 1 << 14;
     let (mut sum, mut largest) = ([0.0; 4], 0.0f32);
@@ -95,7 +95,7 @@ fn check_furnace(bsdf: &Bsdf, least: f64) {
     }
 }
 
-/// A metal that reflects all light: no real part of the index.
+/// Returns a metal that reflects all light: no real part of the index.
 fn white(ggx: Ggx, scattering: FacetScattering) -> Bsdf {
     let (eta, k) = (Spectrum::ZERO, Spectrum::ONE);
     Bsdf::Conductor(Conductor::new(eta, k, ggx, scattering))

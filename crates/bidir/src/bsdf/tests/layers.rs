@@ -44,7 +44,7 @@ impl Stack {
         }
     }
 
-    /// The closed form of it.
+    /// Returns the closed form of it.
     pub(super) fn bsdf(&self) -> Bsdf {
         let filling = self.filling();
         match self.base {
@@ -60,7 +60,7 @@ impl Stack {
         }
     }
 
-    /// A name, and the first columns of the table.
+    /// Returns a name, and the first columns of the table.
     pub(super) fn name(&self) -> String {
         let Self {
             eta,
@@ -86,7 +86,7 @@ impl Stack {
         }
     }
 
-    /// Means of what walks of light with cosine `cos` carry out: all, or early.
+    /// Returns the means of what walks of light with cosine `cos` carry out: all, or early.
     fn walked(&self, cos: f32, walks: [u64; 2], part: fn(Leaving) -> f64) -> Vec<f64> {
         let wo = direction(cos, 0.3).as_dvec3();
         let case = format!("{}, {cos}", self.name());
@@ -94,7 +94,7 @@ impl Stack {
     }
 }
 
-/// The part of the light from `wo` that draws of `bsdf` scatter.
+/// Returns the part of the light from `wo` that draws of `bsdf` scatter.
 fn albedo_of_draws(bsdf: &Bsdf, wo: Vec3) -> f32 {
     let n = 1 << 14;
     let sampler = Sampler::new(SamplerKind::Sobol, 3);
@@ -108,7 +108,7 @@ fn albedo_of_draws(bsdf: &Bsdf, wo: Vec3) -> f32 {
     (weights.sum::<f64>() / n as f64) as f32
 }
 
-/// The part of even light that draws of `bsdf` scatter: ∫ 2μ albedo dμ.
+/// Returns the part of even light that draws of `bsdf` scatter: ∫ 2μ albedo dμ.
 pub(super) fn average(bsdf: &Bsdf) -> f64 {
     let n = 64;
     let at = |i: u8| ((f32::from(i) + 0.5) / f32::from(n)).sqrt();
@@ -132,7 +132,7 @@ fn varnish([eta, alpha]: [f32; 2], rho: f32, filling: &Filling) -> Bsdf {
     Bsdf::CoatedDiffuse(CoatedDiffuse::new(&layer, ggx, &[filled; 4], &filled, rho))
 }
 
-/// A metal of `index`, relative to the layer.
+/// Returns a metal of `index`, relative to the layer.
 fn lacquer(eta: f32, [alpha, metal]: [f32; 2], index: [f32; 2], filling: &Filling) -> Bsdf {
     let layer = Layer::new(eta, alpha);
     let reflections = Reflections::new(&layer, metal, filling.thickness);
@@ -145,7 +145,7 @@ fn lacquer(eta: f32, [alpha, metal]: [f32; 2], index: [f32; 2], filling: &Fillin
     Bsdf::CoatedConductor(CoatedConductor::new(tables, ggx, filling, metal))
 }
 
-/// The reflectances of the closed form of `stack`, one for each of [`COSINES`]; prints a line of the
+/// Returns the reflectances of the closed form of `stack`, one for each of [`COSINES`]; prints a line of the
 /// table: from each direction the closed form, walks, and walks that end as pbrt-v4's do.
 fn reflectances(stack: &Stack) -> [f64; 3] {
     let bsdf = stack.bsdf();

@@ -75,7 +75,7 @@ impl Stack {
         leaving
     }
 
-    /// The next event of `light`. None: nothing goes on.
+    /// Returns the next event of `light`. None: nothing goes on.
     fn event(
         &self,
         light: Light,
@@ -125,7 +125,7 @@ impl Stack {
         })
     }
 
-    /// The rays that a facet sends light from `v` to, which is above it, with `eta` the index below
+    /// Returns the rays that a facet sends light from `v` to, which is above it, with `eta` the index below
     /// relative to that above. None: the wrong side of the surface.
     pub(super) fn interface(&self, v: DVec3, eta: f64, u: [f64; 2]) -> (Option<Ray>, Option<Ray>) {
         let m = visible_facet(self.alpha, v, u);
@@ -142,7 +142,7 @@ impl Stack {
 }
 
 impl Base {
-    /// The direction of light from `v`, and the part that goes there. None: it is lost.
+    /// Returns the direction of light from `v`, and the part that goes there. None: it is lost.
     pub(super) fn reflect(self, v: DVec3, u: [f64; 2]) -> Option<Ray> {
         match self {
             Self::Diffuse(reflectance) => {
@@ -190,7 +190,7 @@ pub(super) fn pair(stream: &SampleStream, event: usize, purpose: Purpose) -> [f6
     [f64::from(u.x), f64::from(u.y)]
 }
 
-/// The reflectance of a dielectric facet of relative index `eta`, and the cosine of the refracted
+/// Returns the reflectance of a dielectric facet of relative index `eta`, and the cosine of the refracted
 /// direction.
 pub(super) fn fresnel(cos: f64, eta: f64) -> (f64, f64) {
     let sin2_t = (1.0 - cos * cos) / (eta * eta);
@@ -204,7 +204,7 @@ pub(super) fn fresnel(cos: f64, eta: f64) -> (f64, f64) {
     (sum / 2.0, cos_t)
 }
 
-/// The reflectance of a facet of metal, by complex Snell's law: `cos_t` is a + ib there.
+/// Returns the reflectance of a facet of metal, by complex Snell's law: `cos_t` is a + ib there.
 fn metal_reflectance(cos: f64, eta: f64, k: f64) -> f64 {
     // η cosθ_t = √(η² - sin²θ), in the quadrant of a wave that fades.
     let (re, im) = (eta * eta - k * k - (1.0 - cos * cos), 2.0 * eta * k);
@@ -222,7 +222,7 @@ fn metal_reflectance(cos: f64, eta: f64, k: f64) -> f64 {
     f64::midpoint(perpendicular, parallel)
 }
 
-/// A facet that `v` sees, drawn as a spherical cap.
+/// Returns a facet that `v` sees, drawn as a spherical cap.
 fn visible_facet(alpha: f64, v: DVec3, u: [f64; 2]) -> DVec3 {
     if alpha <= 0.0 {
         return DVec3::Z;
@@ -236,7 +236,7 @@ fn visible_facet(alpha: f64, v: DVec3, u: [f64; 2]) -> DVec3 {
     ((cap + v) * stretch).normalize()
 }
 
-/// G₂(v, out) / G₁(v).
+/// Returns G₂(v, out) / G₁(v).
 pub(super) fn unshadowed(alpha: f64, v: DVec3, out: DVec3) -> f64 {
     let lambda = |w: DVec3| {
         let tan2 = (w.x * w.x + w.y * w.y) / (w.z * w.z);
@@ -245,13 +245,13 @@ pub(super) fn unshadowed(alpha: f64, v: DVec3, out: DVec3) -> f64 {
     (1.0 + lambda(v)) / (1.0 + lambda(v) + lambda(out))
 }
 
-/// The density of scattering by an angle of this cosine. Unit: 1/sr.
+/// Returns the density of scattering by an angle of this cosine. Unit: 1/sr.
 pub(super) fn henyey_greenstein_value(cos: f64, g: f64) -> f64 {
     let base = 1.0 + g * g - 2.0 * g * cos;
     (1.0 - g * g) / (2.0 * TAU * base * base.sqrt())
 }
 
-/// The direction after scattering of light along `w`.
+/// Returns the direction after scattering of light along `w`.
 pub(super) fn henyey_greenstein(w: DVec3, g: f64, u: [f64; 2]) -> DVec3 {
     let cos = if g.abs() < 1e-3 {
         1.0 - 2.0 * u[0]

@@ -28,12 +28,12 @@ const WALKS: [u64; 2] = [64, 1 << 11];
 const TOLERANCE: f64 = 0.01;
 
 impl Stack {
-    /// An estimate of f for light along `wi` seen along `wo`, by a walk of at most `most` events.
+    /// Returns an estimate of f for light along `wi` seen along `wo`, by a walk of at most `most` events.
     fn layered(&self, pair: [DVec3; 2], most: usize, stream: &SampleStream) -> f64 {
         self.interface_value(pair[0], pair[1]) + self.within(pair, most, stream)
     }
 
-    /// The part of f that enters the layer.
+    /// Returns the part of f that enters the layer.
     fn within(&self, [wo, wi]: [DVec3; 2], most: usize, stream: &SampleStream) -> f64 {
         let at = |purpose| pair(stream, 0, purpose);
         let (_, seen) = self.interface(wo, self.eta, at(Purpose::Lens));
@@ -108,7 +108,7 @@ impl Stack {
         (0.0, next)
     }
 
-    /// f of the interface's own reflection; zero where it is smooth.
+    /// Returns f of the interface's own reflection; zero where it is smooth.
     fn interface_value(&self, wo: DVec3, wi: DVec3) -> f64 {
         if self.alpha <= 0.0 {
             return 0.0;
@@ -124,7 +124,7 @@ impl Stack {
 }
 
 impl Base {
-    /// f of the base.
+    /// Returns f of the base.
     fn value(self) -> f64 {
         match self {
             Self::Diffuse(reflectance) => reflectance / PI,
@@ -137,7 +137,7 @@ fn pairs(stream: &SampleStream, event: usize) -> [[f64; 2]; 2] {
     [Purpose::Scatter, Purpose::Lens].map(|purpose| pair(stream, event, purpose))
 }
 
-/// Pairs of directions: steep, oblique, grazing, and near the mirrored one.
+/// Returns the pairs of directions: steep, oblique, grazing, and near the mirrored one.
 fn directions() -> [[Vec3; 2]; 4] {
     [
         [direction(1.0, 0.0), direction(0.6, 1.0)],
@@ -177,7 +177,7 @@ fn a_varnish_shows_what_stochastic_layers_of_any_depth_do() {
     battery.check();
 }
 
-/// The reflectance of `stack` over all directions, by f of stochastic layers that end after `most` events.
+/// Returns the reflectance of `stack` over all directions, by f of stochastic layers that end after `most` events.
 fn layered_reflectance(stack: &Stack, most: usize) -> f64 {
     let n = 1 << 16;
     let name = stack.name();

@@ -26,7 +26,7 @@ impl Session<'_> {
         self.lanes[(group % self.lanes.len() as u64) as usize]
     }
 
-    /// How many samples there are for one light subpath.
+    /// Returns how many samples there are for one light subpath.
     pub(super) fn samples_per_subpath(&self) -> u64 {
         if self.method.shares_light() {
             u64::from(self.settings.lvc.samples_per_subpath.get())
@@ -70,7 +70,7 @@ impl Session<'_> {
         end_group(job, batch);
     }
 
-    /// How many light subpaths a pass has.
+    /// Returns how many light subpaths a pass has.
     pub fn light_subpaths(&self) -> u64 {
         let pixels = self.view.film().light_paths();
         pixels.div_ceil(self.samples_per_subpath())

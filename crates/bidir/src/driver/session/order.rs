@@ -17,7 +17,7 @@ pub(super) enum Order {
 }
 
 impl Order {
-    /// The order of a crop for a method. Crops of 2³² pixels or more keep the order of rows.
+    /// Returns the order of a crop for a method. Crops of 2³² pixels or more keep the order of rows.
     pub(super) fn new(crop: PixelRect, method: &Method) -> Self {
         let fits = u32::try_from(crop.area()).is_ok();
         if fits && method.shares_light() {
@@ -27,7 +27,7 @@ impl Order {
         }
     }
 
-    /// The position in row order of the pixel at `place`.
+    /// Returns the position in row order of the pixel at `place`.
     #[inline]
     pub(super) fn pixel(&self, place: u64) -> usize {
         match self {
@@ -36,7 +36,7 @@ impl Order {
         }
     }
 
-    /// The place of the pixel at a position in row order. It is searched for.
+    /// Returns the place of the pixel at a position in row order. It is searched for.
     pub(super) fn place(&self, pixel: usize) -> u64 {
         let place = match self {
             Self::Rows => Some(pixel),

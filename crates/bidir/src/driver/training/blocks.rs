@@ -28,18 +28,18 @@ impl Blocks {
         }
     }
 
-    /// The block of pixel number `index` of the crop.
+    /// Returns the block of pixel number `index` of the crop.
     pub(super) fn of(&self, index: usize) -> usize {
         let [width, height] = [self.crop.width(), self.crop.height()].map(|size| size as usize);
         part(index / width, height) * SIDE + part(index % width, width)
     }
 
-    /// The pixels of block number `i`; of none it counts as one.
+    /// Returns the pixels of block number `i`; of none it counts as one.
     pub(super) fn size(&self, i: usize) -> f64 {
         self.sizes[i].max(1.0)
     }
 
-    /// The number of samples of each, of the first `count` of the survey.
+    /// Returns the number of samples of each, of the first `count` of the survey.
     pub(super) fn samples(&self, count: u64) -> Vec<f64> {
         let mut samples = vec![0.0; BLOCKS];
         for quad in 0..count / QUAD {
@@ -52,12 +52,12 @@ impl Blocks {
     }
 }
 
-/// The part of a side of `size` pixels that pixel number `i` is in.
+/// Returns the part of a side of `size` pixels that pixel number `i` is in.
 fn part(i: usize, size: usize) -> usize {
     i * SIDE / size
 }
 
-/// The numbers of pixels of the parts of a side.
+/// Returns the numbers of pixels of the parts of a side.
 fn sizes(size: u32) -> [f64; SIDE] {
     let begin = |i: usize| (i * size as usize).div_ceil(SIDE);
     std::array::from_fn(|i| (begin(i + 1) - begin(i)) as f64)

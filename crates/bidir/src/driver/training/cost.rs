@@ -77,7 +77,7 @@ impl AddAssign for Work {
 }
 
 impl Survey {
-    /// The cost of a sample by `settings`, with `counts` of these. Unit: rays of path tracing's walks.
+    /// Returns the cost of a sample by `settings`, with `counts` of these. Unit: rays of path tracing's walks.
     pub(super) fn cost(&self, settings: &Settings, counts: &Counts) -> f64 {
         let work = &self.work;
         let light_points = dot(work.next_events[counts.start], counts.next_events);
@@ -122,7 +122,7 @@ mod tests {
     use crate::path::PathRoulette;
     use crate::texture::{ColorTexture, FloatTexture};
 
-    /// The part of first connections with light walks that are diffuse, and the mean price of one of twelve
+    /// Returns the part of first connections with light walks that are diffuse, and the mean price of one of twelve
     /// candidates more, in a room with this ball.
     fn diffuse_part_and_price(ball: Material, mis: MisHeuristic) -> [f64; 2] {
         let (scene, view) = (room_with(ball), view(WHOLE));

@@ -22,7 +22,7 @@ pub(super) struct Counts {
 }
 
 impl Counts {
-    /// The counts of the estimator of `settings`, if a light subpath has `light_vertices` vertices that can be
+    /// Returns the counts of the estimator of `settings`, if a light subpath has `light_vertices` vertices that can be
     /// connected on average, and walks of the survey had the roulette `surveyed`.
     pub(super) fn new(
         settings: &Settings,
@@ -55,24 +55,24 @@ impl Counts {
         }
     }
 
-    /// The number of samples of a connection with a light walk.
+    /// Returns the number of samples of a connection with a light walk.
     pub(super) fn of_connection(&self, strategy: Strategy) -> f64 {
         self.connections[usize::from(strategy.t > 2)]
     }
 
-    /// ρ_j: how much more often than in the survey walks reach the last camera vertex of strategy j.
+    /// Returns ρ_j: how much more often than in the survey walks reach the last camera vertex of strategy j.
     pub(super) fn longer(&self, shares: &Shares, j: usize) -> f64 {
         longer(shares.albedos)[self.surfaces(shares, j)]
     }
 
-    /// The surfaces that may end the walk of strategy j in the survey alone: of those that it goes on at, which are number
-    /// 0 to n - 3 - j.
+    /// Returns the surfaces that may end the walk of strategy j in the survey alone: of those that it goes on at, which
+    /// are number 0 to n - 3 - j.
     pub(super) fn surfaces(&self, shares: &Shares, j: usize) -> usize {
         let surfaces = (usize::from(shares.vertices) - j).saturating_sub(2);
         self.start.min(surfaces)
     }
 
-    /// D_k / D of a path.
+    /// Returns D_k / D of a path.
     pub(super) fn share(&self, shares: &Shares) -> Share {
         let pair = |parts: [f32; 2], counts| dot(parts.map(f64::from), counts);
         let hits = f64::from(shares.hits) * self.longer(shares, 0);
@@ -97,7 +97,7 @@ pub(super) struct Draws {
 }
 
 impl Draws {
-    /// Those of `settings` in a film of so many pixels.
+    /// Returns the counts of `settings` in a film of so many pixels.
     fn new(settings: &LvcSettings, pixels: u64) -> Self {
         let group = group_size(pixels);
         let of_block = BLOCK_PIXELS * group.min(pixels) as f64 / pixels as f64;
@@ -116,8 +116,8 @@ pub(super) struct Share {
     pub(super) light_images: f64,
 }
 
-/// The numbers of samples of a connection with a light walk, M / κ, for t = 2 and t > 2. Where no light vertex can be
-/// connected they do not matter.
+/// Returns the numbers of samples of a connection with a light walk, M / κ, for t = 2 and t > 2. Where no light vertex
+/// can be connected they do not matter.
 pub(super) fn of_connections(candidates: CandidateCount, light_vertices: f64) -> [f64; 2] {
     candidates.get().map(|count| match light_vertices {
         0.0 => 1.0,
@@ -125,14 +125,14 @@ pub(super) fn of_connections(candidates: CandidateCount, light_vertices: f64) ->
     })
 }
 
-/// The factors by which walks go on more often whose roulette begins at surface 0, 1 and 2, where the first two
+/// Returns the factors by which walks go on more often whose roulette begins at surface 0, 1 and 2, where the first two
 /// have these albedos.
 pub(super) fn longer(albedos: [f32; 2]) -> [f64; STARTS] {
     let [a, b] = albedos.map(|albedo| f64::from(albedo.clamp(LEAST_ALBEDO, 1.0)));
     [1.0, 1.0 / a, 1.0 / (a * b)]
 }
 
-/// a_0 b_0 + a_1 b_1.
+/// Returns a_0 b_0 + a_1 b_1.
 pub(super) fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
     a[0] * b[0] + a[1] * b[1]
 }

@@ -29,7 +29,7 @@ pub(super) enum Evidence {
     Square(f64),
 }
 
-/// The choice that suits what `found` connections contribute, whose `subpaths` chose by `power`. None: it is
+/// Returns the choice that suits what `found` connections contribute, whose `subpaths` chose by `power`. None: it is
 /// that one.
 pub(super) fn learned(
     power: &LightChoice,
@@ -57,7 +57,7 @@ pub(super) fn learned(
     ))
 }
 
-/// The factor by which subpaths begin on a light more often than by `power`.
+/// Returns the factor by which subpaths begin on a light more often than by `power`.
 pub(super) fn gain(power: &LightChoice, learned: Option<&LightChoice>, light: u32) -> f64 {
     let light = light as usize;
     learned.map_or(1.0, |learned| {
@@ -99,7 +99,7 @@ mod tests {
         LightChoice::with_weights(weights.iter().copied())
     }
 
-    /// A connection, by the square of what arrived. None: it was blocked.
+    /// Returns a connection, by the square of what arrived. None: it was blocked.
     fn connection(light: u32, camera: usize, square: Option<f64>) -> [Connection; 2] {
         let traced = Evidence::Traced(square.is_some());
         [traced, Evidence::Square(square.unwrap_or(0.0))].map(|evidence| Connection {

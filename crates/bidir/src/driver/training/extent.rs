@@ -14,7 +14,7 @@
 use super::constants::{ENOUGH_SAMPLES, FIRST_SAMPLES, MOST_OF_PIXEL, MOST_SAMPLES, USUAL_WORK};
 use crate::stats::Stats;
 
-/// The number of samples for so many pixels where a sample makes so much work: a power of two. Unit of work: as
+/// Returns the number of samples for so many pixels where a sample makes so much work: a power of two. Unit of work: as
 /// [`work`].
 pub(super) fn samples(pixels: u64, work: f64) -> u64 {
     let ratio = USUAL_WORK / work.max(USUAL_WORK);
@@ -23,7 +23,7 @@ pub(super) fn samples(pixels: u64, work: f64) -> u64 {
     1 << (affordable as u64).min(most).max(FIRST_SAMPLES).ilog2()
 }
 
-/// The mean cost of a sample. Unit: rays and connections.
+/// Returns the mean cost of a sample. Unit: rays and connections.
 pub(super) fn work(stats: &Stats) -> f64 {
     (stats.rays.total() + stats.candidates) as f64 / stats.samples as f64
 }

@@ -52,7 +52,7 @@ pub(super) struct Judge<'a> {
 }
 
 impl<'a> Judge<'a> {
-    /// The lessons of all plans are those of a typical one.
+    /// Returns the lessons of all plans are those of a typical one.
     pub(super) fn new(task: Task<'a>, survey: &'a Survey, cells: &Cells) -> Self {
         let typical = TYPICAL.keeping(task.settings).apply(task.settings);
         let lessons = Lessons::of(task, &typical, survey, cells);
@@ -71,14 +71,14 @@ impl<'a> Judge<'a> {
         judge
     }
 
-    /// The counts of the estimator of `settings`.
+    /// Returns the counts of the estimator of `settings`.
     pub(super) fn counts(&self, settings: &Settings) -> Counts {
         let surveyed = self.task.settings.path.roulette;
         let pixels = self.task.view.film().crop.area();
         Counts::new(settings, surveyed, self.light_vertices, pixels)
     }
 
-    /// The variance of the estimator of `settings`.
+    /// Returns the variance of the estimator of `settings`.
     pub(super) fn judge(&self, settings: &Settings, terms: &[RelativeTerm]) -> Judgement {
         let learned = self.learned.as_ref().filter(|_| settings.learns());
         let known = learned.unwrap_or(&self.nothing);

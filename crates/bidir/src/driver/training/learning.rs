@@ -61,12 +61,13 @@ struct Places {
 }
 
 impl Places {
-    /// The places of light vertex number `z` and of camera vertex number `y`.
+    /// Returns the places of light vertex number `z` and of camera vertex number `y`.
     fn of(self, [z, y]: [u32; 2]) -> [u32; 2] {
         [self.light + z, self.camera + y]
     }
 
-    /// The places of the vertices x_{j-1} and x_j of a path of `strategy`, whose light vertices end before number `end`.
+    /// Returns the places of the vertices x_{j-1} and x_j of a path of `strategy`, whose light vertices end before
+    /// number `end`.
     fn of_edge(self, strategy: Strategy, end: u32, j: u16) -> [u32; 2] {
         let (s, t) = (u32::from(strategy.s), u32::from(strategy.t));
         [j - 1, j].map(u32::from).map(|i| {
@@ -174,7 +175,7 @@ impl Found {
         self.possible.extend(possible.filter(exists));
     }
 
-    /// The number of connections that were traced.
+    /// Returns the number of connections that were traced.
     pub(super) fn traced(&self) -> u32 {
         self.traced.len() as u32
     }
@@ -194,17 +195,18 @@ impl Found {
 }
 
 impl Survey {
-    /// κ: the mean number of vertices of a light subpath that can be connected.
+    /// Returns κ: the mean number of vertices of a light subpath that can be connected.
     pub(super) fn light_vertices(&self) -> f64 {
         self.found.light.len() as f64 / self.samples()
     }
 
-    /// The connections that could have made paths.
+    /// Returns the connections that could have made paths.
     pub(super) fn possible(&self) -> impl Iterator<Item = &Possible> {
         self.found.possible.iter()
     }
 
-    /// The knowledge of connections, first of those that were traced, then of those that could have made paths; squares are those where the numbers of samples are `counts`.
+    /// Returns the knowledge of connections, first of those that were traced, then of those that could have made paths;
+    /// squares are those where the numbers of samples are `counts`.
     pub(super) fn connections(
         &self,
         film: &FilmSettings,
@@ -302,17 +304,17 @@ impl Lessons {
         })
     }
 
-    /// κ where light subpaths begin as is learned.
+    /// Returns κ where light subpaths begin as is learned.
     pub(super) fn light_vertices(&self) -> f64 {
         self.light_vertices
     }
 
-    /// How many times as many light subpaths begin on a light.
+    /// Returns how many times as many light subpaths begin on a light.
     pub(super) fn gain(&self, light: u32) -> f64 {
         emission::gain(&self.power, self.light_start.as_ref(), light)
     }
 
-    /// n κ / M of a connection of these cells.
+    /// Returns n κ / M of a connection of these cells.
     pub(super) fn factor(&self, cells: [Cell; 2]) -> f64 {
         self.factor_with(cells, [0.0; 2])
     }
@@ -331,7 +333,7 @@ impl Lessons {
         self.sums.count_factor(others, [light, camera], changes)
     }
 
-    /// √V̂ of its cells without what a connection taught.
+    /// Returns √V̂ of its cells without what a connection taught.
     pub(super) fn root_visibility_without(&self, connection: &Connection) -> f32 {
         let Evidence::Traced(has_arrived) = connection.evidence else {
             return 1.0;

@@ -67,7 +67,7 @@ struct Task<'a> {
     settings: &'a Settings,
 }
 
-/// The settings with everything decided that they leave open, and what was learned, where anything had
+/// Returns the settings with everything decided that they leave open, and what was learned, where anything had
 /// to be. None: it was asked to stop.
 pub(super) fn prepare(
     scene: &Scene,
@@ -99,7 +99,7 @@ pub(super) fn prepare(
 }
 
 impl Settings {
-    /// True where the estimator needs to know something of the scene.
+    /// Returns true where the estimator needs to know something of the scene.
     fn needs_training(&self) -> bool {
         let needs_mean = self.integrator.has_candidates() && self.shadow_rays.needs_mean();
         needs_mean || self.integrator == IntegratorKind::Lvc
@@ -134,7 +134,7 @@ impl Training {
         }
     }
 
-    /// The counts of the strategies of `lvc`, with `light_subpaths` subpaths in a pass.
+    /// Returns the counts of the strategies of `lvc`, with `light_subpaths` subpaths in a pass.
     pub(super) fn counts(&self, settings: LvcSettings, light_subpaths: u64) -> SampleCounts {
         SampleCounts {
             connections: of_connections(settings.candidates, self.light_vertices),
@@ -143,7 +143,7 @@ impl Training {
         }
     }
 
-    /// The knowledge that the estimator uses.
+    /// Returns the knowledge that the estimator uses.
     pub(super) fn guide(&self) -> Guide<'_> {
         Guide {
             proposals: self.proposals.as_ref(),

@@ -69,7 +69,7 @@ impl Term {
         self.strategy.t == 1
     }
 
-    /// Its part of the mean of `film`: there is a sample for each pixel, and a light image for the film.
+    /// Returns its part of the mean of `film`: there is a sample for each pixel, and a light image for the film.
     pub(super) fn of_mean_pixel(&self, film: &FilmSettings) -> f64 {
         if self.is_light_image() {
             f64::from(self.value) / film.light_paths() as f64
@@ -78,7 +78,7 @@ impl Term {
         }
     }
 
-    /// Its kind, and how many terms of a plan it stands for, where the walk gets that far.
+    /// Returns its kind, and how many terms of a plan it stands for, where the walk gets that far.
     fn rate(&self, known: &Known, counts: &Counts) -> (Part, f64) {
         let deeper = usize::from(self.strategy.t > 2);
         match self.strategy.s {
@@ -91,7 +91,7 @@ impl Term {
         }
     }
 
-    /// How far its walk goes.
+    /// Returns how far its walk goes.
     fn reach(&self, known: &Known, counts: &Counts) -> Reach {
         let (s, t) = (usize::from(self.strategy.s), usize::from(self.strategy.t));
         Reach {
@@ -101,7 +101,7 @@ impl Term {
         }
     }
 
-    /// f / D_k: what it is of the value of a pixel of `film` where the numbers of samples are `counts`.
+    /// Returns f / D_k: what it is of the value of a pixel of `film` where the numbers of samples are `counts`.
     pub(super) fn value_by(&self, film: &FilmSettings, counts: &Counts) -> f64 {
         self.of_mean_pixel(film) / counts.share(&self.shares).all
     }
@@ -137,7 +137,7 @@ impl Variance {
 }
 
 impl Survey {
-    /// The terms relative to the means of their blocks. None: nothing was found.
+    /// Returns the terms relative to the means of their blocks. None: nothing was found.
     pub(super) fn relative_terms(&self, film: &FilmSettings) -> Option<Vec<RelativeTerm>> {
         let places = self.places(film);
         let mut means = [0.0; BLOCKS];
@@ -164,7 +164,7 @@ impl Survey {
         (mean > 0.0).then(|| self.terms.iter().zip(places).map(relative).collect())
     }
 
-    /// The block of each term, and the factor of its value in the mean of the block.
+    /// Returns the block of each term, and the factor of its value in the mean of the block.
     fn places(&self, film: &FilmSettings) -> Vec<(usize, f64)> {
         let blocks = Blocks::new(film.crop);
         let samples = blocks.samples(self.stats.samples);
@@ -180,7 +180,8 @@ impl Survey {
         self.terms.iter().map(place).collect()
     }
 
-    /// The variance of a plan with `counts`, by [`relative_terms`](Self::relative_terms) and what is `known` of them.
+    /// Returns the variance of a plan with `counts`, by [`relative_terms`](Self::relative_terms) and what is `known` of
+    /// them.
     pub(super) fn judge(
         &self,
         relative: &[RelativeTerm],
@@ -206,7 +207,7 @@ impl Survey {
         sums.judgement(counts)
     }
 
-    /// The four samples that sample number `number` is one of, without terms.
+    /// Returns the four samples that sample number `number` is one of, without terms.
     fn quad(&self, number: u32) -> Quad {
         let first = number as usize / QUAD as usize * QUAD as usize;
         Quad::new(std::array::from_fn(|i| self.light_numbers[first + i]))
@@ -226,7 +227,7 @@ pub(super) struct Judgement {
 }
 
 impl Judgement {
-    /// The variance with this rule.
+    /// Returns the variance with this rule.
     pub(super) fn variance(&self, rule: ShadowRays) -> Variance {
         let selection = match rule {
             ShadowRays::Budget(rays) => selection::variance(&self.candidates, f64::from(rays)),
@@ -329,13 +330,13 @@ mod tests {
     use crate::view::View;
 
     impl Term {
-        /// True where connections with light walks can make the path.
+        /// Returns true where connections with light walks can make the path.
         pub(in crate::driver::training) fn has_share_of_connections(&self) -> bool {
             self.shares.connections.iter().sum::<f32>() > 0.0
         }
     }
 
-    /// The variance of the estimator of `settings`, all of whose shadow rays are traced, and its cost.
+    /// Returns the variance of the estimator of `settings`, all of whose shadow rays are traced, and its cost.
     fn judged(task: Task<'_>, settings: &Settings) -> [f64; 2] {
         let survey = survey_of(task, Effort::WHOLE);
         let terms = survey.relative_terms(task.view.film()).expect("a lamp");
@@ -347,7 +348,7 @@ mod tests {
         ]
     }
 
-    /// A film whose blocks have 64 samples of a survey each.
+    /// Returns a film whose blocks have 64 samples of a survey each.
     fn large_view() -> View {
         let whole = PixelRect {
             min: [0; 2],

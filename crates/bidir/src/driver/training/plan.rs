@@ -61,7 +61,7 @@ pub(super) const LVC: Plan = Plan {
     ..BDPT
 };
 
-/// `lvc` with these numbers of candidates and light points of the first vertex, and of rays.
+/// Returns `lvc` with these numbers of candidates and light points of the first vertex, and of rays.
 pub(super) const fn lvc_of(candidates: u16, light_points: u16, rays: u32) -> Plan {
     Plan {
         candidates: CandidateCount::new(candidates, 1),
@@ -94,7 +94,7 @@ const PLANS: [Plan; 15] = [
 ];
 
 impl Plan {
-    /// The plan with the least product of variance and cost. If the survey found no light: `lvc`, which
+    /// Returns the plan with the least product of variance and cost. If the survey found no light: `lvc`, which
     /// makes most paths, or `path` if there are no lights.
     pub(super) fn best(task: Task<'_>, survey: &Survey, cells: &Cells) -> Self {
         let settings = task.settings;
@@ -142,7 +142,7 @@ impl Plan {
         self
     }
 
-    /// `settings` with this plan.
+    /// Returns `settings` with this plan.
     pub(super) fn apply(&self, settings: &Settings) -> Settings {
         let mut settings = settings.clone();
         settings.set_integrator(self.integrator);
@@ -154,7 +154,7 @@ impl Plan {
         settings
     }
 
-    /// True where it makes all light paths that the settings ask for, and misses none that another
+    /// Returns true where it makes all light paths that the settings ask for, and misses none that another
     /// plan finds.
     fn is_possible(&self, task: Task<'_>) -> bool {
         let path = &task.settings.path;

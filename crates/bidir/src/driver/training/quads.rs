@@ -42,7 +42,7 @@ pub(super) struct Reach {
     pub(super) longer: f64,
 }
 
-/// The products by depth, over the numbers of draws at the first depth and at later ones.
+/// Returns the products by depth, over the numbers of draws at the first depth and at later ones.
 fn products(a: &[f64; DEPTHS], b: &[f64; DEPTHS], counts: [f64; 2]) -> f64 {
     let pairs = a.iter().zip(b).enumerate();
     pairs
@@ -67,13 +67,13 @@ struct Sums {
 }
 
 impl Sums {
-    /// S.
+    /// Returns S.
     fn all(&self) -> f64 {
         (self.reached.iter().zip(self.longer))
             .fold(0.0, |sum, (value, longer)| sum + value * longer)
     }
 
-    /// The products of terms of this sample with terms of another one of the same walk.
+    /// Returns the products of terms of this sample with terms of another one of the same walk.
     fn of_walk(&self, other: &Self) -> f64 {
         let longer = |i: usize| self.longer[i].max(other.longer[i]);
         let pairs = (0..STARTS).flat_map(|i| (0..STARTS).map(move |j| (i, j)));
@@ -82,9 +82,9 @@ impl Sums {
             .sum()
     }
 
-    /// The variance between the means of `count` parts of the lights, Σ m² / N - m̄², of the first light point: the products
-    /// of points in one part, which a Nth of all pairs are. Subtracting a value near both, that of another walk, changes
-    /// its noise alone.
+    /// Returns the variance between the means of `count` parts of the lights, Σ m² / N - m̄², of the first light point:
+    /// the products of points in one part, which a Nth of all pairs are. Subtracting a value near both, that of another
+    /// walk, changes its noise alone.
     fn of_parts(&self, other: &Self, near: [&Self; 2], count: f64) -> f64 {
         let part = |sums: &Self| (f64::from(sums.light_number) * count) as u32;
         let near = (near[0].light_points[0] + near[1].light_points[0]) / 2.0;
@@ -96,12 +96,12 @@ impl Sums {
         }
     }
 
-    /// T.
+    /// Returns T.
     fn connected(&self) -> f64 {
         self.connections.iter().sum()
     }
 
-    /// The products of different connections.
+    /// Returns the products of different connections.
     fn pairs(&self) -> f64 {
         self.connected() * self.connected() - self.connection_squares
     }
@@ -136,8 +136,8 @@ impl Quad {
         }
     }
 
-    /// The variance of the camera subpath, less the squares of what draws have on average, and less the second moments of
-    /// hits, which are among those of all terms.
+    /// Returns the variance of the camera subpath, less the squares of what draws have on average, and less the second
+    /// moments of hits, which are among those of all terms.
     fn alone(&self, counts: &Counts) -> f64 {
         let [wa, wb, va, vb] = &self.0;
         let walks = wa.of_walk(wb) + va.of_walk(vb) - wa.all() * vb.all() - wb.all() * va.all();
@@ -202,7 +202,7 @@ impl QuadVariance {
         self.alone - (self.parts - self.parts_squares.sqrt()).max(0.0)
     }
 
-    /// The part of the variance of T that two camera subpaths of a pixel have in common.
+    /// Returns the part of the variance of T that two camera subpaths of a pixel have in common.
     pub(super) fn correlation(&self) -> f64 {
         if self.spread > 0.0 {
             (self.common / self.spread).clamp(0.0, 1.0)

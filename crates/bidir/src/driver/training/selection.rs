@@ -21,8 +21,8 @@ pub(super) struct Expected {
     pub(super) scale: f64,
 }
 
-/// The variance of the selection of `rays` rays for each sample that has any of these candidates, which are in the order
-/// of their blocks.
+/// Returns the variance of the selection of `rays` rays for each sample that has any of these candidates, which are in
+/// the order of their blocks.
 pub(super) fn variance(candidates: &[Expected], rays: f64) -> f64 {
     let blocks = candidates.chunk_by(|a, b| a.block == b.block);
     blocks
@@ -30,7 +30,7 @@ pub(super) fn variance(candidates: &[Expected], rays: f64) -> f64 {
         .sum()
 }
 
-/// The variance of the selection from the candidates of a block, in all its samples.
+/// Returns the variance of the selection from the candidates of a block, in all its samples.
 fn of_block(candidates: &[Expected], rays: f64) -> f64 {
     let samples = candidates.chunk_by(|a, b| a.sample == b.sample).count();
     let Some(threshold) = threshold(candidates, rays * samples as f64) else {
@@ -50,7 +50,7 @@ fn of_block(candidates: &[Expected], rays: f64) -> f64 {
     }
 }
 
-/// δ with Σ π = `rays`. None: there are no more candidates than rays.
+/// Returns δ with Σ π = `rays`. None: there are no more candidates than rays.
 fn threshold(candidates: &[Expected], rays: f64) -> Option<f64> {
     if candidates.iter().map(|of| of.count).sum::<f64>() <= rays {
         return None;
@@ -116,7 +116,7 @@ mod tests {
         (0..400).map(candidates).collect()
     }
 
-    /// The variance of the sum of what arrives of a budget's choice from these candidates.
+    /// Returns the variance of the sum of what arrives of a budget's choice from these candidates.
     fn simulated(candidates: &[Expected], rays: u32) -> f64 {
         let offered: Vec<_> = candidates.iter().map(|of| of.score as f32).collect();
         let offered: Vec<_> = offered.iter().map(|&score| candidate(score)).collect();

@@ -41,7 +41,7 @@ pub(super) struct Survey {
 }
 
 impl Survey {
-    /// The samples of training. None: it was asked to stop.
+    /// Returns the samples of training. None: it was asked to stop.
     pub(super) fn run(task: Task<'_>, effort: Effort<'_>) -> Option<Self> {
         let surveyor = Surveyor::new(task, effort.stop);
         let mut survey = surveyor.round(0..FIRST_SAMPLES, &|| false)?;
@@ -60,7 +60,7 @@ impl Survey {
         }
     }
 
-    /// The number of samples.
+    /// Returns the number of samples.
     pub(super) fn samples(&self) -> f64 {
         self.stats.samples as f64
     }
@@ -213,7 +213,7 @@ mod tests {
     use crate::spectrum::luminance;
     use crate::texture::ColorTexture;
 
-    /// A lamp in a white sphere: no walk ends before it is as long as any may be.
+    /// Returns a lamp in a white sphere: no walk ends before it is as long as any may be.
     fn white_room() -> Scene {
         let mut builder = SceneBuilder::new();
         let white = builder.material(Material::Diffuse {

@@ -20,7 +20,7 @@ pub(super) const WHOLE: PixelRect = PixelRect {
     max: [16; 2],
 };
 
-/// A camera that looks along z, for a film of 16 x 16 of which a crop is rendered.
+/// Returns a camera that looks along z, for a film of 16 x 16 of which a crop is rendered.
 pub(super) fn view(crop: PixelRect) -> View {
     view_of(16, crop)
 }
@@ -43,13 +43,13 @@ pub(super) fn view_of(size: u32, crop: PixelRect) -> View {
     View::new(camera, film).expect("the film is not empty")
 }
 
-/// The samples of training that nobody stops.
+/// Returns the samples of training that nobody stops.
 #[track_caller]
 pub(super) fn survey_of(task: Task<'_>, effort: Effort<'_>) -> Survey {
     Survey::run(task, effort).expect("nobody stops it")
 }
 
-/// A diffuse surface.
+/// Returns a diffuse surface.
 pub(super) fn grey(reflectance: f32) -> Material {
     Material::Diffuse {
         reflectance: ColorTexture::Constant([reflectance; 3]),
@@ -73,24 +73,24 @@ fn add_sphere(
     builder.shape(sphere, material, light);
 }
 
-/// A black sphere of this radiance, at this place before the camera.
+/// Returns a black sphere of this radiance, at this place before the camera.
 fn sphere(z: f32, radiance: Option<[f32; 3]>) -> Scene {
     let mut builder = SceneBuilder::new();
     add_sphere(&mut builder, [z, 1.5], grey(0.0), radiance);
     builder.build().expect("the scene is valid")
 }
 
-/// A black lamp before nothing.
+/// Returns a black lamp before nothing.
 pub(super) fn lamp() -> Scene {
     sphere(3.0, Some([2.0; 3]))
 }
 
-/// A lamp and a grey ball in a grey sphere.
+/// Returns a lamp and a grey ball in a grey sphere.
 pub(super) fn room() -> Scene {
     room_with(grey(0.4))
 }
 
-/// A lamp and a ball of this material in a grey sphere.
+/// Returns a lamp and a ball of this material in a grey sphere.
 pub(super) fn room_with(ball: Material) -> Scene {
     let mut builder = SceneBuilder::new();
     add_sphere(&mut builder, [0.0, 6.0], grey(0.6), None);
@@ -99,7 +99,7 @@ pub(super) fn room_with(ball: Material) -> Scene {
     builder.build().expect("the scene is valid")
 }
 
-/// The estimator that `auto` takes for a black sphere.
+/// Returns the estimator that `auto` takes for a black sphere.
 fn planned(z: f32, radiance: Option<[f32; 3]>) -> IntegratorKind {
     let scene = sphere(z, radiance);
     let settings = Settings::new(IntegratorKind::Auto);
@@ -158,7 +158,7 @@ fn every_group_has_a_light_subpath() {
     assert!((few / many - 1.0).abs() < 0.2, "{few} instead of {many}");
 }
 
-/// A pass of a sphere with some effort, and the samples of training.
+/// Returns a pass of a sphere with some effort, and the samples of training.
 fn rendered(integrator: IntegratorKind, effort: Effort<'_>) -> (Vec<[u32; 3]>, u64) {
     let settings = Settings::new(integrator);
     let scene = room();

@@ -19,7 +19,7 @@ const MITCHELL: FilterKind = FilterKind::Mitchell {
     c: 1.0 / 3.0,
 };
 
-/// ∫ g(x) h(x) dx over both axes for the test function g.
+/// Returns ∫ g(x) h(x) dx over both axes for the test function g.
 fn integral(filter: &Filter, g: impl Fn(Vec2) -> f64) -> f64 {
     let (n, r) = (800, filter.radius());
     let mut sum = 0.0;

@@ -11,7 +11,7 @@ const SUBPATHS: usize = 20;
 /// The places of numbers that are drawn with, evenly spaced.
 const DRAWS: u32 = 1 << 20;
 
-/// A vertex in a cell, of a subpath that begins on a light.
+/// Returns a vertex in a cell, of a subpath that begins on a light.
 fn vertex(cell: Cell) -> Vertex {
     let lens = LensSample {
         locus: Locus::on_surface(Vec3::ZERO, Vec3::Z, 0.0),
@@ -24,7 +24,7 @@ fn vertex(cell: Cell) -> Vertex {
     }
 }
 
-/// One of three cells.
+/// Returns one of three cells.
 fn cell(cells: &Cells, i: usize) -> Cell {
     let axis = [Vec3::X, Vec3::Y, Vec3::Z][i % 3];
     cells.of(Vec3::ZERO, axis)

@@ -222,7 +222,7 @@ impl Connector<'_> {
         }
     }
 
-    /// The connection of any two vertices. None: it is zero. Media are guessed.
+    /// Returns the connection of any two vertices. None: it is zero. Media are guessed.
     fn general(&mut self, t: usize, end: &LightEnd, next_event: Option<f32>) -> Option<Connection> {
         let (z, s) = (end.place.z as usize, usize::from(end.place.s));
         let light = &self.light.vertices()[z + 1 - s..=z];

@@ -59,7 +59,7 @@ pub(in super::super) fn direct(job: &Job<'_>, batch: &mut Batch) {
     batch.stopwatch.end(Stage::Direct);
 }
 
-/// The term of the light that the walk came upon after the vertices `before`. None: it is zero.
+/// Returns the term of the light that the walk came upon after the vertices `before`. None: it is zero.
 fn hit(job: &Job<'_>, before: &[Vertex], arrival: &Arrival) -> Option<Term> {
     let contribution = arrival.contribution(job);
     if contribution == Spectrum::ZERO {
@@ -81,7 +81,7 @@ fn hit(job: &Job<'_>, before: &[Vertex], arrival: &Arrival) -> Option<Term> {
     })
 }
 
-/// The term that connects `vertex`, number `i` of its walk, with a light point, the ends of its shadow ray,
+/// Returns the term that connects `vertex`, number `i` of its walk, with a light point, the ends of its shadow ray,
 /// and the media between them.
 /// None: it is zero.
 fn next_event(
@@ -123,7 +123,7 @@ fn next_event(
     Some((term, ends, passage))
 }
 
-/// L_e · G · scatter · β / q: the light of the light point x_0, drawn with density q, that arrives by the
+/// Returns L_e · G · scatter · β / q: the light of the light point x_0, drawn with density q, that arrives by the
 /// vertex of `turn`, before weight and visibility.
 #[inline]
 fn arriving(

@@ -45,7 +45,7 @@ pub(in super::super) fn hits(job: &Job<'_>, batch: &mut Batch) {
     batch.stopwatch.end(Stage::Hits);
 }
 
-/// The term of the path from `camera` to the light that was hit. None: it is zero.
+/// Returns the term of the path from `camera` to the light that was hit. None: it is zero.
 fn hit(
     job: &Job<'_>,
     camera: &[Vertex],

@@ -66,7 +66,7 @@ pub(in super::super) fn light_image(job: &Job<'_>, batch: &mut Batch, weighting:
     batch.stopwatch.end(Stage::LightImage);
 }
 
-/// The lens point for light vertex number `s`.
+/// Returns the lens point for light vertex number `s`.
 pub(in super::super) fn lens_vertex(job: &Job<'_>, sample: &Sample, s: usize) -> Vertex {
     let at = Dimension::at(s, Purpose::LightImageLens);
     let camera = job.view.camera();
@@ -84,7 +84,7 @@ struct LightImage<'a> {
 }
 
 impl<'a> LightImage<'a> {
-    /// The last vertex of a light subpath, as a lens point sees it. None: its image is not on the film.
+    /// Returns the last vertex of a light subpath, as a lens point sees it. None: its image is not on the film.
     fn new(job: &Job<'_>, light: &'a [Vertex], lens: &'a Vertex) -> Option<Self> {
         let end = light.last()?;
         // The image of a Dirac light itself would be a Dirac distribution: such lights are invisible.
@@ -109,8 +109,8 @@ impl<'a> LightImage<'a> {
         })
     }
 
-    /// Its term, and the media on its way, where its vertex has this number in the sums; of weight 1 without sums.
-    /// None: it is zero.
+    /// Returns its term, and the media on its way, where its vertex has this number in the sums; of weight 1 without
+    /// sums. None: it is zero.
     #[inline]
     fn weighted_term(
         &self,
@@ -158,7 +158,7 @@ impl<'a> LightImage<'a> {
         Some((term, passage))
     }
 
-    /// The term with contribution `c`, scaled to the number of light subpaths in a pass. None: it is zero.
+    /// Returns the term with contribution `c`, scaled to the number of light subpaths in a pass. None: it is zero.
     fn term(&self, job: &Job<'_>, c: Spectrum, weight: f32) -> Option<Term> {
         let share = job.view.film().light_paths() as f64 / job.counts.light_subpaths;
         let contribution = c * share as f32;
@@ -170,18 +170,18 @@ impl<'a> LightImage<'a> {
         })
     }
 
-    /// The light vertex.
+    /// Returns the light vertex.
     fn end(&self) -> &'a Vertex {
         &self.light[self.light.len() - 1]
     }
 
-    /// The ends of its shadow ray.
+    /// Returns the ends of its shadow ray.
     fn ends(&self, job: &Job<'_>) -> [Locus; 2] {
         let end = self.end();
         [end.locus, camera_end(job, self.lens, end)]
     }
 
-    /// The link to the film, with the ends of its shadow ray.
+    /// Returns the link to the film, with the ends of its shadow ray.
     fn link(&self, job: &Job<'_>, sample: &Sample) -> Link {
         let at = Dimension::at(self.light.len(), Purpose::LightImagePixel);
         let place = SplatPlace {
@@ -192,7 +192,7 @@ impl<'a> LightImage<'a> {
     }
 }
 
-/// The point that a camera sees the vertex `end` from: the lens point, or the place of a parallel ray on the
+/// Returns the point that a camera sees the vertex `end` from: the lens point, or the place of a parallel ray on the
 /// camera's plane, behind which nothing is in its way.
 fn camera_end(job: &Job<'_>, lens: &Vertex, end: &Vertex) -> Locus {
     if !lens.locus.is_infinite() {
@@ -202,7 +202,7 @@ fn camera_end(job: &Job<'_>, lens: &Vertex, end: &Vertex) -> Locus {
     Locus::in_space(end.locus.point + lens.locus.point * depth)
 }
 
-/// True where the filter of some pixel of the crop may reach `raster`.
+/// Returns true where the filter of some pixel of the crop may reach `raster`.
 fn reaches_film(job: &Job<'_>, raster: Vec2) -> bool {
     let film = job.view.film();
     let corner = |c: [u32; 2]| Vec2::new(c[0] as f32, c[1] as f32);

@@ -20,7 +20,7 @@ pub(in super::super) enum ShadowPassage {
 }
 
 impl ShadowPassage {
-    /// The passage between two ends.
+    /// Returns the passage between two ends.
     #[inline]
     pub(in super::super) fn between(job: &Job<'_>, ends: impl FnOnce() -> [Locus; 2]) -> Self {
         let scene = job.scene;
@@ -34,7 +34,7 @@ impl ShadowPassage {
         Self::Traced(scene.edge([&a, &b], job.lanes, job.stop))
     }
 
-    /// The media, where there are any and something arrives.
+    /// Returns the media, where there are any and something arrives.
     #[inline]
     pub(in super::super) fn edge(&self) -> Option<&Edge> {
         match self {
@@ -43,7 +43,7 @@ impl ShadowPassage {
         }
     }
 
-    /// True where it is known that nothing arrives.
+    /// Returns true where it is known that nothing arrives.
     #[inline]
     pub(super) fn is_blocked(&self) -> bool {
         matches!(self, Self::Traced(None))

@@ -22,7 +22,7 @@ pub(super) struct Pairs {
 }
 
 impl Pairs {
-    /// The choice of a sample with the numbers `camera`.
+    /// Returns the choice of a sample with the numbers `camera`.
     pub(super) fn new(job: &Job<'_>, camera: &SampleStream) -> Self {
         let at = Dimension::at(0, Purpose::Pairs);
         let has_choice = job.settings.max_vertices() > ALL_UP_TO;
@@ -35,7 +35,7 @@ impl Pairs {
         }
     }
 
-    /// How much the next pair counts, which makes a path of `n` vertices. None: it is left out.
+    /// Returns how much the next pair counts, which makes a path of `n` vertices. None: it is left out.
     #[inline]
     pub(super) fn take(&mut self, n: usize) -> Option<f32> {
         if n <= ALL_UP_TO {

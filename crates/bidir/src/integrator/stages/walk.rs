@@ -63,7 +63,7 @@ pub(in super::super) fn sum_light(job: &Job<'_>, batch: &mut Batch) {
     batch.stopwatch.end(Stage::Walk);
 }
 
-/// The ray of a camera sample, and the weight of its film position.
+/// Returns the ray of a camera sample, and the weight of its film position.
 pub(crate) fn camera_ray(job: &Job<'_>, sample: &Sample) -> (CameraRay, f32) {
     let get = |purpose| sample.camera.get_2d(Dimension::at(0, purpose));
     let (offset, weight) = job.view.film().filter.sample(get(Purpose::Film));

@@ -14,7 +14,7 @@ use crate::testing::{Battery, Domain, Grid, check_close, samples};
 
 const N: u64 = 1 << 20;
 
-/// The directions that a light may send rays to, around its normal or axis.
+/// Returns the directions that a light may send rays to, around its normal or axis.
 fn directions(light: &Light) -> Domain {
     match light {
         Light::Spot(_) => Domain::Cone(pole(), 2.0),
@@ -209,7 +209,7 @@ fn environments_are_drawn_by_luminance() {
     }
 }
 
-/// The point of the mesh for one of the square, whose x also chooses the triangle: of even area
+/// Returns the point of the mesh for one of the square, whose x also chooses the triangle: of even area
 /// within each.
 fn on_mesh(mesh: &Mesh, p: Vec3) -> (LightPoint, f32) {
     let count = mesh.triangle_count();
@@ -225,7 +225,7 @@ fn on_mesh(mesh: &Mesh, p: Vec3) -> (LightPoint, f32) {
     (at, mesh.triangle_area(triangle) * count as f32)
 }
 
-/// The inverse of [`on_mesh`].
+/// Returns the inverse of [`on_mesh`].
 fn on_square(mesh: &Mesh, at: &LightPoint) -> Vec3 {
     let [a, b, c] = mesh.triangle(at.primitive as usize);
     let normal = (b - a).cross(c - a);

@@ -42,7 +42,7 @@ impl World {
         LightTree::new(&self.lights, &self.surroundings.context())
     }
 
-    /// All primitives of all lights.
+    /// Returns all primitives of all lights.
     fn primitives(&self) -> Vec<(u32, u32)> {
         let count = |light: &Light| match light {
             Light::Area(light) => self.surroundings.shapes[light.shape_index()].primitive_count(),
@@ -53,7 +53,7 @@ impl World {
             .collect()
     }
 
-    /// Every emitter once, with its probability.
+    /// Returns every emitter once, with its probability.
     fn emitters(&self, tree: &LightTree, receiver: &Receiver) -> Vec<ChosenEmitter> {
         let found = self
             .primitives()
@@ -65,7 +65,7 @@ impl World {
     }
 }
 
-/// A band of triangles that faces outwards all around, and is not flat.
+/// Returns a band of triangles that faces outwards all around, and is not flat.
 fn ring() -> Mesh {
     const N: u32 = 24;
     let positions = (0..2 * N).map(|i| {

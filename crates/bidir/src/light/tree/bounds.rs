@@ -28,7 +28,7 @@ impl Cone {
         is_mirrored: false,
     };
 
-    /// A flat surface with the normal `n`.
+    /// Makes a flat surface with the normal `n`.
     pub(in crate::light) fn flat(n: Vec3, is_mirrored: bool) -> Self {
         Self {
             axis: n,
@@ -38,7 +38,7 @@ impl Cone {
         }
     }
 
-    /// A cone around both.
+    /// Makes a cone around both.
     fn union(&self, other: &Self) -> Self {
         let (wide, narrow) = if self.spread >= other.spread {
             (self, other)
@@ -81,7 +81,7 @@ impl Cone {
     }
 }
 
-/// The angle between two unit vectors, exact also where it is small. Unit: rad.
+/// Returns the angle between two unit vectors, exact also where it is small. Unit: rad.
 fn angle(a: Vec3, b: Vec3) -> f32 {
     libm::atan2f(a.cross(b).length(), a.dot(b))
 }
@@ -105,7 +105,7 @@ impl EmitterBounds {
         intensity: 0.0,
     };
 
-    /// The bounds of both.
+    /// Returns the bounds of both.
     pub(in crate::light) fn union(&self, other: &Self) -> Self {
         Self {
             bounds: self.bounds.union(other.bounds),
@@ -133,7 +133,7 @@ mod tests {
         })
     }
 
-    /// True where `outer` has all normals that `inner` has.
+    /// Returns true where `outer` has all normals that `inner` has.
     fn contains(outer: &Cone, inner: &Cone) -> bool {
         let reach = angle(outer.axis, inner.axis) + inner.spread;
         outer.spread >= PI || reach <= outer.spread + 1e-3

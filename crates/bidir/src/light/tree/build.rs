@@ -36,7 +36,7 @@ pub(super) struct Built {
     pub(super) paths: Vec<u64>,
 }
 
-/// The tree over `items`, of which there is one at least; `paths` has room for every emitter.
+/// Returns the tree over `items`, of which there is one at least; `paths` has room for every emitter.
 pub(super) fn build(items: &mut [Item], paths: Vec<u64>) -> Built {
     let mut built = Built {
         paths,
@@ -81,12 +81,12 @@ impl Built {
     }
 }
 
-/// True where all shine in all directions.
+/// Returns true where all shine in all directions.
 fn are_even(items: &[Item]) -> bool {
     items.iter().all(|item| item.around.cone.spread >= PI)
 }
 
-/// The emitters of the children of a node; children of one half are neighbours.
+/// Returns the emitters of the children of a node; children of one half are neighbours.
 fn quarters(items: &mut [Item], level: u32) -> [&mut [Item]; WIDTH] {
     let [a, b] = halves(items, level);
     let [[a, b], [c, d]] = [halves(a, level), halves(b, level)];
@@ -130,7 +130,7 @@ struct Axis {
 }
 
 impl Axis {
-    /// The bin of an emitter's centre.
+    /// Returns the bin of an emitter's centre.
     fn bin(&self, item: &Item) -> usize {
         let part = (item.around.bounds.center()[self.k] - self.from) / self.extent;
         ((part * self.bins as f32) as usize).min(self.bins - 1)
@@ -149,7 +149,7 @@ impl Plane {
     }
 }
 
-/// The plane of least cost. None: all centres are one point, or all costs overflow.
+/// Returns the plane of least cost. None: all centres are one point, or all costs overflow.
 fn best_plane(items: &[Item]) -> Option<Plane> {
     let centres = items.iter().fold(Aabb::EMPTY, |bounds, item| {
         let p = item.around.bounds.center();
@@ -172,7 +172,7 @@ fn best_plane(items: &[Item]) -> Option<Plane> {
         .map(|(_, plane)| plane)
 }
 
-/// The bin of an axis before which dividing costs least, with the cost.
+/// Returns the bin of an axis before which dividing costs least, with the cost.
 fn best_bin(items: &[Item], axis: &Axis) -> Option<(f32, usize)> {
     let mut bins = [Sum::EMPTY; BINS];
     for item in items {
@@ -226,7 +226,7 @@ impl Sum {
         self.directions += other.directions;
     }
 
-    /// Φ r² m. Infinite where there is nothing, so that no part is empty.
+    /// Returns Φ r² m. Infinite where there is nothing, so that no part is empty.
     fn cost(&self) -> f32 {
         if self.intensity <= 0.0 {
             return f32::INFINITY;
@@ -253,7 +253,7 @@ mod tests {
         }
     }
 
-    /// The emitter at the end of a path, and the levels it takes.
+    /// Returns the emitter at the end of a path, and the levels it takes.
     fn follow(built: &Built, emitter: u32) -> (u32, u32) {
         let (mut path, mut node, mut levels) = (built.paths[emitter as usize], 0, 0);
         loop {

@@ -20,7 +20,7 @@ pub(super) struct Hierarchy {
 }
 
 impl Hierarchy {
-    /// The tree over `items`, which are some of `count` emitters.
+    /// Returns the tree over `items`, which are some of `count` emitters.
     pub(super) fn new(items: &mut [Item], count: usize) -> Self {
         let mut built = Built {
             paths: vec![NOWHERE; count],
@@ -66,7 +66,7 @@ impl Hierarchy {
         }
     }
 
-    /// The probability that [`sample`](Self::sample) draws `emitter` with: the same products, so the
+    /// Returns the probability that [`sample`](Self::sample) draws `emitter` with: the same products, so the
     /// same number.
     #[inline]
     pub(super) fn prob(&self, receiver: &Receiver, emitter: usize) -> f32 {
@@ -91,7 +91,7 @@ impl Hierarchy {
         }
     }
 
-    /// The places of the emitters below child number `i` of a node.
+    /// Returns the places of the emitters below child number `i` of a node.
     #[inline]
     fn below(&self, node: usize, i: usize) -> Range<usize> {
         let begins = &self.built.begins[node];
@@ -107,7 +107,7 @@ impl Hierarchy {
         range.start + ends.partition_point(|&end| end <= target)
     }
 
-    /// The probability of [`choose_alike`](Self::choose_alike).
+    /// Returns the probability of [`choose_alike`](Self::choose_alike).
     #[inline]
     fn prob_alike(&self, range: &Range<usize>, place: usize) -> f32 {
         let width = |from: usize, to: usize| self.sums[to] - self.sums[from];

@@ -99,7 +99,7 @@ pub struct LightTree {
     tree: Hierarchy,
 }
 
-/// a, where so many emitters are in the tree.
+/// Returns a, where so many emitters are in the tree.
 fn power_part(in_tree: usize, beside_infinity: bool) -> f32 {
     match (in_tree, beside_infinity) {
         // There is nothing to choose among.
@@ -110,7 +110,7 @@ fn power_part(in_tree: usize, beside_infinity: bool) -> f32 {
 }
 
 impl LightTree {
-    /// The choice among `lights`.
+    /// Returns the choice among `lights`.
     pub fn new(lights: &[Light], context: &LightContext<'_>) -> Self {
         let mut first = Vec::with_capacity(lights.len());
         let mut emitters = Vec::new();
@@ -167,7 +167,7 @@ impl LightTree {
         self.chosen(emitter, in_tree)
     }
 
-    /// The emitter that primitive number `primitive` of a light is, or is a part of, with the
+    /// Returns the emitter that primitive number `primitive` of a light is, or is a part of, with the
     /// probability that [`sample`](Self::sample) draws it with.
     #[inline]
     pub fn find(
@@ -193,7 +193,7 @@ impl LightTree {
         self.chosen(emitter, self.tree.prob(receiver, emitter))
     }
 
-    /// The emitter with its probability, of which `in_tree` is the tree's.
+    /// Returns the emitter with its probability, of which `in_tree` is the tree's.
     #[inline]
     fn chosen(&self, emitter: usize, in_tree: f32) -> ChosenEmitter {
         let ((light, part), a) = (self.emitters[emitter], self.power_part);

@@ -66,7 +66,7 @@ pub(super) struct Shares {
 }
 
 impl Shares {
-    /// True where the emitters of child number `i` differ in intensity alone.
+    /// Returns true where the emitters of child number `i` differ in intensity alone.
     #[inline]
     pub(super) fn are_alike(&self, i: usize) -> bool {
         self.alike >> i & 1 == 1
@@ -139,7 +139,7 @@ impl Node {
         self.far2[i] = FAR * FAR * self.radius2[i];
     }
 
-    /// The shares of the children for `receiver`.
+    /// Returns the shares of the children for `receiver`.
     #[inline]
     pub(super) fn shares(&self, receiver: &Receiver) -> Shares {
         let across = offset(receiver.point, &self.centre);
@@ -151,7 +151,7 @@ impl Node {
         }
     }
 
-    /// I of each child; 0 where there is none, positive elsewhere. Unit: W/m², luminance.
+    /// Returns I of each child; 0 where there is none, positive elsewhere. Unit: W/m², luminance.
     #[inline]
     fn importances(&self, receiver: &Receiver, across: &Vec3x4) -> Vec4 {
         let distance2 = dot(across, across);
@@ -174,7 +174,7 @@ impl Node {
         Vec4::select(is_there, irradiance.clamp(least, most), Vec4::ZERO)
     }
 
-    /// cosθ', where θ is between the axes and the direction to the receiver; 0 beyond θ_e.
+    /// Returns cosθ', where θ is between the axes and the direction to the receiver; 0 beyond θ_e.
     #[inline]
     fn emission(&self, cos: Vec4, seen: &Angle) -> Vec4 {
         let cos = Vec4::select(self.mirrored.cmpgt(Vec4::ZERO), cos.abs(), cos);
@@ -183,7 +183,7 @@ impl Node {
     }
 }
 
-/// cosθ_r', where θ_r is between the receiver's normal and the direction to the centre; 0 below the
+/// Returns cosθ_r', where θ_r is between the receiver's normal and the direction to the centre; 0 below the
 /// horizon.
 #[inline]
 fn reception(facing: Facing, cos: Vec4, seen: &Angle) -> Vec4 {
@@ -197,12 +197,12 @@ fn reception(facing: Facing, cos: Vec4, seen: &Angle) -> Vec4 {
     Vec4::select(least.cmpgt(Vec4::ZERO), lit, Vec4::ZERO)
 }
 
-/// True where `cone` is so narrow that its emitters' directions hardly matter from far away.
+/// Returns true where `cone` is so narrow that its emitters' directions hardly matter from far away.
 pub(super) fn is_narrow(cone: &Cone) -> bool {
     cone.spread <= NARROW && cone.opening >= OPEN
 }
 
-/// The square of the radius of a ball around the box. Unit: m².
+/// Returns the square of the radius of a ball around the box. Unit: m².
 pub(super) fn radius2(bounds: &Aabb) -> f32 {
     bounds.max.distance_squared(bounds.center())
 }

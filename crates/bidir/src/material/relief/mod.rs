@@ -43,7 +43,7 @@ pub enum Bitangent {
     AlongV,
 }
 
-/// The frame of `surface` with the z nearest to `normal` on the front, or as it is where that is undefined.
+/// Returns the frame of `surface` with the z nearest to `normal` on the front, or as it is where that is undefined.
 fn fronted(surface: &SurfacePoint, normal: Vec3, tangent: Vec3) -> Frame {
     let Some(normal) = normal.try_normalize() else {
         return surface.shading;
@@ -64,7 +64,7 @@ pub struct Embossed {
 }
 
 impl Material {
-    /// The wall of a principled material without what is behind it; other materials as they are.
+    /// Returns the wall of a principled material without what is behind it; other materials as they are.
     #[must_use]
     pub fn into_thin(self) -> Self {
         match self {
@@ -80,7 +80,7 @@ impl Material {
         }
     }
 
-    /// The material under `relief`; of a mixture every part that has none of its own.
+    /// Returns the material under `relief`; of a mixture every part that has none of its own.
     #[must_use]
     pub fn embossed(self, relief: Relief) -> Self {
         match self {
@@ -98,7 +98,7 @@ impl Material {
 }
 
 impl Relief {
-    /// The shading frame at a point. Its normal is on the side of the geometric normal, as in
+    /// Returns the shading frame at a point. Its normal is on the side of the geometric normal, as in
     /// pbrt-v4; where it is undefined, the frame is that of the surface.
     pub fn frame(
         &self,
@@ -115,7 +115,7 @@ impl Relief {
 }
 
 impl NormalMap {
-    /// The normal of the map at a point, on the side of the geometric normal.
+    /// Returns the normal of the map at a point, on the side of the geometric normal.
     pub(super) fn front(&self, surface: &SurfacePoint, at: &TexturePoint) -> Vec3 {
         fronted(surface, self.normal(surface, at), surface.shading.x).z
     }
@@ -132,7 +132,7 @@ impl NormalMap {
     }
 }
 
-/// The normal of p + h n_s, not normalised, and its tangent along u:
+/// Returns the normal of p + h n_s, not normalised, and its tangent along u:
 /// ∂p/∂u + ∂h/∂u n_s + h ∂n_s/∂u, crossed with the same along v [PBRT4, §10.5.4].
 ///
 /// Tangents are those of the surface that the shading normal is the normal of, so that a constant
@@ -162,7 +162,7 @@ fn displaced(
     (along_u.cross(along_v), along_u)
 }
 
-/// How far apart the heights are that are compared, in units of a parameter: as a pixel is wide, but
+/// Returns how far apart the heights are that are compared, in units of a parameter: as a pixel is wide, but
 /// no less than what rounding leaves of differences.
 #[inline]
 fn step(at: &TexturePoint, gradient: Vec3) -> f32 {

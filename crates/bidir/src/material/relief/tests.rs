@@ -5,7 +5,7 @@ use crate::math::{Affine3A, PI, sin_cos};
 use crate::shape::{Cylinder, Disk, Mesh, Orientation, Place, Shape, Sphere};
 use crate::texture::{Bilerp, Mapping, Noise, NoiseKind, TextureSpace};
 
-/// Points of the first primitive with their frames under a relief, where a pixel is `width` wide.
+/// Returns the points of the first primitive with their frames under a relief, where a pixel is `width` wide.
 fn frames(shape: &Shape, relief: &Relief, width: f32) -> Vec<(SurfacePoint, Frame)> {
     let points = (0..32).map(|i| {
         let u = Vec2::new(0.1 + 0.025 * i as f32, (0.05 + 0.618 * i as f32).fract());
@@ -31,7 +31,7 @@ fn barycentric(mesh: &Mesh, p: Vec3) -> Vec2 {
     Vec2::new(area(c, a), area(a, b))
 }
 
-/// The triangle (0,0), (2,0), (2,3) of the plane z = 0 with these parameters.
+/// Returns the triangle (0,0), (2,0), (2,3) of the plane z = 0 with these parameters.
 fn triangle(uvs: [Vec2; 3]) -> Mesh {
     Mesh {
         positions: vec![Vec3::ZERO, Vec3::X * 2.0, Vec3::new(2.0, 3.0, 0.0)],
@@ -259,7 +259,7 @@ fn differentials_are_those_of_the_surface() {
     }
 }
 
-/// The point with parameters `uv`, by the parametrisation of the format.
+/// Returns the point with parameters `uv`, by the parametrisation of the format.
 fn local_point(shape: &Shape, map: Affine3A, uv: Vec2) -> Vec3 {
     let (sin, cos) = sin_cos(5.0 * uv.x);
     let local = match shape {

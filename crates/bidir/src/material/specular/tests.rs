@@ -94,7 +94,7 @@ fn mixture(amount: FloatTexture, materials: [Material; 2]) -> Material {
     Material::Mix(Arc::new(Mixture { materials, amount }))
 }
 
-/// Mirrors of this part beside what is diffuse.
+/// Returns the mirrors of this part beside what is diffuse.
 fn mirrors(amount: f32) -> Material {
     mixture(
         FloatTexture::Constant(amount),
@@ -102,7 +102,7 @@ fn mirrors(amount: f32) -> Material {
     )
 }
 
-/// True where draws at the middle of all texels, by the least and the largest numbers and some between,
+/// Returns true where draws at the middle of all texels, by the least and the largest numbers and some between,
 /// find a Dirac distribution.
 fn draws_find_dirac(material: &Material) -> bool {
     let numbers = || [0.0, 0.25, 0.5, 0.75, ONE_MINUS_EPSILON].into_iter();

@@ -25,7 +25,7 @@ fn phase() -> HenyeyGreenstein {
     HenyeyGreenstein::new(0.3).expect("a mean cosine")
 }
 
-/// A scene in one medium.
+/// Returns a scene in one medium.
 fn filled(medium: Medium) -> (SceneBuilder, MediumId) {
     let mut builder = SceneBuilder::new();
     let around = builder.medium(medium);
@@ -57,7 +57,7 @@ fn smoke() -> Scene {
     filled(smoke).0.build().expect("the scene is valid")
 }
 
-/// The place of a collision as a part of `REACH`. None: there is none up to there.
+/// Returns the place of a collision as a part of `REACH`. None: there is none up to there.
 fn collision(scene: &Scene, stream: &SampleStream) -> Option<Vec3> {
     let ray = Ray::new(START, Vec3::Z);
     let chances = Chances::new(stream, 1);
@@ -71,7 +71,7 @@ fn collision(scene: &Scene, stream: &SampleStream) -> Option<Vec3> {
     (part < 1.0).then_some(Vec3::new(part, 0.5, 0.0))
 }
 
-/// The density of collisions `t` from the start, as weights find it. Unit: 1/m.
+/// Returns the density of collisions `t` from the start, as weights find it. Unit: 1/m.
 fn density(scene: &Scene, t: f32) -> f32 {
     let medium = MediumSides::all(scene.medium_at(START));
     let start = Locus::in_space(START).within(medium);

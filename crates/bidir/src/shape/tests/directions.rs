@@ -51,7 +51,7 @@ impl View {
         }
     }
 
-    /// 1 - cosθ of the cone that the ball fills.
+    /// Returns 1 - cosθ of the cone that the ball fills.
     fn height(&self) -> f64 {
         let sin2 = 1.0 / (self.distance * self.distance);
         if sin2 < 1.0 {
@@ -69,7 +69,7 @@ impl View {
                 * RADIUS
     }
 
-    /// The point seen along (x, y) of the unit square: even in solid angle.
+    /// Returns the point seen along (x, y) of the unit square: even in solid angle.
     fn look(&self, x: f64, y: f64) -> Seen {
         let drop = x * self.height();
         let (sin2, cos) = (drop * (2.0 - drop), 1.0 - drop);
@@ -83,7 +83,7 @@ impl View {
         }
     }
 
-    /// The (x, y) that a point of the surface is seen along. None: it is on the other side.
+    /// Returns the (x, y) that a point of the surface is seen along. None: it is on the other side.
     fn project(&self, point: Vec3) -> Option<Vec3> {
         let local = self
             .axis
@@ -107,7 +107,7 @@ impl View {
         Some(Vec2::new((drop / self.height()) as f32, turn as f32).extend(0.0))
     }
 
-    /// The density of drawing the point in `seen`. Measure: solid angle.
+    /// Returns the density of drawing the point in `seen`. Measure: solid angle.
     fn pdf_direction(&self, seen: &Seen) -> f64 {
         let normal = self
             .axis

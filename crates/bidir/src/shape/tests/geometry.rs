@@ -8,7 +8,7 @@ use crate::shape::{Disk, Mesh, Orientation, Place, Shape, Sphere, SurfacePoint};
 use crate::testing::samples;
 use crate::texture::ColorTexture;
 
-/// Points of the surface, drawn.
+/// Returns the points of the surface, drawn.
 fn points(example: &Example) -> impl Iterator<Item = SurfacePoint> {
     samples(example.name, 200).map(|sample| {
         example
@@ -234,7 +234,7 @@ fn triangles_of_any_size_have_their_area() {
     }
 }
 
-/// A scene of one shape, which is an object at `place` if there is one.
+/// Returns a scene of one shape, which is an object at `place` if there is one.
 fn scene_of(shape: Shape, place: Option<DAffine3>) -> Scene {
     let mut builder = SceneBuilder::new();
     let material = builder.material(Material::Diffuse {

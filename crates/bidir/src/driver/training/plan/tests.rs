@@ -1,7 +1,7 @@
 use super::*;
 use crate::settings::{Choice, Request};
 
-/// Settings of `auto` that name nothing.
+/// Returns the settings of `auto` that name nothing.
 fn open() -> Settings {
     Settings::new(IntegratorKind::Auto)
 }

@@ -25,7 +25,7 @@ impl Flat {
         }
     }
 
-    /// The product of both cosines.
+    /// Returns the product of both cosines.
     fn cosines(&self, receiver: &Receiver) -> f32 {
         let w = (self.point - receiver.point).normalize();
         let leaves = -self.n.dot(w);
