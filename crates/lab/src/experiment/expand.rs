@@ -8,6 +8,7 @@
 use super::error::ExperimentError;
 use super::reader::{Entry, Section};
 use std::borrow::Cow;
+use std::cell::Cell;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
@@ -59,11 +60,14 @@ impl Section<'_> {
     ///
     /// Errors: the copies of a description have more bytes than it may have.
     pub(super) fn bound(&self, binding: &Binding) -> Result<Self> {
-        let mut bound = self.clone();
-        bound.table = bound_table(&self.table, binding);
         let room = &self.source.room;
-        let left = room.get().checked_sub(table_size(&bound.table));
-        room.set(left.ok_or_else(|| self.fault("repetition makes this description too large"))?);
+        let table = bound_table(&self.table, binding, room).filter(|table| {
+            let left = room.get().checked_sub(table_size(table));
+            left.inspect(|&left| room.set(left)).is_some()
+        });
+        let too_large = || self.fault("repetition makes this description too large");
+        let mut bound = self.clone();
+        bound.table = table.ok_or_else(too_large)?;
         Ok(bound)
     }
 }
@@ -78,22 +82,33 @@ fn binding(name: &str, element: Entry<'_>) -> Result<Binding> {
     parts.collect()
 }
 
-fn bound_table<'a>(table: &DeTable<'a>, binding: &Binding) -> DeTable<'a> {
+/// Copies a table and replaces placeholders. None: texts grow by more bytes than there is `room` for, which what they
+/// grow by is taken from.
+fn bound_table<'a>(
+    table: &DeTable<'a>,
+    binding: &Binding,
+    room: &Cell<usize>,
+) -> Option<DeTable<'a>> {
     let pairs = table.iter();
-    let pairs = pairs.map(|(key, value)| (key.clone(), bound_value(value, binding)));
+    let pairs = pairs.map(|(key, value)| Some((key.clone(), bound_value(value, binding, room)?)));
     pairs.collect()
 }
 
-fn bound_value<'a>(value: &Spanned<DeValue<'a>>, binding: &Binding) -> Spanned<DeValue<'a>> {
+fn bound_value<'a>(
+    value: &Spanned<DeValue<'a>>,
+    binding: &Binding,
+    room: &Cell<usize>,
+) -> Option<Spanned<DeValue<'a>>> {
     let bound = match value.get_ref() {
-        DeValue::String(text) => DeValue::String(bound_text(text, binding)),
+        DeValue::String(text) => DeValue::String(bound_text(text, binding, room)?),
         DeValue::Array(list) => {
-            DeValue::Array(list.iter().map(|one| bound_value(one, binding)).collect())
+            let values = list.iter().map(|one| bound_value(one, binding, room));
+            DeValue::Array(values.collect::<Option<_>>()?)
         }
-        DeValue::Table(table) => DeValue::Table(bound_table(table, binding)),
+        DeValue::Table(table) => DeValue::Table(bound_table(table, binding, room)?),
         other => other.clone(),
     };
-    Spanned::new(value.span(), bound)
+    Some(Spanned::new(value.span(), bound))
 }
 
 /// About the bytes that a table takes.
@@ -114,15 +129,22 @@ fn value_size(value: &DeValue<'_>) -> usize {
     size_of::<Spanned<DeValue<'_>>>() + content
 }
 
-fn bound_text<'a>(text: &Cow<'a, str>, binding: &Binding) -> Cow<'a, str> {
+/// Replaces placeholders one after another, those within replacements too: a text may double with each.
+fn bound_text<'a>(
+    text: &Cow<'a, str>,
+    binding: &Binding,
+    room: &Cell<usize>,
+) -> Option<Cow<'a, str>> {
     let mut text = text.clone();
     for (name, value) in binding {
         let name = format!("{{{name}}}");
-        if text.contains(&name) {
+        let count = text.matches(&name).count();
+        if count > 0 {
+            room.set(room.get().checked_sub(count.checked_mul(value.len())?)?);
             text = text.replace(&name, value).into();
         }
     }
-    text
+    Some(text)
 }
 
 #[cfg(test)]
@@ -158,6 +180,15 @@ mod tests {
             error.ends_with("repetition makes this description too large"),
             "{error}"
         );
+    }
+
+    #[test]
+    fn texts_that_double_with_each_key_are_limited() {
+        let keys = (0..60).map(|i| format!("k{i} = \"{{k{0}}}{{k{0}}}\"", i + 1));
+        let element = keys.collect::<Vec<_>>().join(", ");
+        let error = read(&format!("for.a = [{{ {element} }}]\nname = \"{{k0}}\"")).unwrap_err();
+        let expected = "repetition makes this description too large";
+        assert!(error.ends_with(expected), "{error}");
     }
 
     #[test]
