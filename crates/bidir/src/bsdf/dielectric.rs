@@ -79,7 +79,7 @@ impl Dielectric {
         Self::new(self.eta / index, self.ggx, scattering)
     }
 
-    /// Returns an index-matched interface bends nothing, so roughness has no meaning there.
+    /// Returns true if it has no facets, or matched indices: such an interface bends nothing, however rough it is.
     #[inline]
     pub(crate) fn is_smooth(&self) -> bool {
         self.ggx.is_smooth() || (self.eta - 1.0).abs() < 1e-6

@@ -58,7 +58,7 @@ fn is_two_sided(bsdf: &Bsdf) -> bool {
 
 const VARIANTS: usize = 8;
 
-/// Returns a new variant does not compile before it has a number here.
+/// Numbers the variants: a new one does not compile before it has a number here.
 fn variant(bsdf: &Bsdf) -> usize {
     match bsdf {
         Bsdf::Diffuse(_) => 0,

@@ -100,7 +100,7 @@ fn others() -> [(&'static str, Camera); 5] {
 
 const VARIANTS: usize = 3;
 
-/// Returns a new variant does not compile before it has a number here.
+/// Numbers the variants: a new one does not compile before it has a number here.
 fn variant(camera: &Camera) -> usize {
     match camera {
         Camera::Perspective(_) => 0,

@@ -188,7 +188,7 @@ impl Batch {
         self.light.count() - self.samples.len()
     }
 
-    /// Returns true of a connection that is evaluated together with others: both of its vertices are diffuse.
+    /// Returns true if a connection is evaluated together with others: both of its vertices are diffuse.
     pub(crate) fn is_diffuse(&self, connection: &Candidate) -> bool {
         let [z, y] = connection.vertices.map(|number| number as usize);
         self.light_sums.diffuse(z).is_some() && self.camera_sums.diffuse(y).is_some()

@@ -191,7 +191,7 @@ fn examples(surroundings: &Surroundings) -> Vec<(&'static str, Light)> {
 
 const VARIANTS: usize = 6;
 
-/// Returns a new variant does not compile before it has a number here.
+/// Numbers the variants: a new one does not compile before it has a number here.
 fn variant(light: &Light) -> usize {
     match light {
         Light::Area(_) => 0,

@@ -27,8 +27,8 @@ pub fn from_f64(value: f64, scale: i32) -> i128 {
     }
 }
 
-/// Returns a number of 2⁶³ or more is an integer: 53 bits that are shifted, in a tenth of the time of a conversion to
-/// 128 bits.
+/// Converts a number of 2⁶³ or more, which is an integer: 53 bits that are shifted, in a tenth of the time of a
+/// conversion to 128 bits.
 fn large_from_f64(value: f64) -> i128 {
     let (bits, fraction) = (value.to_bits(), (1 << 52) - 1);
     let shift = ((bits >> 52) & 0x7ff) as i32 - 1075;
@@ -47,7 +47,7 @@ pub fn to_f64(fixed: i128, scale: i32) -> f64 {
     value * power_of_two(-scale)
 }
 
-/// Returns the first 63 bits round as all of them do if the last one stands for what is behind them.
+/// Converts by the first 63 bits: they round as all of them do if the last one stands for what is behind them.
 fn large_to_f64(fixed: i128) -> f64 {
     let magnitude = fixed.unsigned_abs();
     let shift = 65 - magnitude.leading_zeros();

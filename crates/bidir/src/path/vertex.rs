@@ -242,7 +242,7 @@ impl Vertex {
         matches!(self.scattering, Scattering::Camera)
     }
 
-    /// Returns true on a light that no ray can hit by chance.
+    /// Returns true if it is on a light that no ray can hit by chance.
     #[inline]
     pub(crate) fn is_on_delta_light(&self, job: &Job<'_>) -> bool {
         self.light

@@ -18,7 +18,7 @@ pub enum Choice<T> {
 pub struct ChoiceError<E: Display>(E);
 
 impl<T> Choice<T> {
-    /// Makes a value, or that it is open.
+    /// Makes a choice: this value, or none where it is open.
     pub(super) fn new(is_open: bool, value: T) -> Self {
         if is_open {
             Self::Automatic

@@ -208,7 +208,7 @@ fn examples() -> Vec<Example> {
 
 const VARIANTS: usize = 4;
 
-/// Returns a new variant does not compile before it has a number here.
+/// Numbers the variants: a new one does not compile before it has a number here.
 fn variant(shape: &Shape) -> usize {
     match shape {
         Shape::Mesh(_) => 0,

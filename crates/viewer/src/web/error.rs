@@ -17,17 +17,17 @@ impl Refusal {
         Self { status, message }
     }
 
-    /// Returns the query is wrong.
+    /// Makes the answer to a wrong query.
     pub(super) fn query(message: impl Into<String>) -> Self {
         Self::new(StatusCode::BAD_REQUEST, message)
     }
 
-    /// Returns the requested thing is not there now, but may be later.
+    /// Makes the answer to a query for something that is not there now, but may be later.
     pub(super) fn now(message: impl Into<String>) -> Self {
         Self::new(StatusCode::CONFLICT, message)
     }
 
-    /// Makes a bug.
+    /// Makes the answer where the server has a bug.
     pub(super) fn bug(message: impl Into<String>) -> Self {
         Self::new(StatusCode::INTERNAL_SERVER_ERROR, message)
     }

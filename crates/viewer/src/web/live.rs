@@ -229,7 +229,7 @@ fn close(code: u16, reason: &str) -> End {
     End::Refused(CloseFrame { code, reason })
 }
 
-/// Returns the renderer is gone.
+/// Ends a connection whose renderer is gone.
 fn gone(_: watch::error::RecvError) -> End {
     close(close_code::AWAY, "the render has ended")
 }

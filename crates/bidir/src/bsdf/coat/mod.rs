@@ -83,7 +83,7 @@ impl<const R: usize, const L: usize> Coat<R, L> {
         self.eta
     }
 
-    /// Returns an index-matched interface reflects nothing, and bends nothing.
+    /// Returns true if it has no facets. An index-matched interface reflects and bends nothing.
     #[inline]
     pub(super) fn is_smooth(&self) -> bool {
         self.ggx.is_smooth()

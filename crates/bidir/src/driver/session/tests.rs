@@ -151,9 +151,9 @@ fn add_fog(builder: &mut SceneBuilder) {
         let value = |i: u8| [0.9, 0.3, 0.5].map(|part| scale * part * (1.0 + f32::from(i)));
         Grid::new([2; 3], (0..8).map(value).collect(), place).expect("a grid")
     };
-    let smoke = Medium::chromatic(grid(0.4), grid(0.2), phase).expect("smoke");
-    let smoke = smoke.glowing(Glow::Even([0.3, 0.1, 0.6])).expect("a glow");
-    let [fog, smoke] = [fog, smoke].map(|medium| builder.medium(medium));
+    let dark = Medium::chromatic(grid(0.4), grid(0.2), phase).expect("smoke");
+    let glowing = dark.glowing(Glow::Even([0.3, 0.1, 0.6]));
+    let [fog, smoke] = [fog, glowing.expect("a glow")].map(|medium| builder.medium(medium));
     builder.medium_at(Vec3::ZERO, fog);
     let sides = |outside, inside| MediumSides { outside, inside };
     builder.boundary(ball(Vec3::ZERO, 7.0), sides(MediumId::VACUUM, fog));

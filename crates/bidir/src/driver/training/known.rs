@@ -52,7 +52,7 @@ pub(super) struct Judge<'a> {
 }
 
 impl<'a> Judge<'a> {
-    /// Returns the lessons of all plans are those of a typical one.
+    /// Learns for all plans by a typical one.
     pub(super) fn new(task: Task<'a>, survey: &'a Survey, cells: &Cells) -> Self {
         let typical = TYPICAL.keeping(task.settings).apply(task.settings);
         let lessons = Lessons::of(task, &typical, survey, cells);
