@@ -3,7 +3,7 @@
 from .tests import RUNNING, analytic, unit
 
 DIFFUSE = "crates/bidir/src/path/diffuse.rs"
-CONNECT = "crates/bidir/src/integrator/stages/connect.rs"
+CONNECT = "crates/bidir/src/integrator/stages/diffuse.rs"
 
 DIFFUSE_ENDS = [
     (
@@ -86,8 +86,8 @@ DIFFUSE_ENDS = [
     (
         "light points of diffuse vertices without the walk that hits the light",
         DIFFUSE,
-        "let hit = start.is_hit * to_light / start.next_event;",
-        "let hit = start.is_hit * 0.0 * to_light / start.next_event;",
+        "let hit = start.is_hit * start.hit_over_next_event(to_light);",
+        "let hit = 0.0 * start.hit_over_next_event(to_light);",
         RUNNING,
     ),
     (
@@ -100,15 +100,15 @@ DIFFUSE_ENDS = [
     (
         "light images of diffuse vertices with the counts of longer paths",
         DIFFUSE,
-        "sums.per_density(1, self.before(vertex))",
-        "sums.per_density(ANY_DEEPER, self.before(vertex))",
+        "sums.per_density(Depth::First, self.before(vertex))",
+        "sums.per_density(Depth::Deeper, self.before(vertex))",
         RUNNING,
     ),
     (
         "light points of lights that no ray can hit, weighed against hits",
         DIFFUSE,
-        "let hit = start.is_hit * to_light / start.next_event;",
-        "let hit = to_light / start.next_event;",
+        "let hit = start.is_hit * start.hit_over_next_event(to_light);",
+        "let hit = start.hit_over_next_event(to_light);",
         RUNNING,
     ),
     (
@@ -128,8 +128,8 @@ DIFFUSE_ENDS = [
     (
         "light points as likely for light subpaths as for next-event estimation",
         DIFFUSE,
-        "let drawn = start.up() * f64::from(x0",
-        "let drawn = f64::from(x0",
+        "let drawn = start.walk_over_next_event() * a1;",
+        "let drawn = a1;",
         RUNNING,
     ),
     (

@@ -7,15 +7,15 @@ MATERIALS = [
     (
         "a Dirac lobe of a walk not told to weights",
         "crates/bidir/src/path/densities.rs",
-        "is_delta: i < walked && subpath[i].went_by_delta,",
-        "is_delta: false,",
+        "                from_camera: drawn,\n                is_delta: x.went_by_delta,",
+        "                from_camera: drawn,\n                is_delta: false,",
         RUNNING,
     ),
     (
         "an end that is connected taken for Dirac",
         "crates/bidir/src/path/densities.rs",
-        "is_delta: i < walked && subpath[i].went_by_delta,",
-        "is_delta: subpath[i].went_by_delta,",
+        "(x[s - 1].is_delta, x[s].is_delta) = (false, false);",
+        "",
         RUNNING,
     ),
     (

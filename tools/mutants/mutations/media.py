@@ -69,8 +69,8 @@ MEDIA = [
     (
         "the weight of a guess kept after the ray",
         "crates/bidir/src/integrator/stages/media.rs",
-        "        entry.contribution.term.weight = weights.weight(job, &path, &sums);",
-        "        weights.weight(job, &path, &sums);",
+        "        entry.contribution.term.weight = weights.connection(job, &path, &sums);",
+        "        weights.connection(job, &path, &sums);",
         media("nested_media"),
     ),
     (

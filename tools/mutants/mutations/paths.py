@@ -94,29 +94,29 @@ PATHS = [
     ),
     (
         "s = 1 ratio without the emission density",
-        "crates/bidir/src/path/mis.rs",
-        "1 => f64::from(x[0].from_light) / next_event * x[1].ratio(),",
-        "1 => x[1].ratio(),",
+        "crates/bidir/src/path/technique.rs",
+        "1 => f64::from(self.vertices[0].from_light) / next_event * (a / b),",
+        "1 => a / b,",
         unit("path::mis"),
     ),
     (
         "connections counted at Dirac vertices",
-        "crates/bidir/src/path/mis.rs",
+        "crates/bidir/src/path/technique.rs",
         "j => !x[j - 1].is_delta && !x[j].is_delta,",
         "j => !x[j].is_delta,",
         RUNNING,
     ),
     (
         "Dirac lights counted as if they could be hit",
-        "crates/bidir/src/path/mis.rs",
-        "0 => !path.light_is_delta,",
+        "crates/bidir/src/path/technique.rs",
+        "0 => !self.light_is_delta,",
         "0 => true,",
         RUNNING,
     ),
     (
         "running sums without the next-event density",
         "crates/bidir/src/path/running.rs",
-        "1 => share(start.next_event / start.emission / a),",
+        "1 => share(start.next_event_over_walk(a)),",
         "1 => share(1.0 / a),",
         RUNNING,
     ),
@@ -136,9 +136,9 @@ PATHS = [
     ),
     (
         "n_j of the light image is one",
-        "crates/bidir/src/path/count.rs",
-        "1 => light_subpaths,",
-        "1 => 1.0,",
+        "crates/bidir/src/path/technique.rs",
+        "Technique::LightImage => self.counts.light_subpaths,",
+        "Technique::LightImage => 1.0,",
         PATH,
     ),
     (
@@ -231,9 +231,9 @@ PATHS = [
     ),
     (
         "weights that know the proposal the other way round",
-        "crates/bidir/src/path/count.rs",
-        "self.count_walked(t, [z, y])",
-        "self.count_walked(t, [if s > t { z } else { y }, y])",
+        "crates/bidir/src/path/technique.rs",
+        "self.count_from(depth, self.guide.of_camera(y), z)",
+        "self.count_from(depth, self.guide.of_camera(z), y)",
         RUNNING,
     ),
     (
@@ -252,9 +252,9 @@ PATHS = [
     ),
     (
         "the first vertex's light points counted for those behind it",
-        "crates/bidir/src/path/count.rs",
-        "_ => next_events[usize::from(t > 2)],",
-        "_ => next_events[0],",
+        "crates/bidir/src/path/technique.rs",
+        "self.counts.next_events[depth.index()]",
+        "self.counts.next_events[0]",
         PATH,
     ),
     (
@@ -267,8 +267,8 @@ PATHS = [
     (
         "the first vertex's candidates counted for those behind it",
         "crates/bidir/src/path/running.rs",
-        "[2, ANY_DEEPER].map(",
-        "[2, 2].map(",
+        "[2, 3].map(|t|",
+        "[2, 2].map(|t|",
         RUNNING,
     ),
     (
@@ -351,8 +351,8 @@ PATHS = [
     (
         "shared light subpaths counted as one in sums",
         "crates/bidir/src/path/running.rs",
-        "links * share(job.count(i, t, [before.cell, z.cell]))",
-        "links",
+        "is_there * share(job.count_of(technique, [before.cell, z.cell]))",
+        "is_there * share(job.count_of(technique, [before.cell, z.cell]).signum())",
         RUNNING,
     ),
     (
@@ -365,8 +365,8 @@ PATHS = [
     (
         "paths one vertex too long",
         "crates/bidir/src/integrator/stages/light_ends.rs",
-        ".min(settings.max_vertices() - t);",
-        ".min(settings.max_vertices() + 1 - t);",
+        ".min(settings.max_vertices() - t)",
+        ".min(settings.max_vertices() + 1 - t)",
         analytic("every_limit_of_depth"),
     ),
     (
@@ -379,8 +379,8 @@ PATHS = [
     (
         "film filter's weight dropped",
         "crates/bidir/src/integrator/stages/walk.rs",
-        "camera_subpath(job, &sample.camera, &ray, weight, camera, stats);",
-        "camera_subpath(job, &sample.camera, &ray, 1.0, camera, stats);",
+        "&ray, weight, camera, &mut worker.stats);",
+        "&ray, 1.0, camera, &mut worker.stats);",
         estimators("filters_with"),
     ),
     # --- selection ------------------------------------------------------------------------

@@ -3,7 +3,7 @@
 use super::features::Features;
 use crate::contribution::Contribution;
 use crate::film::{Layers, PassBuffer, SplatPlace};
-use crate::integrator::{Batch, Entry, Sample};
+use crate::integrator::{Batch, Entry, Sample, Worker};
 use crate::path::{Job, Strategy};
 use crate::spectrum::{Rgb, Spectrum, luminance};
 use crate::stats::Stats;
@@ -18,13 +18,13 @@ pub(super) struct Deposit<'a> {
 impl Deposit<'_> {
     /// Adds the samples of `batch` to the pass.
     pub(super) fn take(&self, batch: &mut Batch) {
-        for (sample, &value) in batch.samples.iter().zip(&batch.values) {
+        for (sample, &value) in batch.walked.samples.iter().zip(&batch.values) {
             if let Some(pixel) = self.pixel(sample) {
                 self.buffer.set_camera_sample(pixel, self.rgb(value));
             }
         }
         if self.layers.parts() > 0 {
-            for (sample, entry) in added(&batch.samples, &batch.entries) {
+            for (sample, entry) in added(&batch.walked.samples, &batch.entries) {
                 self.part_of_pixel(sample, &entry.contribution);
             }
         }
@@ -46,7 +46,7 @@ impl Deposit<'_> {
 
     /// Adds the features of the one sample of `batch`.
     pub(super) fn take_features(&self, batch: &Batch, features: &Features) {
-        if let Some(pixel) = self.pixel(&batch.samples[0]) {
+        if let Some(pixel) = self.pixel(&batch.walked.samples[0]) {
             let values = features.values(self.layers);
             self.buffer.set_features(pixel, values);
         }
@@ -86,14 +86,14 @@ impl Deposit<'_> {
     /// Adds to raw images, and counts squares.
     fn strategies(&self, batch: &mut Batch) {
         let Batch {
-            samples,
+            walked,
             entries,
             luminances,
             splats: of_light,
-            stats,
+            worker: Worker { stats, .. },
             ..
         } = batch;
-        for (sample, entry) in added(samples, entries) {
+        for (sample, entry) in added(&walked.samples, entries) {
             let value = self.raw(&entry.contribution, stats);
             if let Some((part, value)) = value {
                 self.add_to_part(sample, part, value);
@@ -234,7 +234,7 @@ mod tests {
         }
         .take(&mut batch);
         film.add_pass(0, &buffer);
-        (film, batch.stats)
+        (film, batch.worker.stats)
     }
 
     #[track_caller]

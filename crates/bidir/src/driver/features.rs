@@ -24,7 +24,7 @@ impl Meter {
     pub(super) fn read(layers: &Layers, batch: &Batch, progress: &dyn Progress) -> Self {
         let is_timed = layers.feature(Aov::Time).is_some();
         Self {
-            rays: batch.stats.rays.total(),
+            rays: batch.worker.stats.rays.total(),
             nanoseconds: if is_timed { progress.nanoseconds() } else { 0 },
         }
     }
@@ -90,14 +90,14 @@ impl Features {
 impl FirstSurface {
     /// Finds the first surface of the one sample of `batch`. None: the ray escapes.
     fn find(job: &Job<'_>, batch: &mut Batch) -> Option<Self> {
-        let sample = &batch.samples[0];
+        let sample = &batch.walked.samples[0];
         // A walk may scatter in a medium before it.
-        if batch.camera.count() > 0 && !job.scene.has_media() {
-            let surface = batch.camera.get(0).vertices.get(1)?;
+        if batch.walked.camera.count() > 0 && !job.scene.has_media() {
+            let surface = batch.walked.camera.get(0).vertices.get(1)?;
             return Some(Self::new(job, surface));
         }
         let (ray, _) = camera_ray(job, sample);
-        batch.stats.rays.camera += 1;
+        batch.worker.stats.rays.camera += 1;
         let chances = Chances::new(&sample.camera, 1).until(job.stop);
         let hit = job.scene.intersect(ray.origin, ray.direction, chances)?;
         let u_mix = || sample.camera.get_1d(Dimension::at(1, Purpose::Mix));

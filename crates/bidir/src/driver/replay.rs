@@ -74,10 +74,10 @@ impl Replay {
         light: Option<usize>,
         selector: &dyn Selector,
     ) -> Self {
-        let certain = batch.entries.len() - batch.chosen.len();
+        let certain = batch.entries.len() - batch.candidates.chosen.len();
         let term = |entry: &Entry| ReplayedTerm::new(job, entry, None);
         let mut terms: Vec<_> = batch.entries[..certain].iter().map(term).collect();
-        let probs = selector.probabilities(&batch.candidates);
+        let probs = selector.probabilities(&batch.candidates.offered);
         for ((candidate, entry), prob) in batch.connections().zip(probs) {
             let selection = Selection {
                 score: candidate.score,
@@ -86,7 +86,11 @@ impl Replay {
             let entry = entry.copied().unwrap_or_else(|| batch.untraced(candidate));
             terms.push(ReplayedTerm::new(job, &entry, Some(selection)));
         }
-        let unoffered = batch.unoffered.iter().map(|other| batch.untraced(other));
+        let unoffered = batch
+            .candidates
+            .unoffered
+            .iter()
+            .map(|other| batch.untraced(other));
         terms.extend(unoffered.map(|entry| term(&entry)));
         terms.extend(batch.splats.iter().map(term));
         let mut replay = Self {
@@ -113,14 +117,14 @@ impl Replay {
 
     /// Returns the light subpath of the sample; empty where it has that of another, or none was walked.
     pub fn light(&self) -> Subpath<'_> {
-        let light = self.light.map(|number| self.batch.light.get(number));
+        let light = self.light.map(|number| self.batch.walked.light.get(number));
         light.unwrap_or_default()
     }
 
     /// Returns the camera subpath of the sample; empty where none was walked.
     pub fn camera(&self) -> Subpath<'_> {
-        let is_walked = self.batch.camera.count() > 0;
-        let camera = is_walked.then(|| self.batch.camera.get(0));
+        let is_walked = self.batch.walked.camera.count() > 0;
+        let camera = is_walked.then(|| self.batch.walked.camera.get(0));
         camera.unwrap_or_default()
     }
 

@@ -227,8 +227,8 @@ impl<'a> Session<'a> {
             let batch = batch
                 .get_mut()
                 .unwrap_or_else(std::sync::PoisonError::into_inner);
-            stats += &std::mem::take(&mut batch.stats);
-            stage_times += &batch.stopwatch.take();
+            stats += &std::mem::take(&mut batch.worker.stats);
+            stage_times += &batch.worker.stopwatch.take();
         }
         (stats, stage_times)
     }
@@ -316,7 +316,10 @@ impl<'a> Session<'a> {
         while !places.is_empty() {
             let samples = places.by_ref().take(size);
             batch.fill(samples.map(|place| self.sample(place, pass)));
-            batch.stopwatch.begin_samples(batch.samples.len());
+            batch
+                .worker
+                .stopwatch
+                .begin_samples(batch.walked.samples.len());
             let before = Meter::read(layers, batch, progress);
             self.method.run(job, batch);
             self.deposit(job).take(batch);
@@ -325,7 +328,7 @@ impl<'a> Session<'a> {
                 let features = Features::new(job, layers, batch, [&before, &after]);
                 self.deposit(job).take_features(batch, &features);
             }
-            batch.stopwatch.end(Stage::Film);
+            batch.worker.stopwatch.end(Stage::Film);
             // After the last ray: whoever saw the flag before, sees it here.
             if job.stop.is_asked() {
                 return false;
@@ -359,7 +362,7 @@ impl<'a> Session<'a> {
                 batch.splats = splats;
                 Some(number)
             }
-            None => (!shared && batch.light.count() > 0).then_some(0),
+            None => (!shared && batch.walked.light.count() > 0).then_some(0),
         };
         let selector = selector(&self.settings, self.training.as_ref());
         Some(Replay::new(&job, batch, light, &*selector))

@@ -111,7 +111,6 @@ impl LightCache {
     pub(super) fn index(
         &mut self,
         walks: &Subpaths,
-        sums: &RunningSums,
         light_point: LightPointChoice,
         proposals: Option<&LightProposals>,
     ) {
@@ -121,7 +120,7 @@ impl LightCache {
             let subpath = walks.get(subpath);
             let connectable = connectable(light_point, subpath.vertices);
             for i in connectable {
-                let Some(place) = Place::new(&subpath, i, sums) else {
+                let Some(place) = Place::new(&subpath, i, &walks.sums) else {
                     continue;
                 };
                 let Vertex { cell, locus, .. } = subpath.vertices[i];

@@ -1,9 +1,11 @@
 //! The terms of a batch that take part in its estimate, each with what became of it.
 
-use crate::contribution::{Contribution, Term};
+use super::Sample;
+use crate::contribution::{Contribution, Term, is_summable};
 use crate::film::SplatPlace;
 use crate::locus::Locus;
-use crate::stats::Stats;
+use crate::stats::{Dropped, Stats};
+use crate::strategy::Strategy;
 
 /// The link between the two subpaths of a term.
 #[derive(Clone, Copy, Debug)]
@@ -104,4 +106,34 @@ impl Entry {
             Link::Walk | Link::Connection(_) => None,
         }
     }
+}
+
+/// Counts a term of sample number `number` that is certain to take part, and adds its entry, untraced, to `entries`.
+#[inline]
+pub(super) fn enter<'e>(
+    entries: &'e mut Vec<Entry>,
+    stats: &mut Stats,
+    (number, sample): (usize, &Sample),
+    term: Term,
+    link: Link,
+) -> &'e mut Entry {
+    stats.count_candidate(term.strategy);
+    let last = entries.len();
+    entries.push(Entry::certain(number, term, link));
+    let entry = &mut entries[last];
+    if !is_summable(term.value()) {
+        drop_term(stats, sample, term.strategy);
+        entry.fate = Fate::Dropped;
+    }
+    entry
+}
+
+/// Counts a term of `sample` that no film can sum.
+#[cold]
+pub(super) fn drop_term(stats: &mut Stats, sample: &Sample, strategy: Strategy) {
+    stats.drop_contribution(Dropped {
+        pass: sample.pass,
+        pixel: sample.pixel,
+        strategy,
+    });
 }

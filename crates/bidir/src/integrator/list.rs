@@ -1,4 +1,4 @@
-//! Lists that are written in place.
+//! Lists that are written in place, one or many in one memory.
 
 use std::ops::Deref;
 
@@ -60,6 +60,60 @@ impl<'a, T> IntoIterator for &'a List<T> {
     }
 }
 
+/// Lists that follow each other in one memory.
+#[derive(Debug, Default)]
+pub struct Lists<T> {
+    values: List<T>,
+    /// The end of each list.
+    ends: Vec<usize>,
+}
+
+impl<T: Copy + Default> Lists<T> {
+    /// Forgets all lists, and keeps the memory.
+    pub fn clear(&mut self) {
+        self.values.clear();
+        self.ends.clear();
+    }
+
+    /// Returns the values of all lists, the last of which is still written.
+    #[inline]
+    pub fn open(&mut self) -> &mut List<T> {
+        &mut self.values
+    }
+
+    /// Ends a list; what is written from here on is in the next one.
+    #[inline]
+    pub fn close(&mut self) {
+        self.ends.push(self.values.len());
+    }
+}
+
+impl<T> Lists<T> {
+    /// Returns where list number `i` begins among all values.
+    #[inline]
+    pub fn begin(&self, i: usize) -> usize {
+        if i == 0 { 0 } else { self.ends[i - 1] }
+    }
+
+    /// Returns list number `i`; an empty one where none was closed.
+    #[inline]
+    pub fn get(&self, i: usize) -> &[T] {
+        let Some(&end) = self.ends.get(i) else {
+            return &[];
+        };
+        &self.values[self.begin(i)..end]
+    }
+}
+
+impl<T> Deref for Lists<T> {
+    type Target = [T];
+
+    #[inline]
+    fn deref(&self) -> &[T] {
+        &self.values
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -80,5 +134,17 @@ mod tests {
             });
             assert_eq!(*list, [1, 3, 5]);
         }
+    }
+
+    #[test]
+    fn lists_follow_each_other() {
+        let mut lists = Lists::default();
+        for value in 0..3 {
+            lists.open().make_room(1);
+            lists.open().write(value, usize::from(value != 1));
+            lists.close();
+        }
+        let lists: [&[i32]; 4] = std::array::from_fn(|i| lists.get(i));
+        assert_eq!(lists, [&[0][..], &[], &[2], &[]]);
     }
 }

@@ -61,42 +61,52 @@ impl Method {
     /// A method that [shares light](Self::shares_light) uses the subpaths that [`walk_group`] added between
     /// [`begin_group`] and [`end_group`].
     pub fn run(&self, job: &Job<'_>, batch: &mut Batch) {
-        batch.stats.samples += batch.samples.len() as u64;
-        batch.weights.set(job.settings);
         if !self.shares_light() {
             batch.forget_light();
         }
+        let Batch {
+            walked,
+            cache,
+            ends,
+            candidates,
+            entries,
+            splats,
+            worker,
+            ..
+        } = batch;
+        worker.stats.samples += walked.samples.len() as u64;
+        worker.weights.set(job.settings);
         match self {
             Self::Path => {
-                walk_camera(job, batch);
-                direct(job, batch);
+                walk_camera(job, walked, worker);
+                direct(job, walked, entries, worker);
             }
             Self::Light => {
-                walk_light(job, batch);
-                light_image(job, batch, Weighting::Alone);
+                walk_light(job, walked, worker);
+                light_image(job, walked, splats, worker, Weighting::Alone);
             }
             Self::Bdpt(selector) => {
-                walk_camera(job, batch);
-                walk_light(job, batch);
-                sum_camera(job, batch);
-                sum_light(job, batch);
-                hits(job, batch);
-                light_image(job, batch, Weighting::Combined);
-                next_events(job, batch, CandidateCount::of(1));
-                own_light(job, batch);
-                connect(job, batch);
-                select(&**selector, batch);
-                shadow_rays(job, batch);
+                walk_camera(job, walked, worker);
+                walk_light(job, walked, worker);
+                sum_camera(job, walked, worker);
+                sum_light(job, walked, worker);
+                hits(job, walked, entries, worker);
+                light_image(job, walked, splats, worker, Weighting::Combined);
+                next_events(job, walked, ends, CandidateCount::of(1));
+                own_light(job, walked, ends, worker);
+                connect(job, walked, ends, candidates, worker);
+                select(&**selector, walked, candidates, entries, worker);
+                shadow_rays(job, walked, candidates, entries, worker);
             }
             Self::Lvc(selector, lvc) => {
-                walk_camera(job, batch);
-                sum_camera(job, batch);
-                hits(job, batch);
-                next_events(job, batch, lvc.next_events);
-                draw_cached(job, batch, lvc.candidates);
-                connect(job, batch);
-                select(&**selector, batch);
-                shadow_rays(job, batch);
+                walk_camera(job, walked, worker);
+                sum_camera(job, walked, worker);
+                hits(job, walked, entries, worker);
+                next_events(job, walked, ends, lvc.next_events);
+                draw_cached(job, walked, cache, ends, lvc.candidates, worker);
+                connect(job, walked, ends, candidates, worker);
+                select(&**selector, walked, candidates, entries, worker);
+                shadow_rays(job, walked, candidates, entries, worker);
             }
         }
         batch.arrive();
@@ -110,20 +120,22 @@ pub fn begin_group(batch: &mut Batch) {
 
 /// Walks the light subpaths that the samples of `batch` bring to their group, and makes their light images.
 pub fn walk_group(job: &Job<'_>, batch: &mut Batch) {
-    batch.weights.set(job.settings);
-    walk_light(job, batch);
-    sum_light(job, batch);
-    light_image(job, batch, Weighting::Combined);
+    let Batch {
+        walked,
+        splats,
+        worker,
+        ..
+    } = batch;
+    worker.weights.set(job.settings);
+    walk_light(job, walked, worker);
+    sum_light(job, walked, worker);
+    light_image(job, walked, splats, worker, Weighting::Combined);
 }
 
 /// Makes ready what the samples of a group share, when all of it is walked.
 pub fn end_group(job: &Job<'_>, batch: &mut Batch) {
-    let Batch {
-        light,
-        light_sums,
-        cache,
-        ..
-    } = batch;
     let proposals = job.guide.proposals;
-    cache.index(light, light_sums, job.settings.light_point, proposals);
+    batch
+        .cache
+        .index(&batch.walked.light, job.settings.light_point, proposals);
 }

@@ -9,16 +9,18 @@
 mod batch;
 mod cache;
 mod curve;
+mod ends;
+mod inspect;
 mod journal;
 mod list;
 mod lvc;
 mod method;
 mod stages;
 
-pub use batch::{Batch, Sample};
+pub use batch::{Batch, Candidates, Sample, Walked, Worker};
 pub(crate) use cache::connectable;
 pub use journal::{Entry, Fate, Link};
-pub use list::List;
+pub use list::{List, Lists};
 pub use lvc::*;
 pub(crate) use method::group_size;
 pub use method::{Method, begin_group, end_group, walk_group};

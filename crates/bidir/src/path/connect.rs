@@ -3,33 +3,21 @@
 //!
 //! No ray is traced here: visibility is the caller's to ask for.
 
-use super::{Job, LightChoiceKind, PathDensities, Segment, Turn, Vertex, mis_weight};
+use super::{Job, LightChoiceKind, PathDensities, Segment, Turn, Vertex};
 use crate::bsdf::TransportMode;
 use crate::light::{ChosenEmitter, LightChoice, LightPoint, LightSample, Part};
 use crate::math::Vec2;
 use crate::scene::Edge;
 use crate::spectrum::Spectrum;
 
-/// How the two subpaths of a path came together.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Junction {
-    /// Their ends were connected.
-    Connection,
-    /// The camera walk hit x_0: the light subpath is that one vertex, and its `pdf_rev` is the
-    /// density with which the walk drew it.
-    Hit,
-}
-
-/// A whole path: a light subpath and a camera subpath, of at least one vertex each, and how their
-/// ends see each other.
+/// A path that connects a light subpath and a camera subpath, of at least one vertex each, and how their
+/// ends see each other. s = 0 is a [`HitPath`](super::HitPath).
 #[derive(Clone, Debug)]
 pub struct JoinedPath<'a> {
-    /// The light's part. For [`Junction::Hit`] it is the vertex that was hit, as a light vertex.
+    /// The light's part.
     pub light: &'a [Vertex],
     /// The camera's part.
     pub camera: &'a [Vertex],
-    /// How they came together.
-    pub junction: Junction,
     /// From the last light vertex, z, to the last camera vertex, y.
     pub segment: Segment,
     /// z and y, each between the vertex before it and the other.
@@ -39,45 +27,18 @@ pub struct JoinedPath<'a> {
 impl<'a> JoinedPath<'a> {
     /// Returns the path that connects the ends of two subpaths.
     #[inline]
-    pub fn connection(light: &'a [Vertex], camera: &'a [Vertex]) -> Self {
+    pub fn new(light: &'a [Vertex], camera: &'a [Vertex]) -> Self {
         let (z, y) = (&light[light.len() - 1], &camera[camera.len() - 1]);
-        Self::new(light, camera, Junction::Connection, z.segment_to(y))
+        Self::along(light, camera, z.segment_to(y))
     }
 
     /// The same path, where the segment between the ends is known.
     #[inline]
-    pub(crate) fn connection_by(
-        light: &'a [Vertex],
-        camera: &'a [Vertex],
-        segment: Segment,
-    ) -> Self {
-        Self::new(light, camera, Junction::Connection, segment)
-    }
-
-    /// Returns the path of a camera walk that went from the last vertex of `camera` to the light at `x0`, which knows
-    /// the way back where that goes through media.
-    #[inline]
-    pub fn hit(x0: &'a Vertex, camera: &'a [Vertex]) -> Self {
-        let segment = x0.segment_to(&camera[camera.len() - 1]);
-        let mut path = Self::new(std::slice::from_ref(x0), camera, Junction::Hit, segment);
-        if x0.to_previous > 0.0 {
-            path.segment.to_b = x0.to_previous;
-        }
-        path
-    }
-
-    #[inline]
-    fn new(
-        light: &'a [Vertex],
-        camera: &'a [Vertex],
-        junction: Junction,
-        segment: Segment,
-    ) -> Self {
+    pub(crate) fn along(light: &'a [Vertex], camera: &'a [Vertex], segment: Segment) -> Self {
         let (z, y) = (&light[light.len() - 1], &camera[camera.len() - 1]);
         Self {
             light,
             camera,
-            junction,
             segment,
             turns: [
                 z.turn(z.wo, segment.w, TransportMode::Importance),
@@ -92,13 +53,13 @@ impl<'a> JoinedPath<'a> {
         self.segment.pass(edge);
     }
 
-    /// Returns the light vertex at the junction.
+    /// Returns the last light vertex.
     #[inline]
     pub(crate) fn z(&self) -> &'a Vertex {
         &self.light[self.light.len() - 1]
     }
 
-    /// Returns the camera vertex at the junction.
+    /// Returns the last camera vertex.
     #[inline]
     pub(crate) fn y(&self) -> &'a Vertex {
         &self.camera[self.camera.len() - 1]
@@ -132,7 +93,6 @@ impl<'a> JoinedPath<'a> {
     /// of a pixel's radiance.
     #[inline]
     pub fn contribution(&self, job: &Job<'_>) -> Spectrum {
-        debug_assert_eq!(self.junction, Junction::Connection);
         let (z, y) = (self.z(), self.y());
         let geometry_term = self.segment.geometry_term;
         if geometry_term == 0.0 || z.is_delta() || y.is_delta() {
@@ -150,18 +110,8 @@ impl<'a> JoinedPath<'a> {
     /// Returns the weight of making the path in this way.
     #[inline]
     pub fn weight(&self, job: &Job<'_>, densities: &mut PathDensities) -> f32 {
-        densities.gather(job, self);
-        let count = |j| self.count(job, j);
-        mis_weight(densities, count, job.settings.mis, self.strategy()) as f32
-    }
-
-    /// Returns s of the strategy that made the path.
-    #[inline]
-    pub(super) fn strategy(&self) -> usize {
-        match self.junction {
-            Junction::Hit => 0,
-            Junction::Connection => self.light.len(),
-        }
+        densities.gather_connection(job, self);
+        densities.weight(job, self.light.len())
     }
 }
 

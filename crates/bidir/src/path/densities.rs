@@ -4,7 +4,8 @@
 //! They describe the path, not the strategy that made it, so that every strategy finds the same
 //! weight (docs/derivations/mis-weights.md).
 
-use super::{Job, JoinedPath, Junction, LightPointChoice, Vertex, next_event_pdf};
+use super::{HitPath, Job, JoinedPath, LightPointChoice, Vertex, mis_weight, next_event_pdf};
+use crate::guide::Cell;
 
 /// How likely one vertex of a path is to be drawn from either side, roulette included.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -15,6 +16,8 @@ pub struct VertexDensities {
     pub from_camera: f32,
     /// True where the path scatters by a Dirac distribution here.
     pub is_delta: bool,
+    /// The cell that it lies in.
+    pub cell: Cell,
 }
 
 /// The densities of a whole path x_0 … x_{n-1}: all that weights depend on.
@@ -29,104 +32,94 @@ pub struct PathDensities {
 }
 
 impl PathDensities {
-    /// Collects the densities of `path`.
+    /// Collects the densities of a path that connects two subpaths.
     ///
-    /// Stored densities hold except next to the junction, where each end has a new neighbour: the two
-    /// ends and the vertices before them are evaluated again.
-    pub fn gather(&mut self, job: &Job<'_>, path: &JoinedPath<'_>) {
-        let JoinedPath {
-            light,
-            camera,
-            junction,
-            ..
-        } = *path;
-        let (s, n) = (light.len(), path.len());
+    /// Stored densities hold except next to the connection, where each end has a new neighbour: the two
+    /// ends and the vertices before them are evaluated again. The ends scatter by lobes that are not Dirac.
+    pub fn gather_connection(&mut self, job: &Job<'_>, path: &JoinedPath<'_>) {
+        let (s, n) = (path.light.len(), path.len());
         self.vertices.clear();
-        // An inner vertex of a walk scatters by the lobe that the walk drew; an end that is connected
-        // scatters by lobes that are not Dirac.
-        let lobes = |subpath: &[Vertex], walked: usize, i: usize| VertexDensities {
-            from_light: 0.0,
-            from_camera: 0.0,
-            is_delta: i < walked && subpath[i].went_by_delta,
-        };
-        let steps = match junction {
-            Junction::Connection => [s - 1, camera.len() - 1],
-            Junction::Hit => [0, camera.len()],
-        };
+        let of_light = walked_densities(job, path.light, n).zip(path.light);
         self.vertices
-            .extend((0..s).map(|i| lobes(light, steps[0], i)));
-        let of_camera = (0..camera.len()).rev().map(|i| lobes(camera, steps[1], i));
-        self.vertices.extend(of_camera);
-        for (i, pdf) in walked_densities(job, light, n).enumerate() {
-            self.vertices[i].from_light = pdf[0];
-            if i + 2 < s {
-                self.vertices[i].from_camera = pdf[1];
-            }
-        }
-        for (c, pdf) in walked_densities(job, camera, n).enumerate() {
-            let x = &mut self.vertices[n - 1 - c];
-            x.from_camera = pdf[0];
-            if c + 2 < camera.len() || junction == Junction::Hit {
-                x.from_light = pdf[1];
-            }
-        }
-        self.join(job, path);
-        self.describe_light(job, path);
-    }
-
-    /// Puts in the densities next to the junction.
-    fn join(&mut self, job: &Job<'_>, path: &JoinedPath<'_>) {
-        let (s, t) = (path.light.len(), path.camera.len());
+            .extend(of_light.map(|([drawn, back], x)| VertexDensities {
+                from_light: drawn,
+                from_camera: back,
+                is_delta: x.went_by_delta,
+                cell: x.cell,
+            }));
+        self.add_camera(job, path.camera, n);
         let Reversed { z, y, before } = path.reversed(job);
         let x = &mut self.vertices;
-        x[s].from_light = y;
-        x[s - 1].from_camera = z;
-        if path.junction == Junction::Hit {
-            return;
-        }
+        (x[s - 1].from_camera, x[s].from_light) = (z, y);
+        (x[s - 1].is_delta, x[s].is_delta) = (false, false);
         if s > 1 {
             x[s - 2].from_camera = before[0];
         }
-        if t > 1 {
+        if path.camera.len() > 1 {
             x[s + 1].from_light = before[1];
         }
+        self.describe_light(job, path.vertex(0), path.vertex(1));
+    }
+
+    /// Collects the densities of a path whose camera walk came upon the light: all but the first two are stored.
+    pub fn gather_hit(&mut self, job: &Job<'_>, path: &HitPath<'_>) {
+        let (x0, camera) = (&path.x0, path.camera);
+        self.vertices.clear();
+        self.vertices.push(VertexDensities {
+            from_light: x0.pdf_fwd,
+            from_camera: path.camera_pdf(job),
+            is_delta: false,
+            cell: x0.cell,
+        });
+        self.add_camera(job, camera, camera.len() + 1);
+        self.vertices[1].from_light = path.light_pdf(job);
+        self.describe_light(job, x0, path.y());
+    }
+
+    /// Adds the vertices of a camera subpath of a path of `n`, the last one first.
+    fn add_camera(&mut self, job: &Job<'_>, camera: &[Vertex], n: usize) {
+        let of_camera = walked_densities(job, camera, n).zip(camera).rev();
+        self.vertices
+            .extend(of_camera.map(|([drawn, back], x)| VertexDensities {
+                from_light: back,
+                from_camera: drawn,
+                is_delta: x.went_by_delta,
+                cell: x.cell,
+            }));
     }
 
     /// Notes how next-event estimation would draw x_0 for x_1.
-    fn describe_light(&mut self, job: &Job<'_>, path: &JoinedPath<'_>) {
-        let x0 = &path.light[0];
+    fn describe_light(&mut self, job: &Job<'_>, x0: &Vertex, x1: &Vertex) {
         self.light_is_delta = x0.is_on_delta_light(job);
-        self.next_event = next_event_density(job, x0, path.light.get(1).unwrap_or(path.y()));
+        self.next_event = next_event_density(job, x0, x1);
+    }
+
+    /// Returns the weight of strategy `s`.
+    #[inline]
+    pub(super) fn weight(&self, job: &Job<'_>, s: usize) -> f32 {
+        mis_weight(self, |j| self.count(job, j), job.settings.mis, s) as f32
     }
 }
 
-/// The densities next to the junction, where each end has a new neighbour: of the two ends and the
+/// The densities next to a connection, where each end has a new neighbour: of the two ends and the
 /// vertices before them, each drawn by a walk from the other end of the path.
 pub(super) struct Reversed {
     /// b_{s-1}, of the light vertex.
     pub(super) z: f32,
     /// a_s, of the camera vertex.
     pub(super) y: f32,
-    /// b_{s-2} and a_{s+1}, of the vertices before them; 0 where there is none. Not evaluated for
-    /// [`Junction::Hit`], where the camera's walk has stored the one there is.
+    /// b_{s-2} and a_{s+1}, of the vertices before them; 0 where there is none.
     pub(super) before: [f32; 2],
 }
 
 impl JoinedPath<'_> {
-    /// Evaluates the densities next to the junction.
+    /// Evaluates the densities next to the connection.
     #[inline]
     pub(super) fn reversed(&self, job: &Job<'_>) -> Reversed {
         let (s, t) = (self.light.len(), self.camera.len());
         let (z, y, segment) = (self.z(), self.y(), &self.segment);
         let [at_z, at_y] = self.turns();
         let a_s = at_z.pdf(job) * segment.to_b * factor(job, s, || z.albedo_fwd);
-        if self.junction == Junction::Hit {
-            return Reversed {
-                z: z.pdf_rev * factor(job, t, || y.albedo_fwd),
-                y: a_s,
-                before: [0.0; 2],
-            };
-        }
         let mut before = [0.0; 2];
         if s > 1 {
             let (pdf, albedo) = at_z.reversed();
@@ -142,6 +135,21 @@ impl JoinedPath<'_> {
             y: a_s,
             before,
         }
+    }
+}
+
+impl HitPath<'_> {
+    /// Returns a_1, the density with which a light walk draws the last camera vertex; no roulette guards its first step.
+    #[inline]
+    pub(super) fn light_pdf(&self, job: &Job<'_>) -> f32 {
+        let segment = &self.segment;
+        self.x0.pdf_leaving(job, segment.w) * segment.to_b
+    }
+
+    /// Returns b_0, the density with which the camera walk drew x_0.
+    #[inline]
+    pub(super) fn camera_pdf(&self, job: &Job<'_>) -> f32 {
+        self.drawn_pdf * factor(job, self.camera.len(), || self.y().albedo_fwd)
     }
 }
 
@@ -184,7 +192,7 @@ pub(super) fn walked_densities(
     job: &Job<'_>,
     subpath: &[Vertex],
     n: usize,
-) -> impl Iterator<Item = [f32; 2]> {
+) -> impl DoubleEndedIterator<Item = [f32; 2]> + ExactSizeIterator {
     subpath.iter().enumerate().map(move |(i, vertex)| {
         let after = || subpath.get(i + 1).map_or(1.0, |next| next.albedo_rev);
         [

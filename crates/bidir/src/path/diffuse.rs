@@ -28,7 +28,8 @@
 //! vertex; the two agree but for rounding. No lane depends on the other lanes.
 
 use super::densities::factor;
-use super::running::{ANY_DEEPER, EndSums, PathStart};
+use super::running::EndSums;
+use super::technique::{Depth, PathStart};
 use super::visible::{LEAST_PART, MOST_LEAST, least_cosine};
 use super::{Job, MisHeuristic, Scattering, Segment, Vertex};
 use crate::bsdf::{Bsdf, TransportMode};
@@ -105,7 +106,7 @@ impl DiffuseEnd {
                     is_diffuse: true,
                     flux: vertex.beta * (bsdf.reflectance * (INV_PI * ratio)),
                 };
-                let others = sums.per_density(ANY_DEEPER, end.before(vertex));
+                let others = sums.per_density(Depth::Deeper, end.before(vertex));
                 Self {
                     others: others.min(f64::from(f32::MAX)) as f32,
                     ..end
@@ -149,8 +150,9 @@ impl DiffuseEnd {
         let start = PathStart::new(job, x0, e);
         let to_light = f64::from(self.density * cos_s * segment.to_b);
         // r_0 / e, and (a_0 / e) r.
-        let hit = start.is_hit * to_light / start.next_event;
-        let drawn = start.up() * f64::from(x0.pdf_leaving(job, -segment.w) * segment.to_a);
+        let hit = start.is_hit * start.hit_over_next_event(to_light);
+        let a1 = f64::from(x0.pdf_leaving(job, -segment.w) * segment.to_a);
+        let drawn = start.walk_over_next_event() * a1;
         let n = job.count(1, t, [x0.cell, self.cell]);
         let others = hit + drawn * f64::from(self.others);
         Some((contribution, (n / (n + others)) as f32))
@@ -177,7 +179,7 @@ impl DiffuseEnd {
         let contribution = self.contribution(job, lens, segment, cos_g)?;
         let drawn = f64::from(lens.pdf_leaving(job, -segment.w) * segment.to_a);
         let n = job.count(s, 1, [self.cell, lens.cell]);
-        let others = drawn * sums.per_density(1, self.before(vertex));
+        let others = drawn * sums.per_density(Depth::First, self.before(vertex));
         Some((contribution, (n / (n + others)) as f32))
     }
 

@@ -1,6 +1,6 @@
 //! Multiple importance sampling: the weight of a strategy as a pure function of its whole path.
 
-use super::densities::{PathDensities, VertexDensities};
+use super::PathDensities;
 use crate::names::named;
 
 /// The part of a share that a cut leaves: too little to be seen, and enough to recover the value
@@ -84,65 +84,32 @@ pub fn mis_weight(
     own / (own + others)
 }
 
-/// Calls `visit` with every strategy j other than `s` that can make the path, and with p_j / p_s.
-///
-/// With a_i and b_i the densities of x_i drawn from the light and from the camera, p_{j+1} / p_j = a_j / b_j,
-/// except that s = 1 draws x_0 by next-event estimation, with density e:
-///
-/// p_1 / p_0 = e / b_0 and p_2 / p_1 = (a_0 / e) · (a_1 / b_1).
-///
-/// The ratios run outwards from s [Veach97, §10.2.1].
+/// Calls `visit` with every strategy j other than `s` that can make the path, and with p_j / p_s. The ratios run
+/// outwards from s [Veach97, §10.2.1].
 #[inline]
 pub(super) fn for_each_other(path: &PathDensities, s: usize, mut visit: impl FnMut(usize, f64)) {
-    let x = &path.vertices[..];
-    // Never zero: where s = 1 is impossible, the ratios across it must still cancel.
-    let next_event = f64::from(path.next_event).max(f64::from(f32::MIN_POSITIVE));
-    let up = |j: usize| match j {
-        0 => next_event / f64::from(x[0].from_camera),
-        1 => f64::from(x[0].from_light) / next_event * x[1].ratio(),
-        _ => x[j].ratio(),
-    };
     let mut visit_possible = |j: usize, ratio: f64| {
-        if is_possible(path, j) {
+        if path.is_possible(j) {
             visit(j, ratio);
         }
     };
     let mut ratio = 1.0;
-    for j in s..x.len() - 1 {
-        ratio *= up(j);
+    for j in s..path.vertices.len() - 1 {
+        ratio *= path.ratio(j);
         visit_possible(j + 1, ratio);
     }
     ratio = 1.0;
     for j in (0..s).rev() {
-        ratio /= up(j);
+        ratio /= path.ratio(j);
         visit_possible(j, ratio);
-    }
-}
-
-/// Returns true where strategy `j` can make the path: it links x_{j-1} with x_j, and a Dirac scattering at
-/// either of them forbids that, as does a light that cannot be hit (j = 0), or that next-event
-/// estimation does not find (j = 1). t = 0 is no strategy.
-#[inline]
-fn is_possible(path: &PathDensities, j: usize) -> bool {
-    let x = &path.vertices;
-    match j {
-        0 => !path.light_is_delta,
-        1 if path.next_event <= 0.0 => false,
-        j if j == x.len() => false,
-        j => !x[j - 1].is_delta && !x[j].is_delta,
-    }
-}
-
-impl VertexDensities {
-    #[inline]
-    fn ratio(&self) -> f64 {
-        f64::from(self.from_light) / f64::from(self.from_camera)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::guide::Cell;
+    use crate::path::VertexDensities;
     use proptest::prelude::*;
 
     fn vertex() -> impl Strategy<Value = VertexDensities> {
@@ -151,6 +118,7 @@ mod tests {
                 from_light,
                 from_camera,
                 is_delta,
+                cell: Cell::FIRST,
             },
         )
     }
@@ -186,8 +154,7 @@ mod tests {
                 (false, ..) => f64::from(x.from_camera),
             })
             .product();
-        let possible = is_possible(path, j);
-        if possible { product } else { 0.0 }
+        if path.is_possible(j) { product } else { 0.0 }
     }
 
     proptest! {
@@ -220,7 +187,7 @@ mod tests {
             heuristic in prop::sample::select(MisHeuristic::NAMES.map(|(_, h)| h).to_vec()),
         ) {
             // By way of a surface: x_0 is hit with density p, or drawn with density q.
-            let x = |from_camera| VertexDensities { from_light: 1.0, from_camera, is_delta: false };
+            let x = |from_camera| VertexDensities { from_light: 1.0, from_camera, is_delta: false, cell: Cell::FIRST };
             let path = PathDensities {
                 vertices: vec![x(p), x(1.0), x(1.0)],
                 next_event: q,

@@ -19,11 +19,10 @@
 //!
 //! Nothing here adds to a film, and no ray is traced but those of the walks.
 
-mod arrival;
 mod connect;
-mod count;
 mod densities;
 mod diffuse;
+mod hit;
 mod light_choice;
 mod mis;
 mod roulette;
@@ -32,16 +31,16 @@ mod scatter;
 mod segment;
 mod shares;
 mod subpaths;
+mod technique;
 mod vertex;
 mod visible;
 mod walk;
 
 pub use crate::strategy::{Strategies, Strategy};
-pub use arrival::Arrival;
-pub use connect::{JoinedPath, Junction, next_event_pdf, sample_next_event};
-pub use count::SampleCounts;
+pub use connect::{JoinedPath, next_event_pdf, sample_next_event};
 pub use densities::{PathDensities, VertexDensities};
 pub use diffuse::{DiffuseConnections, DiffuseEnd};
+pub use hit::{Arrival, HitPath};
 pub use light_choice::{LightChoiceKind, LightPointChoice};
 pub use mis::{MisHeuristic, mis_weight};
 pub use roulette::PathRoulette;
@@ -50,6 +49,8 @@ pub use scatter::Turn;
 pub use segment::Segment;
 pub(crate) use shares::{ConnectionPart, Shares};
 pub use subpaths::{Escape, Subpath, Subpaths};
+pub(crate) use technique::Depth;
+pub use technique::SampleCounts;
 pub use vertex::{Scattering, Vertex};
 pub use walk::{camera_subpath, light_subpath};
 

@@ -10,7 +10,8 @@
 //! [`mis_weight`](super::mis_weight) finds, but for rounding.
 
 use super::densities::{Reversed, next_event_density, walked_densities};
-use super::{DiffuseEnd, Job, JoinedPath, Junction, PathDensities, PathSettings, Subpath, Vertex};
+use super::technique::{Depth, PathStart, Technique};
+use super::{DiffuseEnd, HitPath, Job, JoinedPath, PathDensities, PathSettings, Subpath, Vertex};
 use crate::bsdf::TransportMode;
 use std::slice;
 
@@ -25,18 +26,17 @@ pub struct RunningSums {
 
 /// The strategies that end a subpath before its last vertex, whose walk drew it with density a: with r the density of
 /// drawing it from the other end of the path, and r' that of the vertex before it, their share is
-/// h(r / a) (`links` + `slope` h(r')).
+/// h(r / a) (`links` + h(r') `through_previous`).
 #[derive(Clone, Copy, Debug)]
 pub struct EndSums {
     /// h(1 / a); h(1 / e) at x_0 and h(e / (a_0 a_1)) at x_1.
-    per_drawn: f64,
-    /// The share of the strategy that links the vertex with the one before it: where the rest of the path is one
-    /// vertex, and where it is longer.
+    inverse_pdf: f64,
+    /// The share of the strategy that links the vertex with the one before it, by the [`Depth`] at which it does.
     links: [f64; 2],
     /// h(1 / a') of the vertex before it, times the sum up to there.
-    slope: f64,
+    through_previous: f64,
     /// L_m or C_m of the strategies that end with the vertex before it, or sooner, where the walk went on.
-    sum: f64,
+    total: f64,
 }
 
 /// Sums of shares at both ends of a connection.
@@ -59,49 +59,42 @@ pub struct Weights {
     densities: PathDensities,
 }
 
-/// How x_0 is drawn.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct PathStart {
-    /// a_0.
-    emission: f64,
-    /// e. Never zero: where s = 1 is impossible, the ratios across it must still cancel.
-    pub(super) next_event: f64,
-    /// 1 where s = 1 can draw x_0, else 0.
-    is_drawn: f64,
-    /// 1 where s = 0 can hit it, else 0.
-    pub(super) is_hit: f64,
-}
-
 /// The length of a path whose roulette has begun at every bounce of both directions.
 const FAR: usize = usize::MAX;
-
-/// s of any strategy that connects with a vertex of a light walk, and t of any behind the first camera vertex:
-/// counts are the same for all of them.
-const ANY_WALKED: usize = 2;
-pub(super) const ANY_DEEPER: usize = 3;
 
 impl EndSums {
     /// No other strategy.
     pub const NONE: Self = Self {
-        per_drawn: 0.0,
+        inverse_pdf: 0.0,
         links: [0.0; 2],
-        slope: 0.0,
-        sum: 0.0,
+        through_previous: 0.0,
+        total: 0.0,
     };
 
-    /// Returns the share of these strategies, relative to one that links this vertex with `others` more, where h(r) is
-    /// `end` and h(r') is `before`.
+    /// Returns the sums at x_0: s = 0 alone has fewer light vertices.
     #[inline]
-    fn shares(&self, others: usize, end: f64, before: f64) -> f64 {
-        let links = self.links[usize::from(others > 1)];
-        chain(0.0, self.per_drawn * end, chain(links, before, self.slope))
+    fn at_start(job: &Job<'_>, start: &PathStart) -> Self {
+        Self {
+            inverse_pdf: finite(job.settings.mis.share(start.hit_over_next_event(1.0))),
+            links: [start.is_hit; 2],
+            through_previous: 0.0,
+            total: start.is_hit,
+        }
     }
 
-    /// Returns the factor of r in the share of these strategies under the balance heuristic, where the rest of the path
-    /// is `others` vertices and r' is `before`.
+    /// Returns the share of these strategies, relative to one that links this vertex with the rest of the path, where
+    /// h(r) is `end` and h(r') is `before`. The strategy that links it with the vertex before it does so at `depth`.
     #[inline]
-    pub(super) fn per_density(&self, others: usize, before: f64) -> f64 {
-        self.shares(others, 1.0, before)
+    fn shares(&self, depth: Depth, end: f64, before: f64) -> f64 {
+        let links = self.links[depth.index()];
+        let sum = chain(links, before, self.through_previous);
+        chain(0.0, self.inverse_pdf * end, sum)
+    }
+
+    /// Returns the factor of r in the share of these strategies under the balance heuristic, where r' is `before`.
+    #[inline]
+    pub(super) fn per_density(&self, depth: Depth, before: f64) -> f64 {
+        self.shares(depth, 1.0, before)
     }
 }
 
@@ -112,78 +105,86 @@ impl RunningSums {
         self.diffuse.clear();
     }
 
-    /// Adds the sums along a light walk, which follows the one before.
-    pub fn add_light(&mut self, job: &Job<'_>, walk: &Subpath<'_>) {
+    /// Adds the sums along a walk, which follows the one before.
+    pub fn add(&mut self, job: &Job<'_>, walk: &Subpath<'_>) {
+        match walk.vertices {
+            [] => {}
+            [lens, ..] if lens.is_camera() => self.add_camera(job, walk, lens),
+            [_] => self.add_light(job, walk, &PathStart::NONE),
+            [x0, x1, ..] => {
+                let start = PathStart::new(job, x0, next_event_density(job, x0, x1));
+                self.add_light(job, walk, &start);
+            }
+        }
+    }
+
+    fn add_light(&mut self, job: &Job<'_>, walk: &Subpath<'_>, start: &PathStart) {
         let share = |ratio| job.settings.mis.share(ratio);
-        let start = match walk.vertices {
-            [] => return,
-            [_] => PathStart::NONE,
-            [x0, x1, ..] => PathStart::new(job, x0, next_event_density(job, x0, x1)),
+        let links = |s: usize, [before, z]: [&Vertex; 2]| {
+            let is_there = if s == 1 { start.is_drawn } else { 1.0 };
+            // The rest of the path, one vertex or more, and z.
+            [2, 3].map(|t| {
+                let technique = Technique::of(job.settings.light_point, s, t);
+                is_there * share(job.count_of(technique, [before.cell, z.cell]))
+            })
         };
-        let links = |i: usize, [before, z]: [&Vertex; 2]| {
-            let links = if i == 1 { start.is_drawn } else { 1.0 };
-            [2, ANY_DEEPER].map(|t| links * share(job.count(i, t, [before.cell, z.cell])))
-        };
-        let per_drawn = |i: usize, a: f64| match i {
-            1 => share(start.next_event / start.emission / a),
+        let inverse_pdf = |i: usize, a: f64| match i {
+            1 => share(start.next_event_over_walk(a)),
             _ => share(1.0 / a),
         };
-        self.add(job, walk, start.sums(job), links, per_drawn);
+        let first = EndSums::at_start(job, start);
+        let mode = TransportMode::Importance;
+        self.add_walk(job, walk, (first, mode), links, inverse_pdf);
     }
 
-    /// Adds the sums along a camera walk, which follows the one before.
-    pub fn add_camera(&mut self, job: &Job<'_>, walk: &Subpath<'_>) {
+    fn add_camera(&mut self, job: &Job<'_>, walk: &Subpath<'_>, lens: &Vertex) {
         let share = |ratio| job.settings.mis.share(ratio);
-        let Some(lens) = walk.vertices.first() else {
-            return;
+        let links = |t: usize, [before, y]: [&Vertex; 2]| {
+            let technique = match t {
+                1 => Technique::LightImage,
+                _ => Technique::Connection(Depth::of(t)),
+            };
+            [share(job.count_of(technique, [y.cell, before.cell])); 2]
         };
-        let links = |c: usize, [before, y]: [&Vertex; 2]| {
-            [share(job.count(ANY_WALKED, c, [y.cell, before.cell])); 2]
-        };
-        let per_drawn = |_: usize, b: f64| share(1.0 / b);
+        let inverse_pdf = |_: usize, b: f64| share(1.0 / b);
         let first = EndSums {
-            per_drawn: finite(per_drawn(0, lens.pdf_fwd.into())),
+            inverse_pdf: finite(inverse_pdf(0, lens.pdf_fwd.into())),
             ..EndSums::NONE
         };
-        self.add(job, walk, first, links, per_drawn);
+        let mode = TransportMode::Radiance;
+        self.add_walk(job, walk, (first, mode), links, inverse_pdf);
     }
 
-    /// Adds the sums along a walk, those of its first vertex given; `links` is the share of the strategy that links
-    /// a vertex, by number, with the one before it, and `per_drawn` the factor for its density.
+    /// Adds the sums along a walk of `mode`, those of its first vertex given; `links` is the share of the strategy that
+    /// links a vertex, by number, with the one before it, and `inverse_pdf` the factor for its density.
     #[inline]
-    fn add(
+    fn add_walk(
         &mut self,
         job: &Job<'_>,
         walk: &Subpath<'_>,
-        first: EndSums,
+        (first, mode): (EndSums, TransportMode),
         links: impl Fn(usize, [&Vertex; 2]) -> [f64; 2],
-        per_drawn: impl Fn(usize, f64) -> f64,
+        inverse_pdf: impl Fn(usize, f64) -> f64,
     ) {
         let share = |ratio| job.settings.mis.share(ratio);
-        let mode = if walk.vertices[0].is_camera() {
-            TransportMode::Radiance
-        } else {
-            TransportMode::Importance
-        };
         let (mut last, mut back) = (first, 0.0);
         for (i, [drawn, reverse]) in walked_densities(job, walk.vertices, FAR).enumerate() {
-            if let Some(before) = i.checked_sub(1) {
-                let [before, vertex] = [before, i].map(|i| &walk.vertices[i]);
+            let vertex = &walk.vertices[i];
+            if i > 0 {
+                let before = &walk.vertices[i - 1];
                 let linked = possible(!before.went_by_delta);
                 let links = links(i, [before, vertex]).map(|of| of * linked);
                 let walked_on = links[1] * possible(!vertex.went_by_delta);
-                let slope = chain(0.0, last.per_drawn, last.sum);
+                let through_previous = chain(0.0, last.inverse_pdf, last.total);
                 last = EndSums {
-                    per_drawn: finite(per_drawn(i, drawn.into())),
+                    inverse_pdf: finite(inverse_pdf(i, drawn.into())),
                     links,
-                    slope,
-                    sum: chain(walked_on, share(back), slope),
+                    through_previous,
+                    total: chain(walked_on, share(back), through_previous),
                 };
             }
             self.ends.push(last);
-            let vertex = &walk.vertices[i];
-            let end = DiffuseEnd::new(job, vertex, &last, mode);
-            self.diffuse.push(end);
+            self.diffuse.push(DiffuseEnd::new(job, vertex, &last, mode));
             back = f64::from(reverse);
         }
     }
@@ -236,43 +237,48 @@ impl Weights {
     /// It is the pure form itself where not all strategies take part, and where a subpath is so short that the
     /// roulette of densities begins behind its end: roulette then depends on the length of the path.
     #[inline]
-    pub fn weight(&mut self, job: &Job<'_>, path: &JoinedPath<'_>, sums: &PathSums<'_>) -> f32 {
+    pub fn connection(&mut self, job: &Job<'_>, path: &JoinedPath<'_>, sums: &PathSums<'_>) -> f32 {
         let (s, t) = (path.light.len(), path.camera.len());
-        let weight = match path.junction {
-            Junction::Hit if self.shortest == 0 => sums.hit(job, path),
-            Junction::Connection if self.shortest <= s.min(t) => sums.connection(job, path),
-            _ => return path.weight(job, &mut self.densities),
-        };
-        weight as f32
+        if self.shortest <= s.min(t) {
+            sums.connection(job, path) as f32
+        } else {
+            path.weight(job, &mut self.densities)
+        }
+    }
+
+    /// Returns the number that [`HitPath::weight`] finds in the same way, with the sums at its last camera vertex.
+    #[inline]
+    pub fn hit(&mut self, job: &Job<'_>, path: &HitPath<'_>, camera: &EndSums) -> f32 {
+        if self.shortest == 0 {
+            camera.hit(job, path) as f32
+        } else {
+            path.weight(job, &mut self.densities)
+        }
     }
 }
 
-impl PathSums<'_> {
-    /// Returns the weight for s = 0: all others have more light vertices.
-    fn hit(&self, job: &Job<'_>, path: &JoinedPath<'_>) -> f64 {
-        let (y, t) = (path.y(), path.camera.len());
+impl EndSums {
+    /// Returns the weight for s = 0, where these are the sums at its last camera vertex: all others have more light
+    /// vertices.
+    fn hit(&self, job: &Job<'_>, path: &HitPath<'_>) -> f64 {
+        let (x0, y, t) = (&path.x0, path.y(), path.camera.len());
         let share = |ratio| job.settings.mis.share(ratio);
-        let start = self.start(job, path);
-        let reversed = path.reversed(job);
-        let count = share(job.count(1, t, [path.z().cell, y.cell]));
+        let start = PathStart::new(job, x0, next_event_density(job, x0, y));
+        let count = share(job.count(1, t, [x0.cell, y.cell]));
         let links = count * start.is_drawn * possible(!y.went_by_delta);
-        let up = share(start.up() * f64::from(reversed.y)) * self.camera.per_drawn;
-        let from_drawn = chain(links, up, self.camera.sum);
-        let up = share(start.next_event / f64::from(reversed.z));
+        let a1 = f64::from(path.light_pdf(job));
+        let up = share(start.walk_over_next_event() * a1) * self.inverse_pdf;
+        let from_drawn = chain(links, up, self.total);
+        let up = share(start.next_event_over_hit(path.camera_pdf(job).into()));
         let mut others = chain(0.0, up, from_drawn);
         if t == 1 {
             others = job.settings.mis.share_of_image(others, 1.0);
         }
         1.0 / (1.0 + others)
     }
+}
 
-    /// Returns x_0 of a path of which the rest is one subpath.
-    #[inline]
-    fn start(&self, job: &Job<'_>, path: &JoinedPath<'_>) -> PathStart {
-        let next_event = || next_event_density(job, path.z(), path.y());
-        PathStart::new(job, path.z(), self.next_event.unwrap_or_else(next_event))
-    }
-
+impl PathSums<'_> {
     /// Returns the weight for s ≥ 1, by the strategies with fewer light vertices, and those with fewer camera vertices.
     fn connection(&self, job: &Job<'_>, path: &JoinedPath<'_>) -> f64 {
         let (s, t) = (path.light.len(), path.camera.len());
@@ -280,56 +286,24 @@ impl PathSums<'_> {
         let Reversed { z, y, before } = path.reversed(job);
         let [z, y] = [z, y].map(f64::from);
         let before = before.map(|density| share(density.into()));
+        let depth = Depth::of(t + 1);
         let (fewer_light, y) = if s == 1 {
-            let start = self.start(job, path);
-            let sums = start.sums(job);
-            (sums.shares(t, share(z), 0.0), start.up() * y)
+            let next_event = || next_event_density(job, path.z(), path.y());
+            let next_event = self.next_event.unwrap_or_else(next_event);
+            let start = PathStart::new(job, path.z(), next_event);
+            let sums = EndSums::at_start(job, &start);
+            let fewer_light = sums.shares(depth, share(z), 0.0);
+            (fewer_light, start.walk_over_next_event() * y)
         } else {
-            (self.light.shares(t, share(z), before[0]), y)
+            (self.light.shares(depth, share(z), before[0]), y)
         };
-        let fewer_camera = self.camera.shares(s, share(y), before[1]);
+        // Links of camera walks are the same at any depth.
+        let fewer_camera = self.camera.shares(depth, share(y), before[1]);
         let mut own = share(job.count(s, t, [path.z().cell, path.y().cell]));
         if s + t == 2 {
             own = job.settings.mis.share_of_image(own, fewer_light);
         }
         own / (own + fewer_light + fewer_camera)
-    }
-}
-
-impl PathStart {
-    /// The start of no path.
-    const NONE: Self = Self {
-        emission: 0.0,
-        next_event: 0.0,
-        is_drawn: 0.0,
-        is_hit: 0.0,
-    };
-
-    #[inline]
-    pub(super) fn new(job: &Job<'_>, x0: &Vertex, next_event: f32) -> Self {
-        Self {
-            emission: f64::from(x0.pdf_fwd),
-            next_event: f64::from(next_event.max(f32::MIN_POSITIVE)),
-            is_drawn: possible(next_event > 0.0),
-            is_hit: possible(!x0.is_on_delta_light(job)),
-        }
-    }
-
-    /// Returns the sums at x_0: s = 0 alone has fewer light vertices, and p_0 / p_1 = b_0 / e.
-    #[inline]
-    fn sums(&self, job: &Job<'_>) -> EndSums {
-        EndSums {
-            per_drawn: finite(job.settings.mis.share(1.0 / self.next_event)),
-            links: [self.is_hit; 2],
-            slope: 0.0,
-            sum: self.is_hit,
-        }
-    }
-
-    /// Returns the factor of a_1 / b_1 in p_2 / p_1.
-    #[inline]
-    pub(super) fn up(&self) -> f64 {
-        self.emission / self.next_event
     }
 }
 

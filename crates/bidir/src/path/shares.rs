@@ -3,7 +3,8 @@
 //! other (docs/derivations/choosing-a-plan.md).
 
 use super::mis::for_each_other;
-use super::{Job, JoinedPath, MisHeuristic, PathDensities};
+use super::technique::Technique;
+use super::{HitPath, Job, JoinedPath, MisHeuristic, PathDensities};
 
 /// The number of light vertices of a connection with a vertex of a light walk, and its part of D.
 pub(crate) type ConnectionPart = (u16, f32);
@@ -26,35 +27,34 @@ pub(crate) struct Shares {
     pub(crate) vertices: u16,
 }
 
-impl JoinedPath<'_> {
-    /// Returns the shares of the path, by the balance heuristic. `parts` gets those of single connections.
+impl PathDensities {
+    /// Returns the shares of the path, by the balance heuristic, which strategy `s` made; `albedos` are those that the
+    /// camera walk goes on with. `parts` gets those of single connections.
     pub(crate) fn shares(
         &self,
         job: &Job<'_>,
-        densities: &mut PathDensities,
+        s: usize,
+        albedos: [f32; 2],
         parts: &mut Vec<ConnectionPart>,
     ) -> Shares {
         parts.clear();
-        densities.gather(job, self);
-        let n = self.len();
-        let first_walked = job.settings.light_point.first_walked();
+        let n = self.vertices.len();
         let [mut hits, mut light_images] = [0.0, 0.0];
         let [mut next_events, mut connections] = [[0.0; 2]; 2];
         let mut add = |j: usize, ratio: f64| {
-            let deeper = usize::from(n - j > 2);
             let samples = self.count(job, j) * ratio;
-            *match (j, n - j) {
-                (0, _) => &mut hits,
-                (_, 1) => &mut light_images,
-                _ if j < first_walked => &mut next_events[deeper],
-                _ => {
+            *match Technique::of(job.settings.light_point, j, n - j) {
+                Technique::Hit => &mut hits,
+                Technique::LightImage => &mut light_images,
+                Technique::NextEvent(depth) => &mut next_events[depth.index()],
+                Technique::Connection(depth) => {
                     parts.push((j as u16, samples as f32));
-                    &mut connections[deeper]
+                    &mut connections[depth.index()]
                 }
             } += samples;
         };
-        add(self.strategy(), 1.0);
-        for_each_other(densities, self.strategy(), add);
+        add(s, 1.0);
+        for_each_other(self, s, add);
         if n == 2 {
             light_images = MisHeuristic::Balance.share_of_image(light_images, hits);
         }
@@ -69,14 +69,28 @@ impl JoinedPath<'_> {
             next_events: next_events.map(part),
             connections: connections.map(part),
             light_images: part(light_images),
-            albedos: [0, 1].map(|bounce| self.camera_albedo(bounce)),
+            albedos,
             vertices: n as u16,
         }
     }
+}
 
-    /// Returns the albedo with which a camera walk goes on at surface number `bounce`.
-    fn camera_albedo(&self, bounce: usize) -> f32 {
-        let (t, c) = (self.camera.len(), bounce + 1);
+impl HitPath<'_> {
+    /// Returns [`Shares::albedos`] of the path.
+    pub(crate) fn camera_albedos(&self) -> [f32; 2] {
+        [1, 2].map(|c| self.camera.get(c).map_or(1.0, |vertex| vertex.albedo_fwd))
+    }
+}
+
+impl JoinedPath<'_> {
+    /// Returns [`Shares::albedos`] of the path.
+    pub(crate) fn camera_albedos(&self) -> [f32; 2] {
+        [1, 2].map(|c| self.camera_albedo(c))
+    }
+
+    /// Returns the albedo with which a camera walk goes on at vertex number `c` from the lens.
+    fn camera_albedo(&self, c: usize) -> f32 {
+        let t = self.camera.len();
         match c {
             // x_0 scatters nothing.
             _ if c + 1 >= self.len() => 1.0,

@@ -1,6 +1,6 @@
 //! Subpaths: the vertices that walks leave, one walk behind the other.
 
-use super::Vertex;
+use super::{Job, RunningSums, Vertex};
 use crate::math::Vec3;
 use crate::spectrum::Spectrum;
 
@@ -33,6 +33,8 @@ pub struct Subpath<'a> {
 pub struct Subpaths {
     pub(super) vertices: Vec<Vertex>,
     walks: Vec<Walk>,
+    /// Sums along the walks that [`add_sums`](Self::add_sums) was asked for.
+    pub(crate) sums: RunningSums,
 }
 
 /// How a walk ended.
@@ -48,6 +50,7 @@ impl Subpaths {
     pub fn clear(&mut self) {
         self.vertices.clear();
         self.walks.clear();
+        self.sums.clear();
     }
 
     /// Returns the number of walks.
@@ -55,19 +58,20 @@ impl Subpaths {
         self.walks.len()
     }
 
-    /// Walk number `i`.
-    #[inline]
-    pub fn get(&self, i: usize) -> Subpath<'_> {
-        let first = if i == 0 { 0 } else { self.walks[i - 1].end };
-        let Walk { end, escape } = self.walks[i];
-        Subpath {
-            first,
-            vertices: &self.vertices[first..end],
-            escape,
+    /// Adds the sums along the walks from number `first` on, which follow those that have sums.
+    pub(crate) fn add_sums(&mut self, job: &Job<'_>, first: usize) {
+        for i in first..self.walks.len() {
+            self.sums.add(job, &subpath(&self.vertices, &self.walks, i));
         }
     }
 
-    /// All vertices, those of the single points last.
+    /// Returns walk number `i`.
+    #[inline]
+    pub fn get(&self, i: usize) -> Subpath<'_> {
+        subpath(&self.vertices, &self.walks, i)
+    }
+
+    /// Returns all vertices, those of the single points last.
     #[inline]
     pub fn vertices(&self) -> &[Vertex] {
         &self.vertices
@@ -114,5 +118,17 @@ impl Subpaths {
     pub(super) fn end(&mut self, escape: Option<Escape>) {
         let end = self.vertices.len();
         self.walks.push(Walk { end, escape });
+    }
+}
+
+/// Returns number `i` of `walks` along `vertices`.
+#[inline]
+fn subpath<'a>(vertices: &'a [Vertex], walks: &[Walk], i: usize) -> Subpath<'a> {
+    let first = if i == 0 { 0 } else { walks[i - 1].end };
+    let Walk { end, escape } = walks[i];
+    Subpath {
+        first,
+        vertices: &vertices[first..end],
+        escape,
     }
 }

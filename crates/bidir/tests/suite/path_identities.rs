@@ -13,8 +13,8 @@ use bidir::light::Part;
 use bidir::math::Vec2;
 use bidir::math::Vec3;
 use bidir::path::{
-    Job, JoinedPath, LightChoiceKind, LightPointChoice, MAX_VERTICES, MisHeuristic, PathDensities,
-    PathRoulette, PathSettings, SampleCounts, Vertex,
+    Arrival, HitPath, Job, JoinedPath, LightChoiceKind, LightPointChoice, MAX_VERTICES,
+    MisHeuristic, PathDensities, PathRoulette, PathSettings, SampleCounts, Vertex,
 };
 use bidir::spectrum::Spectrum;
 
@@ -221,13 +221,18 @@ fn strategies(job: &Job<'_>, path: &[Vertex]) -> Option<Vec<(usize, f32, Spectru
             continue;
         }
         if s == 0 {
-            let mut x0 = path[0];
-            x0.pdf_rev = camera[n - 1].pdf_fwd;
-            x0.to_previous = camera[n - 1].to_previous;
-            let w = JoinedPath::hit(&x0, &camera[..n - 1]).weight(job, &mut densities);
-            let turn = x0.turn(x0.wo, camera[n - 1].wo, TransportMode::Importance);
-            let emitted = turn.scatter(job);
-            result.push((s, w, camera[n - 1].beta * emitted));
+            let at_light = &camera[n - 1];
+            let arrival = Arrival {
+                light: path[0].light?,
+                at: path[0].light_point(),
+                wo: at_light.wo,
+                beta: at_light.beta,
+                pdf: at_light.pdf_fwd,
+                to_previous: at_light.to_previous,
+            };
+            let hit = HitPath::new(job, &arrival, &camera[..n - 1]);
+            let w = hit.weight(job, &mut densities);
+            result.push((s, w, arrival.contribution(job)));
             continue;
         }
         let mut light = rewalk(job, &path[..s], TransportMode::Importance)?;
@@ -235,7 +240,7 @@ fn strategies(job: &Job<'_>, path: &[Vertex]) -> Option<Vec<(usize, f32, Spectru
             continue;
         }
         let edge = edge(job, &path[s - 1], &path[s])?;
-        let mut joined = JoinedPath::connection(&light, &camera);
+        let mut joined = JoinedPath::new(&light, &camera);
         joined.pass(&edge);
         let w = joined.weight(job, &mut densities);
         if s == 1 {
@@ -243,7 +248,7 @@ fn strategies(job: &Job<'_>, path: &[Vertex]) -> Option<Vec<(usize, f32, Spectru
             light[0].beta = Spectrum::splat(1.0 / density);
         }
         let count = count(job, s, path) as f32;
-        let value = JoinedPath::connection(&light, &camera).contribution(job);
+        let value = JoinedPath::new(&light, &camera).contribution(job);
         result.push((s, w, value * edge.transmittance / count));
     }
     Some(result)
@@ -277,7 +282,7 @@ fn check_job(job: Job<'_>) {
         for s in 1..=light.vertices.len() {
             for t in 1..=camera.vertices.len() {
                 let (light, camera) = (&light.vertices[..s], &camera.vertices[..t]);
-                let path = JoinedPath::connection(light, camera);
+                let path = JoinedPath::new(light, camera);
                 let contributes = !path.contribution(job).is_black();
                 // Such a step cannot be made again from points alone.
                 let is_bound = took_a_dirac_lobe(light) || took_a_dirac_lobe(camera);

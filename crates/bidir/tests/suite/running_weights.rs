@@ -9,9 +9,9 @@ use bidir::guide::Guide;
 use bidir::light::{DistantLight, InfiniteLight, Light, PointLight};
 use bidir::math::{Affine3A, Vec2, Vec3};
 use bidir::path::{
-    Arrival, DiffuseEnd, Job, JoinedPath, Junction, LightChoiceKind, LightPointChoice,
-    MisHeuristic, PathDensities, PathRoulette, PathSettings, PathSums, RunningSums, SampleCounts,
-    Strategies, Subpath, Vertex, Weights, sample_next_event,
+    Arrival, DiffuseEnd, HitPath, Job, JoinedPath, LightChoiceKind, LightPointChoice, MisHeuristic,
+    PathDensities, PathRoulette, PathSettings, PathSums, RunningSums, SampleCounts, Strategies,
+    Subpath, Vertex, Weights, sample_next_event,
 };
 use bidir::shape::Shape;
 use bidir::spectrum::Spectrum;
@@ -40,22 +40,36 @@ struct Comparison {
 impl Comparison {
     #[track_caller]
     fn compare(&mut self, job: &Job<'_>, path: &JoinedPath<'_>) {
-        let [light, camera] = [path.light, path.camera].map(<[Vertex]>::len);
-        let (s, t) = match path.junction {
-            Junction::Hit => (0, light + camera),
-            Junction::Connection => (light, camera),
-        };
+        let [s, t] = [path.light, path.camera].map(<[Vertex]>::len);
         if !job.takes(s, t) {
             return;
         }
         let pure = path.weight(job, &mut self.densities);
         let [of_light, of_camera] = &self.sums;
         let sums = PathSums {
-            light: of_light.at(light - 1),
-            camera: of_camera.at(camera - 1),
+            light: of_light.at(s - 1),
+            camera: of_camera.at(t - 1),
             next_event: self.next_event,
         };
-        let running = self.weights.weight(job, path, &sums);
+        let running = self.weights.connection(job, path, &sums);
+        self.check(job, (s, t), [running, pure]);
+    }
+
+    #[track_caller]
+    fn compare_hit(&mut self, job: &Job<'_>, arrival: &Arrival, camera: &[Vertex]) {
+        let t = camera.len() + 1;
+        if !job.takes(0, t) {
+            return;
+        }
+        let path = HitPath::new(job, arrival, camera);
+        let pure = path.weight(job, &mut self.densities);
+        let sums = self.sums[1].at(camera.len() - 1);
+        let running = self.weights.hit(job, &path, sums);
+        self.check(job, (0, t), [running, pure]);
+    }
+
+    #[track_caller]
+    fn check(&mut self, job: &Job<'_>, (s, t): (usize, usize), [running, pure]: [f32; 2]) {
         assert!(
             (running - pure).abs() <= TOLERANCE * pure + SMALL,
             "s = {s}, t = {t}: {running} instead of {pure}; {}",
@@ -70,8 +84,8 @@ impl Comparison {
         self.weights.set(job.settings);
         self.sums.iter_mut().for_each(RunningSums::clear);
         if self.weights.uses_sums() {
-            self.sums[0].add_light(job, light);
-            self.sums[1].add_camera(job, camera);
+            self.sums[0].add(job, light);
+            self.sums[1].add(job, camera);
         }
         self.compare_hits(job, camera);
         self.compare_light_images(job, light.vertices);
@@ -87,7 +101,7 @@ impl Comparison {
     }
 
     fn compare_connection(&mut self, job: &Job<'_>, light: &[Vertex], camera: &[Vertex]) {
-        let mut path = JoinedPath::connection(light, camera);
+        let mut path = JoinedPath::new(light, camera);
         let edge = edge(job, &light[light.len() - 1], &camera[camera.len() - 1]);
         if let Some(edge) = edge
             && !path.contribution(job).is_black()
@@ -105,7 +119,7 @@ impl Comparison {
         let (Some(z), Some(y)) = (of_light.diffuse(s - 1), of_camera.diffuse(t - 1)) else {
             return;
         };
-        let path = JoinedPath::connection(light, camera);
+        let path = JoinedPath::new(light, camera);
         let count = job.count(s, t, [light[s - 1].cell, camera[t - 1].cell]);
         // Other vertices, with counts of their own, are in the other lanes.
         let own = (s + t) % 4;
@@ -155,14 +169,12 @@ impl Comparison {
     fn compare_hits(&mut self, job: &Job<'_>, camera: &Subpath<'_>) {
         for (i, vertex) in camera.vertices.iter().enumerate().skip(1) {
             if let Some(arrival) = Arrival::at(vertex) {
-                let x0 = arrival.vertex(job);
-                self.compare(job, &JoinedPath::hit(&x0, &camera.vertices[..i]));
+                self.compare_hit(job, &arrival, &camera.vertices[..i]);
             }
         }
         let Some(escape) = camera.escape else { return };
         for arrival in Arrival::of_escape(job.scene, escape) {
-            let x0 = arrival.vertex(job);
-            self.compare(job, &JoinedPath::hit(&x0, camera.vertices));
+            self.compare_hit(job, &arrival, camera.vertices);
         }
     }
 
@@ -184,7 +196,7 @@ impl Comparison {
             {
                 let of_walk = (s, z, sums.at(s - 1));
                 let found = end.light_image(job, of_walk, &lens[0], &segment);
-                let path = JoinedPath::connection(&light[..s], lens);
+                let path = JoinedPath::new(&light[..s], lens);
                 self.check_diffuse(job, &path, found);
             }
         }
@@ -209,7 +221,7 @@ impl Comparison {
             {
                 let segment = camera[t - 1].segment_to(&x0);
                 let found = y.next_event(job, t, (&x0, drawn.pdf), &segment);
-                let path = JoinedPath::connection(of_light, &camera[..t]);
+                let path = JoinedPath::new(of_light, &camera[..t]);
                 self.check_diffuse(job, &path, found);
             }
         }

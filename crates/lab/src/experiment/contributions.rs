@@ -155,7 +155,7 @@ fn terms(loaded: &LoadedScene<'_>, settings: &Settings, pass: u64) -> Vec<[f64; 
         let light = sampler.stream(Domain::Light, 0, pass * film.light_paths() + i);
         batch.fill([Sample::new(pass, pixel, camera, light)]);
         method.run(&job, &mut batch);
-        terms.extend(batch.candidates.iter().map(|candidate| {
+        terms.extend(batch.candidates.offered.iter().map(|candidate| {
             let term = &candidate.term;
             let luminance = |value| f64::from(job.lanes.luminance(value));
             [term.contribution, term.value()].map(luminance)

@@ -42,7 +42,7 @@ pub struct SampleReport {
 impl SampleReport {
     /// The report of a repeated sample: that of `pixel` in `pass`.
     pub fn new(session: &Session<'_>, pixel: [u32; 2], pass: u64, replay: &Replay) -> Self {
-        let (lanes, stats) = (replay.lanes, &replay.batch.stats);
+        let (lanes, stats) = (replay.lanes, &replay.batch.worker.stats);
         let view = View::new(session, &replay.camera());
         let Terms {
             hits,

@@ -140,7 +140,7 @@ fn the_rays_of_a_pass_are_those_of_its_samples() {
     for (name, integrator) in IntegratorKind::NAMES {
         let mut session = session(&scene, integrator, "all");
         let pass = pass(&session, 0);
-        let rays = pass.iter().map(|(_, r)| r.batch.stats.rays.total());
+        let rays = pass.iter().map(|(_, r)| r.batch.worker.stats.rays.total());
         let rays: u64 = rays.sum();
         session.step(&());
         assert_eq!(rays, session.stats().rays.total(), "{name}");
@@ -174,7 +174,7 @@ fn connections_are_candidates_or_zero() {
         let longest = session.settings().path.max_vertices();
         let pairs = (1..=light).flat_map(|s| (2..=camera).map(move |t| s + t));
         let all = pairs.filter(|n| *n <= longest).count();
-        let candidates = replay.batch.candidates.iter();
+        let candidates = replay.batch.candidates.offered.iter();
         let own = candidates.filter(|c| usize::from(c.term.strategy.s) <= light);
         assert_eq!(own.count() + replay.zeros.len(), all);
     }

@@ -60,12 +60,12 @@ impl Session<'_> {
         begin_group(batch);
         let mut bringers = self.bringers(places).peekable();
         while bringers.peek().is_some() {
-            batch.stopwatch.begin_light();
+            batch.worker.stopwatch.begin_light();
             let places = bringers.by_ref().take(size);
             batch.fill(places.map(|place| self.sample(place, pass)));
             walk_group(job, batch);
             keep(batch);
-            batch.stopwatch.end(Stage::Film);
+            batch.worker.stopwatch.end(Stage::Film);
         }
         end_group(job, batch);
     }
@@ -89,13 +89,16 @@ impl Session<'_> {
         let pixel = self.sample(place, pass).pixel;
         let (mut own, mut own_stats) = (None, Stats::default());
         self.walk_light(job, group, pass, (batch, 1), |batch| {
-            let stats = std::mem::take(&mut batch.stats);
-            if batch.samples[0].pixel == pixel {
-                own = Some((batch.light.count() - 1, std::mem::take(&mut batch.splats)));
+            let stats = std::mem::take(&mut batch.worker.stats);
+            if batch.walked.samples[0].pixel == pixel {
+                own = Some((
+                    batch.walked.light.count() - 1,
+                    std::mem::take(&mut batch.splats),
+                ));
                 own_stats = stats;
             }
         });
-        batch.stats = own_stats;
+        batch.worker.stats = own_stats;
         own
     }
 }

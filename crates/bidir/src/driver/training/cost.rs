@@ -32,7 +32,7 @@ pub(super) struct Work {
 impl Work {
     /// Adds the one sample of `batch`.
     pub(super) fn add(&mut self, job: &Job<'_>, batch: &Batch) {
-        let walk = batch.camera.get(0);
+        let walk = batch.walked.camera.get(0);
         let rays = walk.vertices.len() - 1 + usize::from(walk.escape.is_some());
         let albedo = |i: usize| walk.vertices.get(i).map_or(1.0, |vertex| vertex.albedo_fwd);
         let longer = longer([albedo(1), albedo(2)]);
@@ -41,7 +41,7 @@ impl Work {
                 .map(|before| longer[before.min(start)])
                 .sum::<f64>();
         }
-        for candidate in &batch.candidates {
+        for candidate in &*batch.candidates.offered {
             let Strategy { s, t } = candidate.term.strategy;
             let (s, t) = (usize::from(s), usize::from(t));
             let deeper = usize::from(t > 2);
@@ -54,7 +54,7 @@ impl Work {
                 self.diffuse[deeper] += f64::from(batch.is_diffuse(candidate));
             }
         }
-        self.connected += f64::from(!batch.candidates.is_empty());
+        self.connected += f64::from(!batch.candidates.offered.is_empty());
     }
 }
 

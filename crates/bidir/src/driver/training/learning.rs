@@ -107,8 +107,9 @@ impl Found {
 
     /// Adds the vertices of the one sample of `batch`. The connections that follow are of this sample.
     pub(super) fn begin(&mut self, job: &Job<'_>, batch: &Batch) {
-        let [walk, camera] = [&batch.light, &batch.camera].map(|walks| walks.get(0).vertices);
-        let light = batch.light.vertices();
+        let [walk, camera] =
+            [&batch.walked.light, &batch.walked.camera].map(|walks| walks.get(0).vertices);
+        let light = batch.walked.light.vertices();
         let first = self.places.len() as u32;
         self.sample = Places {
             light: first,
@@ -132,10 +133,10 @@ impl Found {
         has_arrived: bool,
     ) -> Option<u32> {
         let z = candidate.vertices[0] as usize;
-        if batch.light.vertices()[z].locus.is_infinite() {
+        if batch.walked.light.vertices()[z].locus.is_infinite() {
             return None;
         }
-        let is_walked = z < batch.light.get(0).vertices.len();
+        let is_walked = z < batch.walked.light.get(0).vertices.len();
         let ends = Ends {
             places: self.sample.of(candidate.vertices),
             light: is_walked.then_some(candidate.term.light),

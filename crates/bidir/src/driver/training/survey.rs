@@ -81,7 +81,7 @@ impl Survey {
 
     /// Adds what was made of sample number `number`, the one of `batch`.
     fn keep(&mut self, job: &Job<'_>, number: u64, batch: &Batch) {
-        let sample = &batch.samples[0];
+        let sample = &batch.walked.samples[0];
         let film = job.view.film();
         let [x, y] = sample.pixel.map(i64::from);
         let own = film.crop.index(x, y).map(|pixel| (pixel, 1.0));
@@ -165,7 +165,7 @@ impl<'a> Surveyor<'a> {
                     return None;
                 }
             }
-            survey.stats = std::mem::take(&mut batch.stats);
+            survey.stats = std::mem::take(&mut batch.worker.stats);
             Some(survey)
         });
         let found: Vec<Survey> = found.collect::<Option<_>>()?;

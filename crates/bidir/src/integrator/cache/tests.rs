@@ -37,12 +37,7 @@ fn cache(proposals: Option<&LightProposals>, cells: &Cells) -> LightCache {
         walks.add((0..=i % 4).map(|j| vertex(cell(cells, i * j))));
     }
     let mut cache = LightCache::default();
-    cache.index(
-        &walks,
-        &RunningSums::default(),
-        LightPointChoice::Fresh,
-        proposals,
-    );
+    cache.index(&walks, LightPointChoice::Fresh, proposals);
     cache
 }
 

@@ -6,8 +6,8 @@
 //! last vertex x_0 has density p by scattering at x_1 and q by next-event estimation, and nothing
 //! else is asked.
 
-use super::super::batch::enter;
-use super::super::{Batch, Link, Sample};
+use super::super::journal::enter;
+use super::super::{Entry, Link, Sample, Walked, Worker};
 use super::media::ShadowPassage;
 use super::trace::trace;
 use crate::bsdf::TransportMode;
@@ -23,17 +23,17 @@ use crate::strategy::Strategy;
 /// Adds at every vertex of the camera subpaths the light that is hit and the light that next-event estimation
 /// finds, and traces all shadow rays.
 #[inline(never)]
-pub(in super::super) fn direct(job: &Job<'_>, batch: &mut Batch) {
-    let Batch {
-        samples,
-        camera,
-        entries,
-        shadow_rays,
-        stats,
-        ..
-    } = batch;
-    for (number, sample) in samples.iter().enumerate() {
-        let walk = camera.get(number);
+pub(in super::super) fn direct(
+    job: &Job<'_>,
+    walked: &Walked,
+    entries: &mut Vec<Entry>,
+    worker: &mut Worker,
+) {
+    let Worker {
+        shadow_rays, stats, ..
+    } = worker;
+    for (number, sample) in walked.samples.iter().enumerate() {
+        let walk = walked.camera.get(number);
         for (i, vertex) in walk.vertices.iter().enumerate().skip(1) {
             if let Some(arrival) = Arrival::at(vertex)
                 && let Some(term) = hit(job, &walk.vertices[..i], &arrival)
@@ -56,7 +56,7 @@ pub(in super::super) fn direct(job: &Job<'_>, batch: &mut Batch) {
         }
     }
     trace(job, entries, shadow_rays, stats);
-    batch.stopwatch.end(Stage::Direct);
+    worker.stopwatch.end(Stage::Direct);
 }
 
 /// Returns the term of the light that the walk came upon after the vertices `before`. None: it is zero.

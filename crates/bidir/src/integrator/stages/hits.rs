@@ -1,34 +1,27 @@
 //! s = 0: the camera subpath hits lights, or escapes to those at infinity. No shadow rays.
 
-use super::super::batch::enter;
-use super::super::{Batch, Link};
+use super::super::journal::enter;
+use super::super::{Entry, Link, Walked, Worker};
 use crate::contribution::Term;
-use crate::path::{Arrival, EndSums, Job, JoinedPath, PathSums, Vertex, Weights};
+use crate::path::{Arrival, EndSums, HitPath, Job, Vertex, Weights};
 use crate::spectrum::Spectrum;
 use crate::stats::Stage;
 use crate::strategy::Strategy;
 
 /// Adds the light that camera subpaths find by themselves.
-#[inline(never)] // So that profiles show the stages, each of which is called once.
-pub(in super::super) fn hits(job: &Job<'_>, batch: &mut Batch) {
-    let Batch {
-        samples,
-        camera,
-        camera_sums,
-        weights,
-        entries,
-        stats,
-        ..
-    } = batch;
-    for (number, sample) in samples.iter().enumerate() {
-        let walk = camera.get(number);
+#[inline(never)]
+pub(in super::super) fn hits(
+    job: &Job<'_>,
+    walked: &Walked,
+    entries: &mut Vec<Entry>,
+    worker: &mut Worker,
+) {
+    let Worker { weights, stats, .. } = worker;
+    for (number, sample) in walked.samples.iter().enumerate() {
+        let walk = walked.camera.get(number);
         let mut add = |camera: &[Vertex], arrival: &Arrival| {
-            let sums = PathSums {
-                light: &EndSums::NONE,
-                camera: camera_sums.at(walk.first + camera.len() - 1),
-                next_event: None,
-            };
-            if let Some(term) = hit(job, camera, arrival, weights, &sums) {
+            let sums = walked.camera.sums.at(walk.first + camera.len() - 1);
+            if let Some(term) = hit(job, camera, arrival, weights, sums) {
                 enter(entries, stats, (number, sample), term, Link::Walk);
             }
         };
@@ -42,7 +35,7 @@ pub(in super::super) fn hits(job: &Job<'_>, batch: &mut Batch) {
             add(walk.vertices, &arrival);
         }
     }
-    batch.stopwatch.end(Stage::Hits);
+    worker.stopwatch.end(Stage::Hits);
 }
 
 /// Returns the term of the path from `camera` to the light that was hit. None: it is zero.
@@ -51,21 +44,17 @@ fn hit(
     camera: &[Vertex],
     arrival: &Arrival,
     weights: &mut Weights,
-    sums: &PathSums<'_>,
+    sums: &EndSums,
 ) -> Option<Term> {
-    let strategy = Strategy::new(0, camera.len() + 1);
-    if !job.takes(0, camera.len() + 1) {
+    let t = camera.len() + 1;
+    if !job.takes(0, t) {
         return None;
     }
     let contribution = arrival.contribution(job);
-    (contribution != Spectrum::ZERO).then(|| {
-        let x0 = arrival.vertex(job);
-        let path = JoinedPath::hit(&x0, camera);
-        Term {
-            strategy,
-            light: arrival.light,
-            contribution,
-            weight: weights.weight(job, &path, sums),
-        }
+    (contribution != Spectrum::ZERO).then(|| Term {
+        strategy: Strategy::new(0, t),
+        light: arrival.light,
+        contribution,
+        weight: weights.hit(job, &HitPath::new(job, arrival, camera), sums),
     })
 }

@@ -1,8 +1,8 @@
 //! The vertices of light subpaths that camera vertices are connected with.
 
-use super::super::batch::LightEnd;
-use super::super::cache::Place;
-use super::super::{Batch, CandidateCount};
+use super::super::cache::{LightCache, Place};
+use super::super::ends::{Ends, LightEnd};
+use super::super::{CandidateCount, Walked, Worker};
 use super::pairs::Pairs;
 use crate::path::Job;
 use crate::sampler::{Dimension, Purpose};
@@ -10,29 +10,34 @@ use crate::stats::Stage;
 
 /// Lists for each camera vertex the vertices of the sample's own light subpath.
 #[inline(never)]
-pub(in super::super) fn own_light(job: &Job<'_>, batch: &mut Batch) {
-    let first = batch.first_light();
-    let Batch {
+pub(in super::super) fn own_light(
+    job: &Job<'_>,
+    walked: &Walked,
+    ends: &mut Ends,
+    worker: &mut Worker,
+) {
+    let Walked {
         samples,
         camera,
         light,
-        light_sums,
-        light_ends,
-        light_ends_end,
-        ..
-    } = batch;
+    } = walked;
+    let first = walked.first_light();
     let settings = job.settings;
     for (number, sample) in samples.iter().enumerate() {
         let subpath = light.get(first + number);
         let mut pairs = Pairs::new(job, &sample.camera);
         for (t, y) in (2..).zip(camera.get(number).vertices.iter().skip(1)) {
-            let longest = subpath.vertices.len().min(settings.max_vertices() - t);
-            let longest = if y.is_delta() { 0 } else { longest };
-            light_ends.make_room(longest);
+            let longest = if y.is_delta() {
+                0
+            } else {
+                subpath.vertices.len().min(settings.max_vertices() - t)
+            };
+            let list = ends.walked.open();
+            list.make_room(longest);
             for s in settings.light_point.first_walked()..=longest {
                 // Every pair in turn, whatever becomes of it: each moves the pointer.
                 let share = pairs.take(s + t);
-                let place = Place::new(&subpath, s - 1, light_sums);
+                let place = Place::new(&subpath, s - 1, &light.sums);
                 let (Some(share), Some(place)) = (share, place) else {
                     continue;
                 };
@@ -42,28 +47,30 @@ pub(in super::super) fn own_light(job: &Job<'_>, batch: &mut Batch) {
                     number: s as u32 - 1,
                     share,
                 };
-                light_ends.write(end, usize::from(connects && job.takes(s, t)));
+                list.write(end, usize::from(connects && job.takes(s, t)));
             }
-            light_ends_end.push(light_ends.len());
+            ends.walked.close();
         }
     }
-    batch.stopwatch.end(Stage::Candidates);
+    worker.stopwatch.end(Stage::Candidates);
 }
 
 /// Draws for each camera vertex as many vertices of the cache as `counts` says, one of each of as many parts of it.
 /// They lie anywhere in the memory of a group, and are loaded while others are drawn.
 #[inline(never)]
-pub(in super::super) fn draw_cached(job: &Job<'_>, batch: &mut Batch, counts: CandidateCount) {
-    let Batch {
+pub(in super::super) fn draw_cached(
+    job: &Job<'_>,
+    walked: &Walked,
+    cache: &LightCache,
+    ends: &mut Ends,
+    counts: CandidateCount,
+    worker: &mut Worker,
+) {
+    let Walked {
         samples,
         camera,
         light,
-        light_sums,
-        cache,
-        light_ends,
-        light_ends_end,
-        ..
-    } = batch;
+    } = walked;
     let takes_all = job.settings.strategies.is_all();
     for (number, sample) in samples.iter().enumerate() {
         for (t, y) in (2..).zip(camera.get(number).vertices.iter().skip(1)) {
@@ -72,12 +79,12 @@ pub(in super::super) fn draw_cached(job: &Job<'_>, batch: &mut Batch, counts: Ca
             if !y.is_delta() {
                 let u = (sample.camera).get_bits(Dimension::at(t - 1, Purpose::CachedVertex));
                 let (row, count) = (job.guide.of_camera(y.cell).row(), counts.at(t));
-                light_ends.write_some(count.into(), |room| {
+                ends.walked.open().write_some(count.into(), |room| {
                     let mut taken = 0;
                     cache.draw_all(row, (count, u), |entry, place, share| {
                         let s = usize::from(place.s);
                         if place.is_diffuse {
-                            light_sums.load_ahead(place.z as usize);
+                            light.sums.load_ahead(place.z as usize);
                         } else {
                             light.load_ahead(place.z as usize);
                         }
@@ -91,8 +98,8 @@ pub(in super::super) fn draw_cached(job: &Job<'_>, batch: &mut Batch, counts: Ca
                     taken
                 });
             }
-            light_ends_end.push(light_ends.len());
+            ends.walked.close();
         }
     }
-    batch.stopwatch.end(Stage::Candidates);
+    worker.stopwatch.end(Stage::Candidates);
 }

@@ -1,8 +1,8 @@
 //! The light image, t = 1: every light vertex is connected to a lens point of its own, and splatted where that
 //! sees it. The film divides by its number of pixels; where there are fewer light subpaths, each counts more.
 
-use super::super::batch::enter;
-use super::super::{Batch, Link, Sample};
+use super::super::journal::enter;
+use super::super::{Entry, Link, Sample, Walked, Worker};
 use super::media::ShadowPassage;
 use super::trace::trace;
 use crate::contribution::Term;
@@ -29,20 +29,22 @@ pub(in super::super) enum Weighting {
 
 /// Connects the samples' light subpaths to the lens, and traces all of these shadow rays.
 #[inline(never)]
-pub(in super::super) fn light_image(job: &Job<'_>, batch: &mut Batch, weighting: Weighting) {
-    let first = batch.first_light();
-    let Batch {
-        samples,
-        light,
-        light_sums,
+pub(in super::super) fn light_image(
+    job: &Job<'_>,
+    walked: &Walked,
+    splats: &mut Vec<Entry>,
+    worker: &mut Worker,
+    weighting: Weighting,
+) {
+    let first = walked.first_light();
+    let Worker {
         weights,
-        splats,
         shadow_rays,
         stats,
         ..
-    } = batch;
-    for (number, sample) in samples.iter().enumerate() {
-        let walk = light.get(first + number);
+    } = worker;
+    for (number, sample) in walked.samples.iter().enumerate() {
+        let walk = walked.light.get(first + number);
         for s in 1..=walk.vertices.len() {
             if weighting == Weighting::Combined && !job.takes(s, 1) {
                 continue;
@@ -53,7 +55,7 @@ pub(in super::super) fn light_image(job: &Job<'_>, batch: &mut Batch, weighting:
             };
             let sums = match weighting {
                 Weighting::Alone => None,
-                Weighting::Combined => Some((&*light_sums, walk.first + s - 1)),
+                Weighting::Combined => Some((&walked.light.sums, walk.first + s - 1)),
             };
             if let Some((term, passage)) = image.weighted_term(job, sums, weights) {
                 let link = image.link(job, sample);
@@ -63,7 +65,7 @@ pub(in super::super) fn light_image(job: &Job<'_>, batch: &mut Batch, weighting:
         }
     }
     trace(job, splats, shadow_rays, stats);
-    batch.stopwatch.end(Stage::LightImage);
+    worker.stopwatch.end(Stage::LightImage);
 }
 
 /// Returns the lens point for light vertex number `s`.
@@ -136,7 +138,7 @@ impl<'a> LightImage<'a> {
             camera: &EndSums::NONE,
             next_event: None,
         };
-        self.of_any(job, |path| weights.weight(job, path, &sums))
+        self.of_any(job, |path| weights.connection(job, path, &sums))
     }
 
     /// The same for any vertex and any weight, which is not asked for where nothing arrives.
@@ -146,7 +148,7 @@ impl<'a> LightImage<'a> {
         weight: impl FnOnce(&JoinedPath<'_>) -> f32,
     ) -> Option<(Term, ShadowPassage)> {
         let lens = std::slice::from_ref(self.lens);
-        let mut path = JoinedPath::connection_by(self.light, lens, self.segment);
+        let mut path = JoinedPath::along(self.light, lens, self.segment);
         let mut term = self.term(job, path.contribution(job), 0.0)?;
         let passage = ShadowPassage::between(job, || self.ends(job));
         if let Some(edge) = passage.edge() {

@@ -5,7 +5,7 @@
 //! estimate remains unbiased with the weight that the ray leads to (docs/derivations/media.md). Where the guess was
 //! right, that is the weight it has.
 
-use super::super::{Batch, Entry, Fate};
+use super::super::{Candidates, Entry, Fate, Walked, Worker};
 use crate::locus::Locus;
 use crate::path::{Job, JoinedPath, PathSums};
 use crate::scene::Edge;
@@ -68,21 +68,16 @@ impl ShadowPassage {
 }
 
 /// Traces the shadow rays of the chosen candidates that may go through media, one by one, and weighs their terms again.
-pub(super) fn settle_chosen(job: &Job<'_>, batch: &mut Batch) {
-    let Batch {
-        camera,
-        light,
-        camera_sums,
-        light_sums,
-        weights,
-        candidates,
-        chosen,
-        entries,
-        stats,
-        ..
-    } = batch;
-    let first = entries.len() - chosen.len();
-    for (entry, chosen) in entries[first..].iter_mut().zip(&*chosen) {
+pub(super) fn settle_chosen(
+    job: &Job<'_>,
+    walked: &Walked,
+    candidates: &Candidates,
+    entries: &mut [Entry],
+    worker: &mut Worker,
+) {
+    let Worker { weights, stats, .. } = worker;
+    let first = entries.len() - candidates.chosen.len();
+    for (entry, chosen) in entries[first..].iter_mut().zip(&candidates.chosen) {
         let passage = match entry.shadow_ray() {
             Some(ends) => ShadowPassage::between(job, || *ends),
             None => ShadowPassage::Clear,
@@ -91,22 +86,16 @@ pub(super) fn settle_chosen(job: &Job<'_>, batch: &mut Batch) {
         let Some(edge) = passage.edge().filter(|edge| !edge.is_guessed) else {
             continue;
         };
-        let [z, y] = candidates[chosen.candidate as usize]
-            .vertices
-            .map(|i| i as usize);
-        let strategy = entry.contribution.term.strategy;
-        let [s, t] = [strategy.s, strategy.t].map(usize::from);
-        let (light, camera) = (
-            &light.vertices()[z + 1 - s..=z],
-            &camera.vertices()[y + 1 - t..=y],
-        );
-        let mut path = JoinedPath::connection(light, camera);
+        let candidate = &candidates.offered[chosen.candidate as usize];
+        let [z, y] = candidate.vertices.map(|i| i as usize);
+        let [light, camera] = walked.subpaths(candidate);
+        let mut path = JoinedPath::new(light, camera);
         let sums = PathSums {
-            light: light_sums.at(z),
-            camera: camera_sums.at(y),
+            light: walked.light.sums.at(z),
+            camera: walked.camera.sums.at(y),
             next_event: None,
         };
         path.pass(edge);
-        entry.contribution.term.weight = weights.weight(job, &path, &sums);
+        entry.contribution.term.weight = weights.connection(job, &path, &sums);
     }
 }

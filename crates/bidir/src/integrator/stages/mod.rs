@@ -1,6 +1,7 @@
 //! The stages of a batch: each takes arrays that others left in it, and leaves arrays.
 
 mod connect;
+mod diffuse;
 mod direct;
 mod hits;
 mod light_ends;

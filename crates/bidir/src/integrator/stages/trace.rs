@@ -1,6 +1,6 @@
 //! Choosing connections, and the shadow rays of those that were chosen.
 
-use super::super::{Batch, Entry, Fate, Link};
+use super::super::{Candidates, Entry, Fate, Link, Walked, Worker};
 use super::media::settle_chosen;
 use crate::contribution::Contribution;
 use crate::path::Job;
@@ -8,36 +8,35 @@ use crate::scene::ShadowRays;
 use crate::select::{Chosen, Draws, Selector};
 use crate::stats::{Stage, Stats};
 
-/// Has `rule` choose among the candidates of each sample.
-pub(in super::super) fn select(rule: &dyn Selector, batch: &mut Batch) {
-    let Batch {
-        samples,
-        light,
-        camera,
-        candidates,
-        candidates_end,
-        chosen,
-        entries,
-        ..
-    } = batch;
-    let mut begin = 0;
-    for (sample, &end) in samples.iter().zip(&*candidates_end) {
+/// Has `rule` choose among the candidates of each sample, and adds the entries of those that are chosen.
+pub(in super::super) fn select(
+    rule: &dyn Selector,
+    walked: &Walked,
+    candidates: &mut Candidates,
+    entries: &mut Vec<Entry>,
+    worker: &mut Worker,
+) {
+    let Candidates {
+        offered, chosen, ..
+    } = candidates;
+    let Walked { light, camera, .. } = walked;
+    for (number, sample) in walked.samples.iter().enumerate() {
         let first = chosen.len();
-        rule.select(&candidates[begin..end], Draws(&sample.camera), chosen);
+        rule.select(offered.get(number), Draws(&sample.camera), chosen);
+        let begin = offered.begin(number);
         for Chosen { candidate, .. } in &mut chosen[first..] {
             *candidate += begin as u32;
-            let [z, _] = candidates[*candidate as usize].vertices;
+            let [z, _] = offered[*candidate as usize].vertices;
             light.load_locus_ahead(z as usize);
         }
-        begin = end;
     }
     let mut number = 0;
     for &Chosen { candidate, prob } in &*chosen {
         let candidate = candidate as usize;
-        while candidate >= candidates_end[number] {
+        while candidate >= offered.begin(number + 1) {
             number += 1;
         }
-        let of = &candidates[candidate];
+        let of = &offered[candidate];
         entries.push(Entry {
             sample: number as u32,
             contribution: Contribution {
@@ -49,23 +48,23 @@ pub(in super::super) fn select(rule: &dyn Selector, batch: &mut Batch) {
             fate: Fate::NotTraced,
         });
     }
-    batch.stopwatch.end(Stage::Select);
+    worker.stopwatch.end(Stage::Select);
 }
 
 /// Traces the shadow rays of all entries for the samples' own pixels.
 #[inline(never)]
-pub(in super::super) fn shadow_rays(job: &Job<'_>, batch: &mut Batch) {
+pub(in super::super) fn shadow_rays(
+    job: &Job<'_>,
+    walked: &Walked,
+    candidates: &Candidates,
+    entries: &mut [Entry],
+    worker: &mut Worker,
+) {
     if job.scene.has_media() && !job.scene.foresees_media() {
-        settle_chosen(job, batch);
+        settle_chosen(job, walked, candidates, entries, worker);
     }
-    let Batch {
-        entries,
-        shadow_rays,
-        stats,
-        ..
-    } = batch;
-    trace(job, entries, shadow_rays, stats);
-    batch.stopwatch.end(Stage::Shadow);
+    trace(job, entries, &mut worker.shadow_rays, &mut worker.stats);
+    worker.stopwatch.end(Stage::Shadow);
 }
 
 /// Traces the shadow rays of `entries`, all together, and notes what arrives.

@@ -1,6 +1,6 @@
 //! The subpaths of the samples, and sums along them.
 
-use super::super::{Batch, Sample};
+use super::super::{Sample, Walked, Worker};
 use crate::camera::CameraRay;
 use crate::math::Vec2;
 use crate::path::{Job, camera_subpath, light_subpath};
@@ -8,59 +8,45 @@ use crate::sampler::{Dimension, Purpose};
 use crate::stats::Stage;
 
 /// Walks the camera subpath of each sample.
-#[inline(never)]
-pub(in super::super) fn walk_camera(job: &Job<'_>, batch: &mut Batch) {
-    let Batch {
-        samples,
-        camera,
-        stats,
-        ..
-    } = batch;
+#[inline(never)] // So that profiles show the stages, each of which is called once.
+pub(in super::super) fn walk_camera(job: &Job<'_>, walked: &mut Walked, worker: &mut Worker) {
+    let Walked {
+        samples, camera, ..
+    } = walked;
     for sample in &*samples {
         let (ray, weight) = camera_ray(job, sample);
-        camera_subpath(job, &sample.camera, &ray, weight, camera, stats);
+        camera_subpath(job, &sample.camera, &ray, weight, camera, &mut worker.stats);
     }
-    batch.stopwatch.end(Stage::Walk);
+    worker.stopwatch.end(Stage::Walk);
 }
 
 /// Walks the light subpath of each sample, and adds it to those that are there.
 #[inline(never)]
-pub(in super::super) fn walk_light(job: &Job<'_>, batch: &mut Batch) {
-    let Batch {
-        samples,
-        light,
-        stats,
-        ..
-    } = batch;
+pub(in super::super) fn walk_light(job: &Job<'_>, walked: &mut Walked, worker: &mut Worker) {
+    let Walked { samples, light, .. } = walked;
     for sample in &*samples {
-        light_subpath(job, &sample.light, light, stats);
+        light_subpath(job, &sample.light, light, &mut worker.stats);
     }
-    batch.stopwatch.end(Stage::Walk);
+    worker.stopwatch.end(Stage::Walk);
 }
 
 /// Prepares the weights of paths with the camera subpaths.
 #[inline(never)]
-pub(in super::super) fn sum_camera(job: &Job<'_>, batch: &mut Batch) {
-    if batch.weights.uses_sums() {
-        for i in 0..batch.samples.len() {
-            let walk = batch.camera.get(i);
-            batch.camera_sums.add_camera(job, &walk);
-        }
+pub(in super::super) fn sum_camera(job: &Job<'_>, walked: &mut Walked, worker: &mut Worker) {
+    if worker.weights.uses_sums() {
+        walked.camera.add_sums(job, 0);
     }
-    batch.stopwatch.end(Stage::Walk);
+    worker.stopwatch.end(Stage::Walk);
 }
 
 /// Prepares the weights of paths with the samples' light subpaths.
 #[inline(never)]
-pub(in super::super) fn sum_light(job: &Job<'_>, batch: &mut Batch) {
-    if batch.weights.uses_sums() {
-        let first = batch.first_light();
-        for i in 0..batch.samples.len() {
-            let walk = batch.light.get(first + i);
-            batch.light_sums.add_light(job, &walk);
-        }
+pub(in super::super) fn sum_light(job: &Job<'_>, walked: &mut Walked, worker: &mut Worker) {
+    if worker.weights.uses_sums() {
+        let first = walked.first_light();
+        walked.light.add_sums(job, first);
     }
-    batch.stopwatch.end(Stage::Walk);
+    worker.stopwatch.end(Stage::Walk);
 }
 
 /// Returns the ray of a camera sample, and the weight of its film position.

@@ -1,6 +1,6 @@
 //! s = 0: the light that a camera walk comes upon by itself, at a vertex on a light or where it escapes.
 
-use super::{Escape, Job, Subpath, Vertex};
+use super::{Escape, Job, PathDensities, Segment, Subpath, Vertex};
 use crate::light::LightPoint;
 use crate::math::Vec3;
 use crate::scene::Scene;
@@ -65,16 +65,49 @@ impl Arrival {
     pub fn contribution(&self, job: &Job<'_>) -> Spectrum {
         self.beta * job.emitted(self.light, &self.at, self.wo)
     }
+}
 
-    /// Returns the light as the first vertex of the path, with the density of the walk as that of the other
-    /// direction.
-    pub fn vertex(&self, job: &Job<'_>) -> Vertex {
+/// s = 0: the path of a camera walk that went from its last vertex, y, to a light at x_0.
+#[derive(Clone, Debug)]
+pub struct HitPath<'a> {
+    /// The light, as the first vertex of a light subpath.
+    pub x0: Vertex,
+    /// The vertices of the walk.
+    pub camera: &'a [Vertex],
+    /// From x_0 to y.
+    pub(super) segment: Segment,
+    /// The density of x_0 as the walk drew it, without roulette.
+    pub(super) drawn_pdf: f32,
+}
+
+impl<'a> HitPath<'a> {
+    /// Returns the path of the walk `camera` that arrived at a light.
+    #[inline]
+    pub fn new(job: &Job<'_>, arrival: &Arrival, camera: &'a [Vertex]) -> Self {
+        let x0 = Vertex::light(job, arrival.light, &arrival.at);
+        let mut segment = x0.segment_to(&camera[camera.len() - 1]);
         // Without media, the ends of the segment know the way back.
-        let through_media = job.scene.has_media();
-        Vertex {
-            pdf_rev: self.pdf,
-            to_previous: if through_media { self.to_previous } else { 0.0 },
-            ..Vertex::light(job, self.light, &self.at)
+        if job.scene.has_media() && arrival.to_previous > 0.0 {
+            segment.to_b = arrival.to_previous;
         }
+        Self {
+            x0,
+            camera,
+            segment,
+            drawn_pdf: arrival.pdf,
+        }
+    }
+
+    /// Returns the last vertex of the walk.
+    #[inline]
+    pub(super) fn y(&self) -> &'a Vertex {
+        &self.camera[self.camera.len() - 1]
+    }
+
+    /// Returns the weight of coming to the path in this way.
+    #[inline]
+    pub fn weight(&self, job: &Job<'_>, densities: &mut PathDensities) -> f32 {
+        densities.gather_hit(job, self);
+        densities.weight(job, 0)
     }
 }
