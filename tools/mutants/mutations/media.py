@@ -2,6 +2,8 @@
 
 from .tests import formats, media, unit
 
+ADVANCE = "crates/bidir/src/scene/advance.rs"
+EDGE = "crates/bidir/src/scene/edge.rs"
 PASSAGE = "crates/bidir/src/scene/passage.rs"
 NESTING = "crates/bidir/src/scene/nesting.rs"
 ENCLOSURE = "crates/formats/src/import/enclosure.rs"
@@ -12,14 +14,14 @@ EQUILIBRIUM = media("glow::matter_in_equilibrium")
 MEDIA = [
     (
         "a surface behind media as likely as without them",
-        PASSAGE,
+        EDGE,
         "LocusKind::Infinity => lanes.mean(drawn)",
         "LocusKind::Infinity => 1.0",
         FURNACE,
     ),
     (
         "the density of a collision without the coefficient",
-        PASSAGE,
+        EDGE,
         "lanes.mean(extinction * drawn)",
         "lanes.mean(drawn)",
         FURNACE,
@@ -33,28 +35,28 @@ MEDIA = [
     ),
     (
         "distances that nothing draws in the density",
-        PASSAGE,
+        EDGE,
         "let drawn = arriving(self.drawn);",
         "let drawn = arriving(self.all);",
         media("a_slab"),
     ),
     (
         "kinds of ends exchanged in a reverse density",
-        PASSAGE,
+        EDGE,
         "to_a: density(a),",
         "to_a: density(b),",
         media("estimators_agree_in_a_room_full_of_fog"),
     ),
     (
         "every medium on the way passed by the whole depth that was drawn",
-        PASSAGE,
+        ADVANCE,
         "            drawn.depth -= part.drawn[drawn.lane];\n",
         "            drawn.depth -= 0.0 * part.drawn[drawn.lane];\n",
-        unit("scene::passage"),
+        unit("scene::advance"),
     ),
     (
         "distances by one lane alone",
-        PASSAGE,
+        ADVANCE,
         "lane: lanes.pick_lane(u_lane),",
         "lane: lanes.pick_lane(u_lane * 0.0),",
         FURNACE,
@@ -75,10 +77,10 @@ MEDIA = [
     ),
     (
         "the weight of a guess kept past boundaries",
-        PASSAGE,
+        EDGE,
         "is_guessed: passage.crossings.is_empty()\n",
         "is_guessed: true\n",
-        unit("scene::passage"),
+        unit("scene::advance"),
     ),
     (
         "media that are foreseen, and let all light through",
@@ -96,7 +98,7 @@ MEDIA = [
     ),
     (
         "open boundaries between two places that are clear",
-        PASSAGE,
+        EDGE,
         "self.is_opaque && place.media == MediumSides::VACUUM",
         "place.media == MediumSides::VACUUM",
         media("nested_media"),

@@ -49,7 +49,7 @@ PATHS = [
     ),
     (
         "distances in media by a lane of red, green and blue",
-        "crates/bidir/src/scene/passage.rs",
+        "crates/bidir/src/scene/advance.rs",
         "lane: lanes.pick_lane(u_lane),",
         "lane: Lanes::Rgb.pick_lane(u_lane),",
         unit("nothing_between_the_edges"),

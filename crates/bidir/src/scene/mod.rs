@@ -3,9 +3,11 @@
 //! A [`Scene`] comes from a [`SceneBuilder`], the only place where errors are possible. All indices
 //! in a built scene are valid.
 
+mod advance;
 mod builder;
 mod check;
 mod coverage;
+mod edge;
 mod glow;
 mod nesting;
 mod object;
@@ -14,13 +16,15 @@ mod space;
 mod visibility;
 
 pub use accel::Isa;
+pub use advance::{Advance, Interaction};
 pub use builder::{
     DEFAULT_GROUP, ENVIRONMENT_GROUP, Emission, MaterialId, SceneBuilder, SceneError,
 };
 pub use coverage::Chances;
+pub use edge::{Edge, Transmittance};
 pub use nesting::Volume;
 pub use object::ObjectId;
-pub use passage::{Advance, Edge, Interaction, Transmittance};
+
 pub use space::RenderSpace;
 pub(crate) use visibility::ShadowRays;
 

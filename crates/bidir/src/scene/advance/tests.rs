@@ -1,13 +1,15 @@
 //! Collisions are as likely as weights take them to be, and as closed forms say.
 
 use super::*;
-use crate::math::Affine3A;
-use crate::medium::{Coefficients, Grid as Cells, HenyeyGreenstein};
+use crate::math::{Affine3A, Vec3};
+use crate::medium::{Coefficients, Grid as Cells, HenyeyGreenstein, Medium};
 use crate::sampler::SampleStream;
-use crate::scene::SceneBuilder;
+use crate::scene::passage::Crossing;
+use crate::scene::{Edge, SceneBuilder};
 use crate::shape::{Orientation, Shape, Sphere};
 use crate::spectrum::Rgb;
 use crate::testing::{Battery, Domain, Grid, check_close, samples};
+use accel::Stop;
 use std::sync::atomic::AtomicBool;
 
 /// How far collisions are counted, from `START` along +z. Unit: m.
