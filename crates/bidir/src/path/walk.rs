@@ -125,57 +125,39 @@ impl Walker<'_> {
     fn walk(&self, subpaths: &mut Subpaths, start: &Vertex, step: Step, rays: &mut u64) {
         let first = subpaths.vertices.len();
         subpaths.vertices.push(*start);
-        let vertices = &mut subpaths.vertices;
-        let escape = if self.job.scene.has_media() {
-            self.extend_in_media(vertices, first, step, rays)
-        } else {
-            self.extend(vertices, first, step, rays, Self::advance)
-        };
+        let escape = self.extend(&mut subpaths.vertices, first, step, rays);
         subpaths.end(escape);
     }
 
-    #[inline(never)]
-    fn extend_in_media(
-        &self,
-        vertices: &mut Vec<Vertex>,
-        first: usize,
-        step: Step,
-        rays: &mut u64,
-    ) -> Option<Escape> {
-        self.extend(vertices, first, step, rays, Self::advance_in_media)
-    }
-
     /// Extends the walk, `vertices` from `first` on, until it escapes, ends by roulette, or is full.
-    #[inline(always)]
     fn extend(
         &self,
         vertices: &mut Vec<Vertex>,
         first: usize,
         mut step: Step,
         rays: &mut u64,
-        advance: impl Fn(&Self, &mut Vec<Vertex>, &Step, usize) -> Option<End>,
     ) -> Option<Escape> {
         let start = magnitude(step.beta);
-        let mut count = 1;
-        while count < self.max_vertices {
+        for count in 1..self.max_vertices {
             *rays += 1;
-            if let Some(End(escape)) = advance(self, vertices, &step, count) {
+            if let Some(End(escape)) = self.advance(vertices, &step, count) {
                 return escape;
             }
-            count += 1;
-            if count == self.max_vertices {
-                return None;
+            if count + 1 < self.max_vertices {
+                step = self.scatter(&mut vertices[first..], start)?;
             }
-            step = self.scatter(&mut vertices[first..], start)?;
         }
         None
     }
 
-    /// Adds vertex number `index`, the surface that `step` leads to.
+    /// Adds vertex number `index`, the surface or the point in a medium that `step` leads to.
     #[inline(always)]
     fn advance(&self, vertices: &mut Vec<Vertex>, step: &Step, index: usize) -> Option<End> {
-        let chances = Chances::new(self.stream, index).until(self.job.stop);
         let scene = self.job.scene;
+        if scene.has_media() {
+            return self.advance_in_media(vertices, step, index);
+        }
+        let chances = Chances::new(self.stream, index).until(self.job.stop);
         let Some(hit) = scene.intersect(step.origin, step.direction, chances) else {
             let from = vertices[vertices.len() - 1].locus;
             return Some(End(self.escape(&from, step, None)));
@@ -184,7 +166,7 @@ impl Walker<'_> {
         reach(vertices, step, None)
     }
 
-    /// The same where `step` may lead to a point in a medium.
+    /// The same where media are in the scene.
     #[inline(never)]
     fn advance_in_media(
         &self,
@@ -193,10 +175,10 @@ impl Walker<'_> {
         index: usize,
     ) -> Option<End> {
         let from = vertices[vertices.len() - 1].locus;
-        let ray = accel::Ray::new(step.origin, step.direction);
-        let medium = from.medium_toward(step.direction);
         let chances = Chances::new(self.stream, index).until(self.job.stop);
         let (scene, lanes) = (self.job.scene, self.job.lanes);
+        let ray = accel::Ray::new(step.origin, step.direction);
+        let medium = from.medium_toward(step.direction);
         let Advance {
             interaction,
             transmittance,
@@ -283,7 +265,7 @@ impl Walker<'_> {
 
 /// Gives the last of `vertices`, to which `step` led through the media of `edge` if there are any, its densities. The
 /// walk ends where it has none: by rounding it is the vertex before it, in a corner, or nothing arrives.
-#[inline(always)] // Into both kinds of walks.
+#[inline(always)]
 fn reach(vertices: &mut Vec<Vertex>, step: &Step, edge: Option<&Edge>) -> Option<End> {
     let [.., from, vertex] = &mut vertices[..] else {
         return Some(End(None));
