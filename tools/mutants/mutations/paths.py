@@ -259,7 +259,7 @@ PATHS = [
     ),
     (
         "several light points, each of which counts as the only one",
-        "crates/bidir/src/integrator/stages/next_event.rs",
+        "crates/bidir/src/integrator/stages/light_ends.rs",
         "drawn.coverage / (drawn.pdf * f32::from(count))",
         "drawn.coverage / drawn.pdf",
         analytic("a_closed_sphere"),
@@ -421,7 +421,7 @@ PATHS = [
     ),
     (
         "a cut-out lamp that next-event estimation takes for whole",
-        "crates/bidir/src/integrator/stages/next_event.rs",
+        "crates/bidir/src/integrator/stages/light_ends.rs",
         "Spectrum::splat(drawn.coverage / (drawn.pdf * f32::from(count)))",
         "Spectrum::splat(1.0 / (drawn.pdf * f32::from(count)))",
         coverage("lamps_cut_out"),
