@@ -116,8 +116,8 @@ PATHS = [
     (
         "running sums without the next-event density",
         "crates/bidir/src/path/running.rs",
-        "1 => share(start.next_event_over_walk(a)),",
-        "1 => share(1.0 / a),",
+        "1 => h(start.next_event_over_walk(a)),",
+        "1 => h(1.0 / a),",
         RUNNING,
     ),
     (
@@ -351,8 +351,8 @@ PATHS = [
     (
         "shared light subpaths counted as one in sums",
         "crates/bidir/src/path/running.rs",
-        "is_there * share(job.count_of(technique, [before.cell, z.cell]))",
-        "is_there * share(job.count_of(technique, [before.cell, z.cell]).signum())",
+        "is_there * h(job.count_of(technique, [before.cell, z.cell]))",
+        "is_there * h(job.count_of(technique, [before.cell, z.cell]).signum())",
         RUNNING,
     ),
     (

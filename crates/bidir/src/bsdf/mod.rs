@@ -182,7 +182,7 @@ impl Bsdf {
     /// Returns f, densities and albedo for two directions, without Dirac lobes. `mode` is that of a walk that knows
     /// `wo`.
     ///
-    /// Paths call [`Turn`](crate::path::Turn) instead, which corrects for shading normals.
+    /// Paths call [`ScatteringEvent`](crate::path::ScatteringEvent) instead, which corrects for shading normals.
     #[inline]
     pub fn eval(&self, wo: Vec3, wi: Vec3, mode: TransportMode) -> BsdfValue {
         match self {

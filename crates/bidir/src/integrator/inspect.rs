@@ -1,6 +1,6 @@
 //! A look into a batch, for replays and for training.
 
-use super::stages::{ShadowPassage, lens_vertex};
+use super::stages::{TracedShadow, lens_vertex};
 use super::{Batch, Candidates, Entry, Fate, Link};
 use crate::contribution::is_summable;
 use crate::path::{
@@ -55,13 +55,13 @@ impl Batch {
         let (number, term) = (entry.sample as usize, &entry.contribution.term);
         let (s, t) = (usize::from(term.strategy.s), usize::from(term.strategy.t));
         let walked = &self.walked;
-        let passage = entry
+        let shadow = entry
             .link
             .ends()
-            .map(|ends| ShadowPassage::between(job, || *ends));
+            .map(|ends| TracedShadow::between(job, || *ends));
         let mut gather_connection = |[light, camera]: [&[Vertex]; 2]| {
             let mut path = JoinedPath::new(light, camera);
-            if let Some(edge) = passage.as_ref().and_then(ShadowPassage::edge) {
+            if let Some(edge) = shadow.as_ref().and_then(TracedShadow::edge) {
                 path.pass(edge);
             }
             densities.gather_connection(job, &path);

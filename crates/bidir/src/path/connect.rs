@@ -3,7 +3,7 @@
 //!
 //! No ray is traced here: visibility is the caller's to ask for.
 
-use super::{Job, LightChoiceKind, PathDensities, Segment, Turn, Vertex};
+use super::{Job, LightChoiceKind, PathDensities, ScatteringEvent, Segment, Vertex};
 use crate::bsdf::TransportMode;
 use crate::light::{ChosenEmitter, LightChoice, LightPoint, LightSample, Part};
 use crate::math::Vec2;
@@ -21,7 +21,7 @@ pub struct JoinedPath<'a> {
     /// From the last light vertex, z, to the last camera vertex, y.
     pub segment: Segment,
     /// z and y, each between the vertex before it and the other.
-    turns: [Turn<'a>; 2],
+    events: [ScatteringEvent<'a>; 2],
 }
 
 impl<'a> JoinedPath<'a> {
@@ -40,9 +40,9 @@ impl<'a> JoinedPath<'a> {
             light,
             camera,
             segment,
-            turns: [
-                z.turn(z.wo, segment.w, TransportMode::Importance),
-                y.turn(y.wo, -segment.w, TransportMode::Radiance),
+            events: [
+                z.event(z.wo, segment.w, TransportMode::Importance),
+                y.event(y.wo, -segment.w, TransportMode::Radiance),
             ],
         }
     }
@@ -67,8 +67,8 @@ impl<'a> JoinedPath<'a> {
 
     /// Returns z and y, each between the vertex before it and the other.
     #[inline]
-    pub(super) fn turns(&self) -> &[Turn<'a>; 2] {
-        &self.turns
+    pub(super) fn events(&self) -> &[ScatteringEvent<'a>; 2] {
+        &self.events
     }
 
     /// Returns x_i.
@@ -98,7 +98,7 @@ impl<'a> JoinedPath<'a> {
         if geometry_term == 0.0 || z.is_delta() || y.is_delta() {
             return Spectrum::ZERO;
         }
-        let [at_z, at_y] = self.turns();
+        let [at_z, at_y] = self.events();
         let at_light = at_z.scatter(job);
         if at_light.is_black() {
             return Spectrum::ZERO;

@@ -118,7 +118,7 @@ impl JoinedPath<'_> {
     pub(super) fn reversed(&self, job: &Job<'_>) -> Reversed {
         let (s, t) = (self.light.len(), self.camera.len());
         let (z, y, segment) = (self.z(), self.y(), &self.segment);
-        let [at_z, at_y] = self.turns();
+        let [at_z, at_y] = self.events();
         let a_s = at_z.pdf(job) * segment.to_b * factor(job, s, || z.albedo_fwd);
         let mut before = [0.0; 2];
         if s > 1 {

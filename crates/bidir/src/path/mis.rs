@@ -29,7 +29,7 @@ named!(MisHeuristic {
 impl MisHeuristic {
     /// Returns the share of a strategy with n_j p_j = `density`, relative to another.
     #[inline]
-    pub(super) fn share(self, density: f64) -> f64 {
+    pub(super) fn apply(self, density: f64) -> f64 {
         match self {
             Self::Balance => density,
             Self::Power => density * density,
@@ -46,7 +46,7 @@ impl MisHeuristic {
     #[inline]
     pub(super) fn share_of_image(self, image: f64, hit: f64) -> f64 {
         let cutoff = match self {
-            Self::Balance | Self::Power => self.share(2.0) * hit,
+            Self::Balance | Self::Power => self.apply(2.0) * hit,
             Self::Uniform => 0.0,
         };
         if image > cutoff { image } else { LEFT * image }
@@ -56,7 +56,7 @@ impl MisHeuristic {
     /// measure, is all that can make the path too: share(p) / (share(p) + share(q)).
     #[inline]
     pub fn weight_of_two(self, p: f32, q: f32) -> f32 {
-        1.0 / (1.0 + self.share(f64::from(q / p)) as f32)
+        1.0 / (1.0 + self.apply(f64::from(q / p)) as f32)
     }
 }
 
@@ -71,10 +71,10 @@ pub fn mis_weight(
     heuristic: MisHeuristic,
     s: usize,
 ) -> f64 {
-    let own = heuristic.share(counts(s));
+    let own = heuristic.apply(counts(s));
     let mut others = 0.0;
     for_each_other(path, s, |j, ratio| {
-        others += heuristic.share(counts(j) * ratio);
+        others += heuristic.apply(counts(j) * ratio);
     });
     let [own, others] = match (path.vertices.len(), s) {
         (2, 0) => [own, heuristic.share_of_image(others, own)],
@@ -165,7 +165,7 @@ mod tests {
             heuristic in prop::sample::select(MisHeuristic::NAMES.map(|(_, h)| h).to_vec()),
         ) {
             let n = path.vertices.len();
-            let share = |j: usize| heuristic.share(counts[j] * density(&path, j));
+            let share = |j: usize| heuristic.apply(counts[j] * density(&path, j));
             // Light seen directly: an image of twice as many samples as hits or fewer is cut off.
             let few = heuristic != MisHeuristic::Uniform
                 && counts[1] * density(&path, 1) <= 2.0 * counts[0] * density(&path, 0);

@@ -45,7 +45,7 @@ pub use light_choice::{LightChoiceKind, LightPointChoice};
 pub use mis::{MisHeuristic, mis_weight};
 pub use roulette::PathRoulette;
 pub use running::{EndSums, PathSums, RunningSums, Weights};
-pub use scatter::Turn;
+pub use scatter::ScatteringEvent;
 pub use segment::Segment;
 pub(crate) use shares::{ConnectionPart, Shares};
 pub use subpaths::{Escape, Subpath, Subpaths};

@@ -1,7 +1,7 @@
 //! The weight of a strategy from sums that are carried along both subpaths: its cost does not
 //! depend on the length of the path. In the spirit of \[Antwerpen11\] and \[Georgiev12\].
 //!
-//! h = `share` is multiplicative, h(x y) = h(x) h(y). So, with strategies counted by light vertices,
+//! h, the heuristic, is multiplicative: h(x y) = h(x) h(y). So, with strategies counted by light vertices,
 //!
 //! L_m = Σ_{j ≤ m} h(n_j p_j / p_m) = h(n_m) + h(p_{m-1} / p_m) · L_{m-1},
 //!
@@ -75,7 +75,7 @@ impl EndSums {
     #[inline]
     fn at_start(job: &Job<'_>, start: &PathStart) -> Self {
         Self {
-            inverse_pdf: finite(job.settings.mis.share(start.hit_over_next_event(1.0))),
+            inverse_pdf: finite(job.settings.mis.apply(start.hit_over_next_event(1.0))),
             links: [start.is_hit; 2],
             through_previous: 0.0,
             total: start.is_hit,
@@ -119,18 +119,18 @@ impl RunningSums {
     }
 
     fn add_light(&mut self, job: &Job<'_>, walk: &Subpath<'_>, start: &PathStart) {
-        let share = |ratio| job.settings.mis.share(ratio);
+        let h = |ratio| job.settings.mis.apply(ratio);
         let links = |s: usize, [before, z]: [&Vertex; 2]| {
             let is_there = if s == 1 { start.is_drawn } else { 1.0 };
             // The rest of the path, one vertex or more, and z.
             [2, 3].map(|t| {
                 let technique = Technique::of(job.settings.light_point, s, t);
-                is_there * share(job.count_of(technique, [before.cell, z.cell]))
+                is_there * h(job.count_of(technique, [before.cell, z.cell]))
             })
         };
         let inverse_pdf = |i: usize, a: f64| match i {
-            1 => share(start.next_event_over_walk(a)),
-            _ => share(1.0 / a),
+            1 => h(start.next_event_over_walk(a)),
+            _ => h(1.0 / a),
         };
         let first = EndSums::at_start(job, start);
         let mode = TransportMode::Importance;
@@ -138,15 +138,15 @@ impl RunningSums {
     }
 
     fn add_camera(&mut self, job: &Job<'_>, walk: &Subpath<'_>, lens: &Vertex) {
-        let share = |ratio| job.settings.mis.share(ratio);
+        let h = |ratio| job.settings.mis.apply(ratio);
         let links = |t: usize, [before, y]: [&Vertex; 2]| {
             let technique = match t {
                 1 => Technique::LightImage,
                 _ => Technique::Connection(Depth::of(t)),
             };
-            [share(job.count_of(technique, [y.cell, before.cell])); 2]
+            [h(job.count_of(technique, [y.cell, before.cell])); 2]
         };
-        let inverse_pdf = |_: usize, b: f64| share(1.0 / b);
+        let inverse_pdf = |_: usize, b: f64| h(1.0 / b);
         let first = EndSums {
             inverse_pdf: finite(inverse_pdf(0, lens.pdf_fwd.into())),
             ..EndSums::NONE
@@ -166,7 +166,7 @@ impl RunningSums {
         links: impl Fn(usize, [&Vertex; 2]) -> [f64; 2],
         inverse_pdf: impl Fn(usize, f64) -> f64,
     ) {
-        let share = |ratio| job.settings.mis.share(ratio);
+        let h = |ratio| job.settings.mis.apply(ratio);
         let (mut last, mut back) = (first, 0.0);
         for (i, [drawn, reverse]) in walked_densities(job, walk.vertices, FAR).enumerate() {
             let vertex = &walk.vertices[i];
@@ -180,7 +180,7 @@ impl RunningSums {
                     inverse_pdf: finite(inverse_pdf(i, drawn.into())),
                     links,
                     through_previous,
-                    total: chain(walked_on, share(back), through_previous),
+                    total: chain(walked_on, h(back), through_previous),
                 };
             }
             self.ends.push(last);
@@ -262,14 +262,14 @@ impl EndSums {
     /// vertices.
     fn hit(&self, job: &Job<'_>, path: &HitPath<'_>) -> f64 {
         let (x0, y, t) = (&path.x0, path.y(), path.camera.len());
-        let share = |ratio| job.settings.mis.share(ratio);
+        let h = |ratio| job.settings.mis.apply(ratio);
         let start = PathStart::new(job, x0, next_event_density(job, x0, y));
-        let count = share(job.count(1, t, [x0.cell, y.cell]));
+        let count = h(job.count(1, t, [x0.cell, y.cell]));
         let links = count * start.is_drawn * possible(!y.went_by_delta);
         let a1 = f64::from(path.light_pdf(job));
-        let up = share(start.walk_over_next_event() * a1) * self.inverse_pdf;
+        let up = h(start.walk_over_next_event() * a1) * self.inverse_pdf;
         let from_drawn = chain(links, up, self.total);
-        let up = share(start.next_event_over_hit(path.camera_pdf(job).into()));
+        let up = h(start.next_event_over_hit(path.camera_pdf(job).into()));
         let mut others = chain(0.0, up, from_drawn);
         if t == 1 {
             others = job.settings.mis.share_of_image(others, 1.0);
@@ -282,24 +282,24 @@ impl PathSums<'_> {
     /// Returns the weight for s ≥ 1, by the strategies with fewer light vertices, and those with fewer camera vertices.
     fn connection(&self, job: &Job<'_>, path: &JoinedPath<'_>) -> f64 {
         let (s, t) = (path.light.len(), path.camera.len());
-        let share = |ratio| job.settings.mis.share(ratio);
+        let h = |ratio| job.settings.mis.apply(ratio);
         let Reversed { z, y, before } = path.reversed(job);
         let [z, y] = [z, y].map(f64::from);
-        let before = before.map(|density| share(density.into()));
+        let before = before.map(|density| h(density.into()));
         let depth = Depth::of(t + 1);
         let (fewer_light, y) = if s == 1 {
             let next_event = || next_event_density(job, path.z(), path.y());
             let next_event = self.next_event.unwrap_or_else(next_event);
             let start = PathStart::new(job, path.z(), next_event);
             let sums = EndSums::at_start(job, &start);
-            let fewer_light = sums.shares(depth, share(z), 0.0);
+            let fewer_light = sums.shares(depth, h(z), 0.0);
             (fewer_light, start.walk_over_next_event() * y)
         } else {
-            (self.light.shares(depth, share(z), before[0]), y)
+            (self.light.shares(depth, h(z), before[0]), y)
         };
         // Links of camera walks are the same at any depth.
-        let fewer_camera = self.camera.shares(depth, share(y), before[1]);
-        let mut own = share(job.count(s, t, [path.z().cell, path.y().cell]));
+        let fewer_camera = self.camera.shares(depth, h(y), before[1]);
+        let mut own = h(job.count(s, t, [path.z().cell, path.y().cell]));
         if s + t == 2 {
             own = job.settings.mis.share_of_image(own, fewer_light);
         }

@@ -32,7 +32,7 @@ pub(super) struct Scattered {
 /// A walk of `mode` came from `wo` and goes on along `wi`. All questions share the local coordinates of both, and the
 /// value of the BSDF or the medium, which is evaluated for the first of them that needs it.
 #[derive(Clone, Debug)]
-pub struct Turn<'a> {
+pub struct ScatteringEvent<'a> {
     vertex: &'a Vertex,
     mode: TransportMode,
     wo: Side,
@@ -93,7 +93,7 @@ impl Side {
     }
 }
 
-impl<'a> Turn<'a> {
+impl<'a> ScatteringEvent<'a> {
     /// Returns the vertex.
     #[inline]
     pub fn vertex(&self) -> &'a Vertex {
@@ -211,7 +211,7 @@ impl Vertex {
         }
     }
 
-    /// Returns the density of `w` in walks that begin here, in the measure of [`Turn::pdf`]; zero where none does.
+    /// Returns the density of `w` in walks that begin here, in the measure of [`ScatteringEvent::pdf`]; zero where none does.
     #[inline]
     pub(super) fn pdf_leaving(&self, job: &Job<'_>, w: Vec3) -> f32 {
         let scene = job.scene;
@@ -237,12 +237,12 @@ impl Vertex {
 
     /// Returns the vertex of a walk of `mode` that came along -`wo` and goes on along `wi`.
     #[inline]
-    pub fn turn(&self, wo: Vec3, wi: Vec3, mode: TransportMode) -> Turn<'_> {
+    pub fn event(&self, wo: Vec3, wi: Vec3, mode: TransportMode) -> ScatteringEvent<'_> {
         let side = |w| match self.scattering {
             Scattering::Surface(_) => Side::new(self, w),
             Scattering::Medium(_) | Scattering::Camera | Scattering::Light => Side::in_space(w),
         };
-        Turn {
+        ScatteringEvent {
             vertex: self,
             mode,
             wo: side(wo),

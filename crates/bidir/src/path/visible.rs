@@ -163,7 +163,7 @@ impl Vertex {
         })
     }
 
-    /// Value and densities between two directions of a walk, as [`Turn`](super::Turn) has them, where layers are not
+    /// Value and densities between two directions of a walk, as [`ScatteringEvent`](super::ScatteringEvent) has them, where layers are not
     /// seen by the frame of the vertex: the camera's walk draws by the frames that it sees, the light's by those that
     /// they are.
     #[cold]

@@ -49,10 +49,10 @@ fn rewalk(job: &Job<'_>, points: &[Vertex], mode: TransportMode) -> Option<Vec<V
             let edge = edge(job, &before, &vertex)?;
             segment.pass(&edge);
             vertex.wo = -segment.w;
-            vertex.pdf_fwd = before.turn(before.wo, segment.w, mode).pdf(job) * segment.to_b;
+            vertex.pdf_fwd = before.event(before.wo, segment.w, mode).pdf(job) * segment.to_b;
             vertex.to_previous = segment.to_a;
             let roulette = survival(job, i, &before);
-            let scatter = before.turn(before.wo, -vertex.wo, mode).scatter(job);
+            let scatter = before.event(before.wo, -vertex.wo, mode).scatter(job);
             let step = segment.geometry_term / (vertex.pdf_fwd * roulette);
             // The first camera density counts samples per pixel, and so does importance.
             vertex.beta = before.beta * scatter * edge.transmittance * step;
@@ -65,7 +65,7 @@ fn rewalk(job: &Job<'_>, points: &[Vertex], mode: TransportMode) -> Option<Vec<V
         if let Some(after) = walk.get(i + 2).copied() {
             let (wi, mut back) = (next.segment_to(&after).w, next.segment_to(&vertex));
             back.pass(&edge(job, &next, &vertex)?);
-            walk[i].pdf_rev = next.turn(wi, back.w, mode.reversed()).pdf(job) * back.to_b;
+            walk[i].pdf_rev = next.event(wi, back.w, mode.reversed()).pdf(job) * back.to_b;
             walk[i + 1].albedo_rev = next.albedo(wi).max_lane();
         }
     }

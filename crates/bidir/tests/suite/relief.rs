@@ -226,8 +226,8 @@ fn above(material: Material, wo: Vec3, value: impl Fn(&Vertex, &Job<'_>, Vec3) -
 /// The light that a point under a slant sends along `wo` in a furnace: the mean weight of walks.
 fn furnace(material: Material, wo: Vec3) -> f32 {
     above(material, wo, |seen, job, wi| {
-        let turn = seen.turn(seen.wo, wi, TransportMode::Radiance);
-        turn.scatter(job)[0] * wi.y
+        let event = seen.event(seen.wo, wi, TransportMode::Radiance);
+        event.scatter(job)[0] * wi.y
     })
 }
 
@@ -239,8 +239,8 @@ fn densities_of_light_walks_under_a_slant_integrate_to_one() {
     for (x, y) in [(0.0, 0.0), (0.4, 0.4), (0.0, -0.6), (-0.9, 0.45)] {
         let relief = Relief::NormalMap(common::slant(x, y));
         let drawn = above(diffuse([0.5; 3]).embossed(relief), wo, |seen, job, wi| {
-            let turn = seen.turn(seen.wo, wi, TransportMode::Importance);
-            turn.pdf(job)
+            let event = seen.event(seen.wo, wi, TransportMode::Importance);
+            event.pdf(job)
         });
         assert!((drawn - 1.0).abs() < 2e-3, "{x}, {y}: {drawn}");
     }

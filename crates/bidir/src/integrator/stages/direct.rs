@@ -8,13 +8,15 @@
 
 use super::super::journal::enter;
 use super::super::{Entry, Link, Sample, Walked, Worker};
-use super::media::ShadowPassage;
+use super::media::TracedShadow;
 use super::trace::trace;
 use crate::bsdf::TransportMode;
 use crate::contribution::Term;
 use crate::light::LightSample;
 use crate::locus::Locus;
-use crate::path::{Arrival, Job, Segment, Turn, Vertex, next_event_pdf, sample_next_event};
+use crate::path::{
+    Arrival, Job, ScatteringEvent, Segment, Vertex, next_event_pdf, sample_next_event,
+};
 use crate::sampler::{Dimension, Purpose};
 use crate::spectrum::Spectrum;
 use crate::stats::Stage;
@@ -42,10 +44,10 @@ pub(in super::super) fn direct(
             }
             let connects = i + 2 <= job.settings.max_vertices() && !vertex.is_delta();
             if connects && let Some(found) = next_event(job, sample, vertex, i) {
-                let (term, ends, passage) = found;
+                let (term, ends, shadow) = found;
                 let link = Link::Connection(ends);
                 let entry = enter(entries, stats, (number, sample), term, link);
-                passage.settle(entry, stats);
+                shadow.apply(entry, stats);
             }
         }
         let escape = walk.escape.into_iter();
@@ -89,7 +91,7 @@ fn next_event(
     sample: &Sample,
     vertex: &Vertex,
     i: usize,
-) -> Option<(Term, [Locus; 2], ShadowPassage)> {
+) -> Option<(Term, [Locus; 2], TracedShadow)> {
     let at = |purpose| Dimension::at(i, purpose);
     let u_light = || sample.points.get_1d(at(Purpose::NextEventLight));
     let u = sample.points.get_2d(at(Purpose::NextEventPosition));
@@ -100,19 +102,19 @@ fn next_event(
         ends[0].media = job.scene.light_media(light);
     }
     let mut segment = Segment::between(&ends[0], &ends[1]);
-    let turn = vertex.turn(vertex.wo, -segment.w, TransportMode::Radiance);
-    let contribution = arriving(job, &turn, light, &x0, &segment);
+    let event = vertex.event(vertex.wo, -segment.w, TransportMode::Radiance);
+    let contribution = arriving(job, &event, light, &x0, &segment);
     if contribution == Spectrum::ZERO {
         return None;
     }
-    let passage = ShadowPassage::between(job, || ends);
-    if let Some(edge) = passage.edge() {
+    let shadow = TracedShadow::between(job, || ends);
+    if let Some(edge) = shadow.edge() {
         segment.pass(edge);
     }
     let p = if job.scene.light(light).is_delta() {
         0.0
     } else {
-        turn.pdf(job) * segment.to_a
+        event.pdf(job) * segment.to_a
     };
     let term = Term {
         strategy: Strategy::new(1, i + 1),
@@ -120,15 +122,15 @@ fn next_event(
         contribution,
         weight: job.settings.mis.weight_of_two(x0.pdf, p),
     };
-    Some((term, ends, passage))
+    Some((term, ends, shadow))
 }
 
 /// Returns L_e · G · scatter · β / q: the light of the light point x_0, drawn with density q, that arrives by the
-/// vertex of `turn`, before weight and visibility.
+/// vertex of `event`, before weight and visibility.
 #[inline]
 fn arriving(
     job: &Job<'_>,
-    turn: &Turn<'_>,
+    event: &ScatteringEvent<'_>,
     light: u32,
     x0: &LightSample,
     segment: &Segment,
@@ -141,5 +143,5 @@ fn arriving(
     if emitted.is_black() {
         return Spectrum::ZERO;
     }
-    emitted * turn.scatter(job) * turn.vertex().beta * factor
+    emitted * event.scatter(job) * event.vertex().beta * factor
 }

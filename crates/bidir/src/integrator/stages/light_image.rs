@@ -3,7 +3,7 @@
 
 use super::super::journal::enter;
 use super::super::{Entry, Link, Sample, Walked, Worker};
-use super::media::ShadowPassage;
+use super::media::TracedShadow;
 use super::trace::trace;
 use crate::contribution::Term;
 use crate::film::SplatPlace;
@@ -57,10 +57,10 @@ pub(in super::super) fn light_image(
                 Weighting::Alone => None,
                 Weighting::Combined => Some((&walked.light.sums, walk.first + s - 1)),
             };
-            if let Some((term, passage)) = image.weighted_term(job, sums, weights) {
+            if let Some((term, shadow)) = image.weighted_term(job, sums, weights) {
                 let link = image.link(job, sample);
                 let entry = enter(splats, stats, (number, sample), term, link);
-                passage.settle(entry, stats);
+                shadow.apply(entry, stats);
             }
         }
     }
@@ -119,7 +119,7 @@ impl<'a> LightImage<'a> {
         job: &Job<'_>,
         sums: Option<(&RunningSums, usize)>,
         weights: &mut Weights,
-    ) -> Option<(Term, ShadowPassage)> {
+    ) -> Option<(Term, TracedShadow)> {
         let Some((sums, z)) = sums else {
             return self.of_any(job, |_| 1.0);
         };
@@ -131,7 +131,7 @@ impl<'a> LightImage<'a> {
             let (contribution, weight) = found?;
             let term = self.term(job, contribution, weight)?;
             // Diffuse ends are those whose rays go through no medium.
-            return Some((term, ShadowPassage::Clear));
+            return Some((term, TracedShadow::Clear));
         }
         let sums = PathSums {
             light,
@@ -146,18 +146,18 @@ impl<'a> LightImage<'a> {
         &self,
         job: &Job<'_>,
         weight: impl FnOnce(&JoinedPath<'_>) -> f32,
-    ) -> Option<(Term, ShadowPassage)> {
+    ) -> Option<(Term, TracedShadow)> {
         let lens = std::slice::from_ref(self.lens);
         let mut path = JoinedPath::along(self.light, lens, self.segment);
         let mut term = self.term(job, path.contribution(job), 0.0)?;
-        let passage = ShadowPassage::between(job, || self.ends(job));
-        if let Some(edge) = passage.edge() {
+        let shadow = TracedShadow::between(job, || self.ends(job));
+        if let Some(edge) = shadow.edge() {
             path.pass(edge);
         }
-        if !passage.is_blocked() {
+        if !shadow.is_blocked() {
             term.weight = weight(&path);
         }
-        Some((term, passage))
+        Some((term, shadow))
     }
 
     /// Returns the term with contribution `c`, scaled to the number of light subpaths in a pass. None: it is zero.

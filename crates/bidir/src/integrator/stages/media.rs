@@ -12,15 +12,15 @@ use crate::scene::Edge;
 use crate::stats::Stats;
 
 /// A shadow ray, traced where it may go through media.
-pub(in super::super) enum ShadowPassage {
+pub(in super::super) enum TracedShadow {
     /// Not traced: no media are there.
     Clear,
     /// The media that it went through. None: something opaque is there.
     Traced(Option<Edge>),
 }
 
-impl ShadowPassage {
-    /// Returns the passage between two ends.
+impl TracedShadow {
+    /// Traces the shadow ray between two ends, if it may go through media.
     #[inline]
     pub(in super::super) fn between(job: &Job<'_>, ends: impl FnOnce() -> [Locus; 2]) -> Self {
         let scene = job.scene;
@@ -52,7 +52,7 @@ impl ShadowPassage {
     /// Notes in `entry`, to which it belongs, that it arrives, and multiplies its contribution by T; or that it does
     /// not.
     #[inline]
-    pub(super) fn settle(&self, entry: &mut Entry, stats: &mut Stats) {
+    pub(super) fn apply(&self, entry: &mut Entry, stats: &mut Stats) {
         let Self::Traced(edge) = self else { return };
         if entry.fate != Fate::NotTraced {
             return;
@@ -68,7 +68,7 @@ impl ShadowPassage {
 }
 
 /// Traces the shadow rays of the chosen candidates that may go through media, one by one, and weighs their terms again.
-pub(super) fn settle_chosen(
+pub(super) fn trace_chosen_through_media(
     job: &Job<'_>,
     walked: &Walked,
     candidates: &Candidates,
@@ -78,12 +78,12 @@ pub(super) fn settle_chosen(
     let Worker { weights, stats, .. } = worker;
     let first = entries.len() - candidates.chosen.len();
     for (entry, chosen) in entries[first..].iter_mut().zip(&candidates.chosen) {
-        let passage = match entry.shadow_ray() {
-            Some(ends) => ShadowPassage::between(job, || *ends),
-            None => ShadowPassage::Clear,
+        let shadow = match entry.shadow_ray() {
+            Some(ends) => TracedShadow::between(job, || *ends),
+            None => TracedShadow::Clear,
         };
-        passage.settle(entry, stats);
-        let Some(edge) = passage.edge().filter(|edge| !edge.is_guessed) else {
+        shadow.apply(entry, stats);
+        let Some(edge) = shadow.edge().filter(|edge| !edge.is_guessed) else {
             continue;
         };
         let candidate = &candidates.offered[chosen.candidate as usize];

@@ -16,7 +16,7 @@ pub(super) use direct::direct;
 pub(super) use hits::hits;
 pub(super) use light_ends::{draw_cached, next_events, own_light};
 pub(super) use light_image::{Weighting, lens_vertex, light_image};
-pub(super) use media::ShadowPassage;
+pub(super) use media::TracedShadow;
 pub(super) use trace::{select, shadow_rays};
 pub(crate) use walk::camera_ray;
 pub(super) use walk::{sum_camera, sum_light, walk_camera, walk_light};

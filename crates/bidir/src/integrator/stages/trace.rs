@@ -1,7 +1,7 @@
 //! Choosing connections, and the shadow rays of those that were chosen.
 
 use super::super::{Candidates, Entry, Fate, Link, Walked, Worker};
-use super::media::settle_chosen;
+use super::media::trace_chosen_through_media;
 use crate::contribution::Contribution;
 use crate::path::Job;
 use crate::scene::ShadowRays;
@@ -61,7 +61,7 @@ pub(in super::super) fn shadow_rays(
     worker: &mut Worker,
 ) {
     if job.scene.has_media() && !job.scene.foresees_media() {
-        settle_chosen(job, walked, candidates, entries, worker);
+        trace_chosen_through_media(job, walked, candidates, entries, worker);
     }
     trace(job, entries, &mut worker.shadow_rays, &mut worker.stats);
     worker.stopwatch.end(Stage::Shadow);

@@ -3,7 +3,7 @@
 //!
 //! The frame is a function of the point and of the camera, so that the integrand stays one function of
 //! the path. Scattering handles the directions on which the two normals disagree
-//! ([`Turn::scatter`](crate::path::Turn::scatter)).
+//! ([`ScatteringEvent::scatter`](crate::path::ScatteringEvent::scatter)).
 
 use super::{Material, Mixture, PrincipledMaterial};
 use crate::bsdf::Wall;
