@@ -166,7 +166,8 @@ impl LightCache {
     pub(super) fn draw_all(
         &self,
         row: Option<&ProposalRow>,
-        (count, u): (u16, u32),
+        count: u16,
+        u: u32,
         mut found: impl FnMut(usize, &Place, f32),
     ) {
         let of_draw = 1.0 / (self.subpaths as f32 * f32::from(count));

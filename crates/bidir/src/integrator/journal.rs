@@ -113,7 +113,8 @@ impl Entry {
 pub(super) fn enter<'e>(
     entries: &'e mut Vec<Entry>,
     stats: &mut Stats,
-    (number, sample): (usize, &Sample),
+    number: usize,
+    sample: &Sample,
     term: Term,
     link: Link,
 ) -> &'e mut Entry {

@@ -130,7 +130,10 @@ pub fn sample_next_event(
 ) -> Option<(u32, LightSample)> {
     let scene = job.scene;
     let ChosenEmitter { light, part, prob } = match job.settings.light_choice {
-        LightChoiceKind::Power => scene.light_choice().sample(u_light).map(by_power)?,
+        LightChoiceKind::Power => {
+            let (light, prob) = scene.light_choice().sample(u_light)?;
+            chosen_as_a_whole(light as u32, prob)
+        }
         LightChoiceKind::Tree => {
             let tree = scene.light_tree();
             tree.sample(|| x1.receiver(x1.wo), u_light)?
@@ -152,7 +155,7 @@ pub fn next_event_pdf(job: &Job<'_>, x1: &Vertex, light: u32, at: &LightPoint) -
     let ChosenEmitter { part, prob, .. } = match job.settings.light_choice {
         LightChoiceKind::Power => {
             let prob = scene.light_choice().prob(light as usize);
-            by_power((light as usize, prob))
+            chosen_as_a_whole(light, prob)
         }
         LightChoiceKind::Tree => {
             let receiver = || x1.receiver(at.locus.direction_from(x1.locus.point));
@@ -166,9 +169,9 @@ pub fn next_event_pdf(job: &Job<'_>, x1: &Vertex, light: u32, at: &LightPoint) -
 
 /// Returns a light that was chosen as a whole.
 #[inline]
-fn by_power((light, prob): (usize, f32)) -> ChosenEmitter {
+fn chosen_as_a_whole(light: u32, prob: f32) -> ChosenEmitter {
     ChosenEmitter {
-        light: light as u32,
+        light,
         part: Part::Whole,
         prob,
     }

@@ -142,7 +142,8 @@ impl DiffuseEnd {
         &self,
         job: &Job<'_>,
         t: usize,
-        (x0, e): (&Vertex, f32),
+        x0: &Vertex,
+        e: f32,
         segment: &Segment,
     ) -> Option<(Spectrum, f32)> {
         let cos_s = self.n_s.dot(segment.w);
@@ -171,7 +172,9 @@ impl DiffuseEnd {
     pub fn light_image(
         &self,
         job: &Job<'_>,
-        (s, vertex, sums): (usize, &Vertex, &EndSums),
+        s: usize,
+        vertex: &Vertex,
+        sums: &EndSums,
         lens: &Vertex,
         segment: &Segment,
     ) -> Option<(Spectrum, f32)> {

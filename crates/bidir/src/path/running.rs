@@ -134,7 +134,7 @@ impl RunningSums {
         };
         let first = EndSums::at_start(job, start);
         let mode = TransportMode::Importance;
-        self.add_walk(job, walk, (first, mode), links, inverse_pdf);
+        self.add_walk(job, walk, mode, first, links, inverse_pdf);
     }
 
     fn add_camera(&mut self, job: &Job<'_>, walk: &Subpath<'_>, lens: &Vertex) {
@@ -152,7 +152,7 @@ impl RunningSums {
             ..EndSums::NONE
         };
         let mode = TransportMode::Radiance;
-        self.add_walk(job, walk, (first, mode), links, inverse_pdf);
+        self.add_walk(job, walk, mode, first, links, inverse_pdf);
     }
 
     /// Adds the sums along a walk of `mode`, those of its first vertex given; `links` is the share of the strategy that
@@ -162,7 +162,8 @@ impl RunningSums {
         &mut self,
         job: &Job<'_>,
         walk: &Subpath<'_>,
-        (first, mode): (EndSums, TransportMode),
+        mode: TransportMode,
+        first: EndSums,
         links: impl Fn(usize, [&Vertex; 2]) -> [f64; 2],
         inverse_pdf: impl Fn(usize, f64) -> f64,
     ) {

@@ -1,7 +1,7 @@
 //! The effect of a vertex on light: its value scatter(wo, wi) in the integrand, the directions that walks
 //! draw there, and their densities. Visibility and roulette are no part of it.
 
-use super::visible::{Drawn, on_side};
+use super::visible::on_side;
 use super::{Job, Scattering, Vertex};
 use crate::bsdf::{Bsdf, BsdfValue, TransportMode};
 use crate::light::LightPoint;
@@ -190,7 +190,7 @@ fn phase_value(medium: &MediumScattering, wo: Vec3, wi: Vec3) -> BsdfValue {
 /// Returns the albedo of a surface of these shading frame and geometric normal along `w`, seen from the side of that
 /// normal.
 #[inline]
-pub(super) fn albedo_seen(bsdf: &Bsdf, (frame, n_g): (&Frame, Vec3), w: Vec3) -> Spectrum {
+pub(super) fn albedo_seen(bsdf: &Bsdf, frame: &Frame, n_g: Vec3, w: Vec3) -> Spectrum {
     // A diffuse albedo is the same in all directions, so the local one is not needed.
     if let Bsdf::Diffuse(bsdf) = bsdf {
         return bsdf.reflectance;
@@ -229,7 +229,7 @@ impl Vertex {
     #[inline]
     pub fn albedo(&self, w: Vec3) -> Spectrum {
         match &self.scattering {
-            Scattering::Surface(bsdf) => albedo_seen(bsdf, (&self.frame, self.locus.n_g), w),
+            Scattering::Surface(bsdf) => albedo_seen(bsdf, &self.frame, self.locus.n_g, w),
             Scattering::Medium(medium) => medium.albedo,
             Scattering::Camera | Scattering::Light => Spectrum::ONE,
         }
@@ -296,60 +296,6 @@ impl Vertex {
             pdf_reverse: sample.pdf_reverse,
             albedo_reverse: sample.albedo_reverse,
             is_delta: sample.is_delta,
-        })
-    }
-
-    /// The same where layers are not seen by the frame of the vertex.
-    #[cold]
-    #[inline(never)]
-    fn sample_by_frames(
-        &self,
-        bsdf: &Bsdf,
-        mode: TransportMode,
-        u_lobe: f32,
-        u: Vec2,
-    ) -> Option<Scattered> {
-        let plain = self.frames(bsdf);
-        let frames = match mode {
-            TransportMode::Radiance => self.frames_toward(bsdf, self.wo).unwrap_or(plain),
-            TransportMode::Importance if self.faces(&plain, self.wo) => plain,
-            TransportMode::Importance => return None,
-        };
-        let sample = match frames.sample(bsdf, self.wo, (mode, u_lobe, u))? {
-            Drawn::Finite(wi, _) if mode == TransportMode::Radiance => {
-                return self.finite_scattered(bsdf, wi, mode);
-            }
-            Drawn::Finite(wi, cos) => {
-                let wi = on_side(wi, cos * self.locus.n_g.dot(wi));
-                return self.finite_scattered(bsdf, wi, mode);
-            }
-            Drawn::Dirac(sample) => sample,
-        };
-        // Walks from a light draw no Dirac lobe by a frame that they do not know.
-        (mode == TransportMode::Radiance && self.faces(&frames, sample.wi)).then(|| Scattered {
-            wi: sample.wi,
-            weight: sample.weight,
-            pdf: sample.pdf,
-            pdf_reverse: 0.0,
-            albedo_reverse: self.albedo(sample.wi).max_lane(),
-            is_delta: true,
-        })
-    }
-
-    /// Returns the direction `wi`, drawn from the lobes that are not Dirac, where frames depend on the camera. None:
-    /// nothing is scattered there.
-    #[cold]
-    #[inline(never)]
-    fn finite_scattered(&self, bsdf: &Bsdf, wi: Vec3, mode: TransportMode) -> Option<Scattered> {
-        let value = self.value_by_frames(bsdf, [self.wo, wi], mode);
-        let cos_g = self.locus.n_g.dot(wi).abs();
-        (value.pdf > 0.0 && !value.f.is_black()).then(|| Scattered {
-            wi,
-            weight: value.f * (cos_g / value.pdf),
-            pdf: value.pdf,
-            pdf_reverse: value.pdf_reverse,
-            albedo_reverse: value.albedo_reverse,
-            is_delta: false,
         })
     }
 

@@ -163,7 +163,7 @@ impl Vertex {
             frame,
             wo,
             beta,
-            albedo_fwd: albedo_seen(&bsdf, (&frame, locus.n_g), wo).max_lane(),
+            albedo_fwd: albedo_seen(&bsdf, &frame, locus.n_g, wo).max_lane(),
             light: hit.light.map(|(light, _)| light),
             light_primitive: hit.light.map_or(0, |(_, at)| at.primitive),
             cell: job.guide.cell(surface.point, frame.z),

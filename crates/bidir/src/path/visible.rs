@@ -14,7 +14,7 @@
 //! o, and draw by S (docs/derivations/mis-weights.md#shading-normals).
 
 use super::Vertex;
-use super::scatter::Side;
+use super::scatter::{Scattered, Side};
 use crate::bsdf::{Bsdf, BsdfSample, BsdfValue, Layer, Lobes, TransportMode};
 use crate::math::{Frame, Vec2, Vec3};
 use crate::spectrum::Spectrum;
@@ -82,11 +82,13 @@ impl Frames {
     }
 
     /// Draws a direction for `wo` as `Bsdf::sample` does. None: nothing is scattered.
-    pub(super) fn sample(
+    fn sample(
         &self,
         bsdf: &Bsdf,
         wo: Vec3,
-        (mode, u_lobe, u): (TransportMode, f32, Vec2),
+        mode: TransportMode,
+        u_lobe: f32,
+        u: Vec2,
     ) -> Option<Drawn> {
         let local = self.to_local(wo);
         if let (Bsdf::Principled(layers), Some(coat)) = (bsdf, &self.coat) {
@@ -114,7 +116,7 @@ pub(super) fn on_side(w: Vec3, agreement: f32) -> Vec3 {
 }
 
 /// A direction drawn in world space.
-pub(super) enum Drawn {
+enum Drawn {
     /// From the lobes that are not Dirac, with its cosine in the frame of its layer.
     Finite(Vec3, f32),
     /// From a Dirac lobe, with its weight and coefficients.
@@ -250,83 +252,67 @@ impl Vertex {
             ..value
         }
     }
-}
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::math::sin_cos;
-
-    const LOBES: [Lobes; 4] = [
-        Lobes::Diffuse(0.0),
-        Lobes::Diffuse(0.5),
-        Lobes::Diffuse(1.0),
-        Lobes::Glossy,
-    ];
-
-    /// Unit directions and normals, each pair on one side: the first is the geometric normal's.
-    fn cases() -> impl Iterator<Item = [Vec3; 2]> {
-        let at = |i: u16, z: f32| {
-            let (sin, cos) = sin_cos(2.4 * f32::from(i));
-            (Vec3::new(cos, sin, 0.0) * (1.0 - z * z).sqrt()).with_z(z)
+    /// Draws the next direction of a walk, as [`sample_scatter`](Self::sample_scatter) does, where layers are not seen by
+    /// the frame of the vertex.
+    #[cold]
+    #[inline(never)]
+    pub(super) fn sample_by_frames(
+        &self,
+        bsdf: &Bsdf,
+        mode: TransportMode,
+        u_lobe: f32,
+        u: Vec2,
+    ) -> Option<Scattered> {
+        let plain = self.frames(bsdf);
+        let frames = match mode {
+            TransportMode::Radiance => self.frames_toward(bsdf, self.wo).unwrap_or(plain),
+            TransportMode::Importance if self.faces(&plain, self.wo) => plain,
+            TransportMode::Importance => return None,
         };
-        (0..40).flat_map(move |i| {
-            let o = at(i, 0.01 + 0.98 * (f32::from(i) * 0.618).fract());
-            (0..40).map(move |j| {
-                [
-                    o,
-                    at(3 * j + 1, 0.05 + 0.95 * (f32::from(j) * 0.414).fract()),
-                ]
-            })
+        let sample = match frames.sample(bsdf, self.wo, mode, u_lobe, u)? {
+            Drawn::Finite(wi, _) if mode == TransportMode::Radiance => {
+                return self.finite_scattered(bsdf, wi, mode);
+            }
+            Drawn::Finite(wi, cos) => {
+                let wi = on_side(wi, cos * self.locus.n_g.dot(wi));
+                return self.finite_scattered(bsdf, wi, mode);
+            }
+            Drawn::Dirac(sample) => sample,
+        };
+        // Walks from a light draw no Dirac lobe by a frame that they do not know.
+        (mode == TransportMode::Radiance && self.faces(&frames, sample.wi)).then(|| Scattered {
+            wi: sample.wi,
+            weight: sample.weight,
+            pdf: sample.pdf,
+            pdf_reverse: 0.0,
+            albedo_reverse: self.albedo(sample.wi).max_lane(),
+            is_delta: true,
         })
     }
 
-    /// The normal is one that the camera sees by its rule, on the front, and as it was where it may be.
-    #[test]
-    fn turned_normals_are_seen() {
-        let n_g = Vec3::Z;
-        let mut turns = [0; 4];
-        for [o, n_s] in cases() {
-            for (i, lobes) in LOBES.into_iter().enumerate() {
-                let n = turned(n_s, n_g, o, lobes).unwrap_or(n_s);
-                let mirrored = n * (2.0 * n.dot(o)) - o;
-                let (seen, least) = match lobes {
-                    Lobes::Diffuse(gloss) => (n.dot(o), least_diffuse_cosine(o.z, gloss)),
-                    Lobes::Glossy => (mirrored.z, least_cosine(o.z)),
-                };
-                assert!((n.length() - 1.0).abs() < 1e-4 && n.z > 0.0 && n.dot(o) > 0.0);
-                assert!(
-                    seen > least - 1e-4,
-                    "{seen} < {least}: {o}, {n_s}, {lobes:?}"
-                );
-                let is_turned = n != n_s;
-                turns[i] += usize::from(is_turned);
-                assert!(
-                    !is_turned || seen < least + 1e-3,
-                    "{seen}: {o}, {n_s}, {lobes:?}"
-                );
-                // Where all see what is mirrored above the surface, none turns.
-                let along = n_s.dot(o);
-                let height = 2.0 * along * n_s.z - o.z;
-                assert!(!is_turned || height < least_cosine(o.z));
-                // Seen from below, and with all on the other side, it is the same.
-                let below = turned(-n_s, -n_g, o, lobes).unwrap_or(-n_s);
-                assert!(below.distance(-n) < 1e-5);
-            }
-            assert!(turned(n_g, n_g, o, Lobes::Glossy).is_none());
-        }
-        assert!(turns.iter().all(|&turns| turns > 200), "{turns:?}");
-    }
-
-    /// It turns steadily: near directions see near normals.
-    #[test]
-    fn turned_normals_are_continuous() {
-        for [o, n_s] in cases() {
-            let near = (o + Vec3::new(1e-4, -1e-4, 5e-5)).normalize();
-            for lobes in LOBES {
-                let [a, b] = [o, near].map(|o| turned(n_s, Vec3::Z, o, lobes).unwrap_or(n_s));
-                assert!(a.distance(b) < 0.02, "{a}, {b}: {o}, {n_s}, {lobes:?}");
-            }
-        }
+    /// Returns the direction `wi`, drawn from the lobes that are not Dirac, where frames depend on the camera. None:
+    /// nothing is scattered there.
+    #[cold]
+    #[inline(never)]
+    pub(super) fn finite_scattered(
+        &self,
+        bsdf: &Bsdf,
+        wi: Vec3,
+        mode: TransportMode,
+    ) -> Option<Scattered> {
+        let value = self.value_by_frames(bsdf, [self.wo, wi], mode);
+        let cos_g = self.locus.n_g.dot(wi).abs();
+        (value.pdf > 0.0 && !value.f.is_black()).then(|| Scattered {
+            wi,
+            weight: value.f * (cos_g / value.pdf),
+            pdf: value.pdf,
+            pdf_reverse: value.pdf_reverse,
+            albedo_reverse: value.albedo_reverse,
+            is_delta: false,
+        })
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -194,8 +194,7 @@ impl Comparison {
                 && let Some(end) = sums.diffuse(s - 1)
                 && !end.is_turned(segment.w)
             {
-                let of_walk = (s, z, sums.at(s - 1));
-                let found = end.light_image(job, of_walk, &lens[0], &segment);
+                let found = end.light_image(job, s, z, sums.at(s - 1), &lens[0], &segment);
                 let path = JoinedPath::new(&light[..s], lens);
                 self.check_diffuse(job, &path, found);
             }
@@ -220,7 +219,7 @@ impl Comparison {
                 && let Some(y) = self.sums[1].diffuse(t - 1)
             {
                 let segment = camera[t - 1].segment_to(&x0);
-                let found = y.next_event(job, t, (&x0, drawn.pdf), &segment);
+                let found = y.next_event(job, t, &x0, drawn.pdf, &segment);
                 let path = JoinedPath::new(of_light, &camera[..t]);
                 self.check_diffuse(job, &path, found);
             }

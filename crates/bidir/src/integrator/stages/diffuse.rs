@@ -23,7 +23,7 @@ impl Connector<'_> {
         let (vertex, job) = (&self.camera.vertices[t - 1], self.job);
         let x0 = &self.walked.light.vertices()[end.place.z as usize];
         let segment = vertex.segment_to(x0);
-        let (contribution, weight) = y.next_event(job, t, (x0, pdf), &segment)?;
+        let (contribution, weight) = y.next_event(job, t, x0, pdf, &segment)?;
         Some(Connection {
             contribution,
             transmittance: Spectrum::ONE,
@@ -37,11 +37,11 @@ impl Connector<'_> {
         let of_camera = self.job.guide.of_camera(y.cell());
         let (fours, others) = ends.as_chunks();
         for four in fours {
-            self.offer_four(t, (y, of_camera), four);
+            self.offer_four(t, y, of_camera, four);
         }
         if !others.is_empty() {
             let last = from_fn(|lane| others.get(lane).copied().unwrap_or_default());
-            self.offer_four(t, (y, of_camera), &last);
+            self.offer_four(t, y, of_camera, &last);
         }
     }
 
@@ -51,7 +51,8 @@ impl Connector<'_> {
     fn offer_four(
         &mut self,
         t: usize,
-        (y, of_camera): (&DiffuseEnd, CellGuide<'_>),
+        y: &DiffuseEnd,
+        of_camera: CellGuide<'_>,
         four: &[LightEnd; 4],
     ) {
         let light_sums = &self.walked.light.sums;

@@ -40,20 +40,20 @@ pub(in super::super) fn direct(
             if let Some(arrival) = Arrival::at(vertex)
                 && let Some(term) = hit(job, &walk.vertices[..i], &arrival)
             {
-                enter(entries, stats, (number, sample), term, Link::Walk);
+                enter(entries, stats, number, sample, term, Link::Walk);
             }
             let connects = i + 2 <= job.settings.max_vertices() && !vertex.is_delta();
             if connects && let Some(found) = next_event(job, sample, vertex, i) {
                 let (term, ends, shadow) = found;
                 let link = Link::Connection(ends);
-                let entry = enter(entries, stats, (number, sample), term, link);
+                let entry = enter(entries, stats, number, sample, term, link);
                 shadow.apply(entry, stats);
             }
         }
         let escape = walk.escape.into_iter();
         for arrival in escape.flat_map(|escape| Arrival::of_escape(job.scene, escape)) {
             if let Some(term) = hit(job, walk.vertices, &arrival) {
-                enter(entries, stats, (number, sample), term, Link::Walk);
+                enter(entries, stats, number, sample, term, Link::Walk);
             }
         }
     }

@@ -22,7 +22,7 @@ pub(in super::super) fn hits(
         let mut add = |camera: &[Vertex], arrival: &Arrival| {
             let sums = walked.camera.sums.at(walk.first + camera.len() - 1);
             if let Some(term) = hit(job, camera, arrival, weights, sums) {
-                enter(entries, stats, (number, sample), term, Link::Walk);
+                enter(entries, stats, number, sample, term, Link::Walk);
             }
         };
         for (i, vertex) in walk.vertices.iter().enumerate().skip(1) {

@@ -35,7 +35,7 @@ pub(in super::super) fn next_events(
                 let count = counts.at(t);
                 ends.next_events.open().make_room(count.into());
                 for k in 0..count {
-                    if let Some(event) = add_point(light, job, sample, (t, y), [k, count]) {
+                    if let Some(event) = add_point(light, job, sample, t, y, [k, count]) {
                         ends.next_events.open().write(event, 1);
                     }
                 }
@@ -51,7 +51,8 @@ fn add_point(
     light: &mut Subpaths,
     job: &Job<'_>,
     sample: &Sample,
-    (t, y): (usize, &Vertex),
+    t: usize,
+    y: &Vertex,
     [k, count]: [u16; 2],
 ) -> Option<NextEvent> {
     let at = |purpose| Dimension::at(t - 1, purpose);
@@ -140,7 +141,7 @@ pub(in super::super) fn draw_cached(
                 let (row, count) = (job.guide.of_camera(y.cell).row(), counts.at(t));
                 ends.walked.open().write_some(count.into(), |room| {
                     let mut taken = 0;
-                    cache.draw_all(row, (count, u), |entry, place, share| {
+                    cache.draw_all(row, count, u, |entry, place, share| {
                         let s = usize::from(place.s);
                         if place.is_diffuse {
                             light.sums.load_ahead(place.z as usize);

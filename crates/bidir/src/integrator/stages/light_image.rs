@@ -59,7 +59,7 @@ pub(in super::super) fn light_image(
             };
             if let Some((term, shadow)) = image.weighted_term(job, sums, weights) {
                 let link = image.link(job, sample);
-                let entry = enter(splats, stats, (number, sample), term, link);
+                let entry = enter(splats, stats, number, sample, term, link);
                 shadow.apply(entry, stats);
             }
         }
@@ -126,8 +126,8 @@ impl<'a> LightImage<'a> {
         let light = sums.at(z);
         let is_plain = |end: &&DiffuseEnd| !end.is_turned(self.segment.w);
         if let Some(end) = sums.diffuse(z).filter(is_plain) {
-            let of_walk = (self.light.len(), self.end(), light);
-            let found = end.light_image(job, of_walk, self.lens, &self.segment);
+            let (s, z) = (self.light.len(), self.end());
+            let found = end.light_image(job, s, z, light, self.lens, &self.segment);
             let (contribution, weight) = found?;
             let term = self.term(job, contribution, weight)?;
             // Diffuse ends are those whose rays go through no medium.
