@@ -105,9 +105,13 @@ verify-peers *FLAGS:
 bench-rays *ARGS:
     cargo bench -p bidir-accel --features bench-peers --bench rays -- {{ARGS}}
 
-# Puts faults into a copy of the sources: each must turn some test red.
+# Puts faults into a copy of light transport: each must turn some test red.
 mutants *FLAGS:
     python3 tools/mutants {{FLAGS}}
+
+# Lets cargo-mutants put faults into what changed lately, for half an hour.
+mutants-changed:
+    tools/nightly "$(date +%s)" changed
 
 # Feeds each parser, or those named, with made-up files for so many seconds; see fuzz/README.md.
 fuzz SECONDS *TARGETS:

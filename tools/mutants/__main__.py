@@ -1,18 +1,15 @@
-"""A test of the tests: applies faults one by one; each must make a test fail.
+"""A test of the tests: applies faults in light transport one by one; each must make a test fail.
 
     python3 tools/mutants                 all of them; exits with 1 if one survives
     python3 tools/mutants --only TEXT     those whose name, file or test contains TEXT
-    python3 tools/mutants --share 1/4     the second of four shares of them
     python3 tools/mutants --list          names, files and tests
     python3 tools/mutants --check         only that every fault still applies to the sources
 
-Nearly all faults share one build (schemata.py). A fault that does not fit into it, or that survives there,
-gets a build of its own. The tool works on copies of the tree in target/mutants and keeps their builds
-between runs. Standard library only.
+All faults share one build (schemata.py) of a copy of the tree in target/mutants, which is kept between runs.
+`tools/nightly SEED changed` has faults in all other code, made by cargo-mutants. Standard library only.
 """
 
 import argparse
-import fcntl
 import functools
 import os
 import re
@@ -20,300 +17,145 @@ import signal
 import subprocess
 import sys
 import time
+from pathlib import Path
 
 sys.dont_write_bytecode = True
 
 import schemata
 from mutations import MUTATIONS
 
-ROOT = os.path.realpath(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", ".."))
-WORK = os.path.join(os.environ.get("CARGO_TARGET_DIR", os.path.join(ROOT, "target")), "mutants")
-# The tree with all faults, and the tree that has one at a time.
-ALL = os.path.join(WORK, "all")
-TREE = os.path.join(WORK, "tree")
-TIMEOUT = 900
+ROOT = Path(__file__).resolve().parents[2]
+WORK = Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target"), "mutants").absolute()
+TREE = WORK / "tree"
+# What a build or a test reads.
+SOURCES = ("Cargo.toml", "Cargo.lock", "clippy.toml", "crates", "scenes", "experiments", "fuzz/src", "fuzz/seeds")
 
 
-def read(path):
-    with open(path, "rb") as file:
-        return file.read()
+def files_in(root):
+    """Returns the files that a build or a test reads, relative to `root`."""
+    places = (root / source for source in SOURCES)
+    found = (file for place in places for file in ([place] if place.is_file() else place.rglob("*")))
+    return {file.relative_to(root) for file in found if file.is_file()}
 
 
-def write(path, data):
-    os.makedirs(os.path.dirname(path), exist_ok=True)
-    with open(path, "wb") as file:
-        file.write(data)
+def with_faults():
+    """Returns the sources with faults, and the roots of their crates: {file: bytes}."""
+    changed = {}
+    for file in {mutation[1] for mutation in MUTATIONS}:
+        faults = [(number, m[2], m[3]) for number, m in enumerate(MUTATIONS, 1) if m[1] == file]
+        changed[Path(file)] = schemata.with_faults((ROOT / file).read_text(encoding="utf-8"), faults).encode()
+    for root in {Path(*file.parts[:2], "src", "lib.rs") for file in changed}:
+        changed[root] = changed.get(root, (ROOT / root).read_bytes()) + schemata.CHOICE.encode()
+    return changed
 
 
-def sources():
-    """The files that a build or a test reads, relative to the root."""
-    files = ["Cargo.toml", "Cargo.lock", "clippy.toml"]
-    for top in ("crates", "scenes", "experiments", "fuzz/src", "fuzz/seeds"):
-        for folder, _, names in os.walk(os.path.join(ROOT, top)):
-            files += [os.path.relpath(os.path.join(folder, name), ROOT) for name in names]
-    return sorted(file for file in files if os.path.isfile(os.path.join(ROOT, file)))
-
-
-def lock_tree():
-    """Two runs on one copy would undo each other's faults: the lock lasts as long as the file."""
-    os.makedirs(WORK, exist_ok=True)
-    lock = open(os.path.join(WORK, "lock"), "w")
-    try:
-        fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except OSError:
-        sys.exit("another run is using %s" % WORK)
-    return lock
-
-
-def copy_tree(tree, changed=None):
-    """Brings a copy up to date, `changed` (file -> bytes) in place of the sources where given.
-
-    Files that are the same keep their time, and so their build.
-    """
-    wanted, changed = set(sources()), changed or {}
+def copy_tree():
+    """Brings the copy up to date. Files that are the same keep their time, and so their build."""
+    wanted, changed = files_in(ROOT), with_faults()
     for file in wanted:
-        data, target = changed.get(file) or read(os.path.join(ROOT, file)), os.path.join(tree, file)
-        if not os.path.isfile(target) or read(target) != data:
-            write(target, data)
-    for folder, _, names in os.walk(tree):
-        for name in names:
-            path = os.path.join(folder, name)
-            if os.path.relpath(path, tree) not in wanted:
-                os.remove(path)
+        data, target = changed.get(file) or (ROOT / file).read_bytes(), TREE / file
+        if not target.is_file() or target.read_bytes() != data:
+            target.parent.mkdir(parents=True, exist_ok=True)
+            target.write_bytes(data)
+    for file in files_in(TREE) - wanted:
+        (TREE / file).unlink()
 
 
-def cargo(tree, test, *arguments, number=0, timeout=TIMEOUT):
-    """Runs `cargo test` on a copy: (exit code or None for a timeout, output)."""
-    package, target, filter_ = test
-    command = ["cargo", "test", "--release", "--quiet", "-p", package]
-    command += target.split() + list(arguments)
-    if "--no-run" not in arguments:
-        command += ["--", filter_] if filter_ else []
-    environment = dict(os.environ, CARGO_TARGET_DIR=os.path.join(WORK, "build"))
-    environment[schemata.VARIABLE] = str(number)
+def cargo_test(test, *arguments, number=0, timeout=None):
+    """Returns the exit code of tests with one of the faults, None for a timeout, and their output."""
+    package, target, _ = test
+    command = ["cargo", "test", "--release", "--quiet", "-p", package, *target.split(), *arguments]
     # A shrunk counterexample of a mutant is no regression of the project.
-    environment["PROPTEST_DISABLE_FAILURE_PERSISTENCE"] = "1"
-    # From one mutant of its own to the next one file differs.
-    environment["CARGO_INCREMENTAL"] = "1" if tree == TREE else "0"
-    with subprocess.Popen(
-        command,
-        cwd=tree,
-        env=environment,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT,
-        start_new_session=True,
-    ) as run:
+    environment = dict(os.environ, CARGO_TARGET_DIR=str(WORK / "build"), PROPTEST_DISABLE_FAILURE_PERSISTENCE="1")
+    environment[schemata.VARIABLE] = str(number)
+    with subprocess.Popen(command, cwd=TREE, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                          text=True, errors="replace", start_new_session=True) as run:
         try:
             output, _ = run.communicate(timeout=timeout)
         except subprocess.TimeoutExpired:
+            # With cargo the test that it started, which might go on for ever.
+            os.killpg(run.pid, signal.SIGKILL)
             return None, ""
-        finally:
-            end_session(run)
-    return run.returncode, output.decode(errors="replace")
-
-
-def end_session(run):
-    """Kills what runs in the session of `run`: the test that a stopped cargo started would go on for ever."""
-    try:
-        os.killpg(run.pid, signal.SIGKILL)
-    except ProcessLookupError:
-        pass
-
-
-def passed(output):
-    """Returns the number of passed tests."""
-    return sum(int(count) for count in re.findall(r"(\d+) passed", output))
+    return run.returncode, output
 
 
 @functools.cache
-def tests_of(package):
-    """The paths of a package's tests as far as its files give them, each as `module::…::name`."""
+def functions_of(package):
+    """Returns the paths of a package's functions as far as its files give them, each as `module::…::name`."""
     found = []
-    top = os.path.join(ROOT, "crates", package.removeprefix("bidir-"))
-    for folder, _, names in os.walk(top):
-        for name in names:
-            if not name.endswith(".rs"):
-                continue
-            path = os.path.relpath(os.path.join(folder, name), top)
-            module = re.sub(r"^(src|tests/[^/]+)/|(/mod)?\.rs$", "", path).replace("/", "::")
-            code = read(os.path.join(folder, name)).decode()
-            tests = re.findall(r"#\[test\]\s+(?:#\[[^\]]*\]\s+)*fn (\w+)|^\s+fn (\w+)\(", code, re.MULTILINE)
-            for test in (one or other for one, other in tests):
-                found += [module + "::" + test, module + "::tests::" + test]
+    top = ROOT / "crates" / package.removeprefix("bidir-")
+    for file in top.rglob("*.rs"):
+        module = re.sub(r"^(src|tests/[^/]+)/|(/mod)?\.rs$", "", file.relative_to(top).as_posix())
+        names = re.findall(r"\bfn (\w+)\(", file.read_text(encoding="utf-8"))
+        found += [module.replace("/", "::") + inner + name for name in names for inner in ("::", "::tests::")]
     return found
 
 
 def stale(mutation):
     """Returns the reason why a fault cannot be applied or detected. None: it can."""
     _, file, old, new, (package, _, filter_) = mutation
-    if filter_ and not any(filter_ in test for test in tests_of(package)):
+    if not any(filter_ in test for test in functions_of(package)):
         return "no test is named `%s`" % filter_
-    path = os.path.join(ROOT, file)
-    if not os.path.isfile(path):
+    if not (ROOT / file).is_file():
         return "no such file"
-    count = read(path).decode().count(old)
-    if count != 1:
-        return "its text occurs %d times" % count
+    text = (ROOT / file).read_text(encoding="utf-8")
+    if text.count(old) != 1:
+        return "its text occurs %d times" % text.count(old)
+    place = text.index(old)
+    if not schemata.body_around(text, place, place + len(old)):
+        return "is not within a function whose body can be copied"
     return "changes nothing" if old == new else None
 
 
-def baselines(tree, tests):
-    """The seconds of each test on a tree whose faults are off; ends the program where one fails."""
-    seconds = {}
-    for test in sorted(tests):
-        begin = time.monotonic()
-        code, output = cargo(tree, test)
-        if code != 0:
-            sys.exit("%s: fails without any mutant:\n%s" % (describe(test), output[-3000:]))
-        if passed(output) == 0:
-            sys.exit("%s: has no tests" % describe(test))
-        seconds[test] = time.monotonic() - begin
-        print("baseline %-70s %6.0f s" % (describe(test), seconds[test]), flush=True)
-    return seconds
-
-
-def number_of(mutation):
-    """The number of a fault in the shared build; 0 is none."""
-    return MUTATIONS.index(mutation) + 1
-
-
-def all_faults(mutations):
-    """The sources that hold faults, changed (file -> bytes), and the faults that they hold."""
-    changed, held = {}, []
-    for file in sorted({mutation[1] for mutation in mutations}):
-        faults = [(number_of(m), m[2], m[3]) for m in mutations if m[1] == file]
-        text, taken = schemata.with_faults(read(os.path.join(ROOT, file)).decode(), faults)
-        if taken:
-            changed[file] = text.encode()
-            held += [m for m in mutations if number_of(m) in taken]
-    for crate in {os.path.join(*file.split("/")[:2]) for file in changed}:
-        root = os.path.join(crate, "src", "lib.rs")
-        whole = changed.get(root) or read(os.path.join(ROOT, root))
-        changed[root] = whole + schemata.CHOICE.encode()
-    return changed, held
-
-
-def build_all(mutations):
-    """Builds the tree that has the faults to choose from; returns those that it has.
-
-    A file whose changes do not compile is left as it is.
-    """
-    while mutations:
-        changed, mutations = all_faults(mutations)
-        copy_tree(ALL, changed)
-        wrong, output = set(), ""
-        for package, target, _ in sorted({(m[4][0], m[4][1], "") for m in mutations}):
-            build = (package, target, "")
-            code, output = cargo(ALL, build, "--no-run", "--message-format=short", timeout=None)
-            if code != 0:
-                wrong |= set(re.findall(r"^(crates/\S+\.rs):\d+:\d+: error", output, re.MULTILINE))
-                break
-        else:
-            return mutations
-        rest = [m for m in mutations if m[1] not in wrong]
-        if len(rest) == len(mutations):
-            sys.exit("the faults do not compile:\n" + output[-3000:])
-        mutations = rest
-    return []
-
-
-def run_in_all(mutation, seconds):
-    """Returns True if a fault of the shared build makes its test fail, or run ten times as long."""
-    timeout = 60 + 10 * seconds[mutation[4]]
-    return cargo(ALL, mutation[4], number=number_of(mutation), timeout=timeout)[0] != 0
-
-
-def run_alone(mutation):
-    """killed, SURVIVED or BROKEN, with the reason of the latter."""
-    _, file, old, new, test = mutation
-    path = os.path.join(TREE, file)
-    original = read(path)
-    write(path, original.decode().replace(old, new).encode())
-    try:
-        code, output = cargo(TREE, test, "--no-run")
-        if code != 0:
-            return "BROKEN", "does not compile:\n" + output[-3000:]
-        code, output = cargo(TREE, test)
-    finally:
-        write(path, original)
-    return ("SURVIVED", "") if code == 0 else ("killed", "")
-
-
-def share(text):
-    """The shares `I/N` of a list: every N-th entry, from number I on."""
-    found = re.fullmatch(r"(\d+)/(\d+)", text)
-    if not found or not int(found[1]) < int(found[2]):
-        raise argparse.ArgumentTypeError("`%s` is no share such as 1/4, from 0/4 to 3/4" % text)
-    return slice(int(found[1]), None, int(found[2]))
-
-
-def describe(test):
-    return " ".join(part for part in test if part)
-
-
-def main():
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
-    parser.add_argument("--only", metavar="TEXT", default="")
-    parser.add_argument("--share", metavar="I/N", type=share, default=slice(None))
-    parser.add_argument("--list", action="store_true")
-    parser.add_argument("--check", action="store_true")
-    arguments = parser.parse_args()
-    mutations = [m for m in MUTATIONS if arguments.only in " ".join((m[0], m[1], describe(m[4])))]
-    mutations = mutations[arguments.share]
-    if not mutations:
-        sys.exit("no mutant has a name, a file or a test with `%s`" % arguments.only)
-    if arguments.list:
-        for name, file, _, _, test in mutations:
-            print("%-60s %-44s %s" % (name, file, describe(test)))
-        return
-    problems = [(m[0], stale(m)) for m in mutations if stale(m)]
-    for name, problem in problems:
-        print("%s: %s" % (name, problem), file=sys.stderr)
-    if problems:
-        sys.exit("%d of %d mutants do not apply" % (len(problems), len(mutations)))
-    if arguments.check:
-        print("%d mutants apply" % len(mutations))
-        return
-    lock = lock_tree()
-    alive = run(mutations)
-    lock.close()
-    print("%d of %d mutants killed" % (len(mutations) - alive, len(mutations)))
-    sys.exit(1 if alive else 0)
-
-
-def report(verdict, mutation, begin):
-    seconds = time.monotonic() - begin
-    line = (verdict, mutation[0], describe(mutation[4]), seconds)
-    print("%-8s %-60s %-44s %5.0f s" % line, flush=True)
+def baseline(test):
+    """Returns the seconds of a test without a fault; ends the program if it fails."""
+    cargo_test(test, "--no-run")
+    begin = time.monotonic()
+    code, output = cargo_test(test, "--", test[2])
+    if code != 0 or not re.search(r"[1-9]\d* passed", output):
+        sys.exit("%s: fails without any mutant, or has no tests:\n%s" % (" ".join(test), output[-3000:]))
+    return time.monotonic() - begin
 
 
 def run(mutations):
-    """Applies faults, prints a line for each, and returns how many survived."""
-    begin = time.monotonic()
-    together = build_all(mutations)
-    print("%d faults in one build, %.0f s" % (len(together), time.monotonic() - begin), flush=True)
-    seconds = baselines(ALL, {m[4] for m in together})
-    alone = [m for m in mutations if m not in together]
-    for mutation in together:
+    """Applies faults, prints a line for each, and returns the number of those that survived."""
+    copy_tree()
+    seconds, alive = {}, 0
+    for mutation in mutations:
+        name, _, _, _, test = mutation
+        if test not in seconds:
+            seconds[test] = baseline(test)
         begin = time.monotonic()
-        if run_in_all(mutation, seconds):
-            report("killed", mutation, begin)
-        else:
-            alone.append(mutation)
-    if alone:
-        copy_tree(TREE)
-        baselines(TREE, {m[4] for m in alone})
-    alive = 0
-    for mutation in alone:
-        begin = time.monotonic()
-        verdict, reason = run_alone(mutation)
-        alive += verdict != "killed"
-        report(verdict, mutation, begin)
-        if reason:
-            print(reason, flush=True)
+        code, _ = cargo_test(test, "--", test[2], number=MUTATIONS.index(mutation) + 1,
+                             timeout=60 + 10 * seconds[test])
+        alive += code == 0
+        verdict = "SURVIVED" if code == 0 else "killed"
+        print("%-8s %-60s %-44s %5.0f s" % (verdict, name, " ".join(test), time.monotonic() - begin), flush=True)
     return alive
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--only", metavar="TEXT", default="")
+    parser.add_argument("--list", action="store_true")
+    parser.add_argument("--check", action="store_true")
+    options = parser.parse_args()
+    mutations = [m for m in MUTATIONS if options.only in " ".join((m[0], m[1], *m[4]))]
+    if not mutations:
+        sys.exit("no mutant has a name, a file or a test with `%s`" % options.only)
+    if options.list:
+        for name, file, _, _, test in mutations:
+            print("%-60s %-44s %s" % (name, file, " ".join(test)))
+        return
+    problems = ["%s: %s" % (m[0], stale(m)) for m in MUTATIONS if stale(m)]
+    if problems:
+        sys.exit("\n".join([*problems, "%d of %d mutants do not apply" % (len(problems), len(MUTATIONS))]))
+    if options.check:
+        print("%d mutants apply" % len(mutations))
+        return
+    alive = run(mutations)
+    print("%d of %d mutants killed" % (len(mutations) - alive, len(mutations)))
+    sys.exit(1 if alive else 0)
 
 
 if __name__ == "__main__":

@@ -19,63 +19,27 @@ pub(crate) fn mutant() -> u32 {
 }
 """ % VARIABLE
 
-# Comments, strings and characters, whose braces do not count. A lifetime is no character.
-OPAQUE = re.compile(
-    r"""//[^\n]*|/\*.*?\*/|r(\#*)".*?"\1|b?"(?:\\.|[^"\\])*"|b?'(?:\\[^\n]{1,8}?|[^'\\\n])'""", re.DOTALL
+# A function as rustfmt lays it out: its closing brace has the indentation of its signature. A constant one
+# reads no environment, and copies of a body have different types behind `impl`.
+FUNCTION = re.compile(
+    r"^( *)(?:pub(?:\([^)]*\))? )?fn \w(?:(?!;\n|\bfn |-> impl )[\s\S])*?\{\n(?P<body>[\s\S]*?)^\1\}$", re.MULTILINE
 )
-FUNCTION = re.compile(r"\bfn\s+\w+")
-
-
-def blank(text):
-    """Replaces comments, strings and characters by spaces of the same length."""
-    return OPAQUE.sub(lambda found: re.sub(r"[^\n]", " ", found[0]), text)
-
-
-def functions(text):
-    """(begin of the signature, begin and end of the body, without its braces) of each function."""
-    code = blank(text)
-    for found in FUNCTION.finditer(code):
-        # A semicolon ends a function without a body, but for that of an array's type.
-        begin = re.compile(r"[{;](?![^\[\]\n]*\])").search(code, found.end())
-        if not begin or begin[0] == ";":
-            continue
-        depth = 1
-        for brace in re.compile(r"[{}]").finditer(code, begin.end()):
-            depth += 1 if brace[0] == "{" else -1
-            if depth == 0:
-                yield found.start(), begin.end(), brace.start()
-                break
 
 
 def body_around(text, begin, end):
-    """The body of the innermost function around a place; None where a copy of it would not compile."""
-    around = [f for f in functions(text) if f[1] <= begin and end <= f[2]]
-    if not around:
-        return None
-    signature, start, stop = max(around)
-    line = text[text.rfind("\n", 0, signature) + 1 : signature]
-    # A constant function reads no environment; two bodies have two types behind `impl`.
-    if re.search(r"\bconst\b", line) or re.search(r"->\s*impl\b", text[signature:start]):
-        return None
-    return start, stop
+    """Returns the ends of the body of the function around a place; None where there is none to copy."""
+    return next((found.span("body") for found in FUNCTION.finditer(text)
+                 if found.start("body") <= begin and end <= found.end("body")), None)
 
 
 def with_faults(text, faults):
-    """The text with faults (number, old, new) to choose from, and the numbers of those it has."""
+    """Returns the text with faults (number, old, new) to choose from."""
     bodies = {}
     for number, old, new in faults:
         place = text.index(old)
-        body = body_around(text, place, place + len(old))
-        if body:
-            bodies.setdefault(body, []).append((number, place - body[0], old, new))
-    # Faults in nested bodies are left out, as these would be copied with the outer body.
-    outer = [b for b in bodies if not any(a[0] <= b[0] and b[1] <= a[1] for a in bodies if a != b)]
-    taken = set()
-    for begin, end in sorted(outer, reverse=True):
-        body, arms = text[begin:end], ""
-        for number, place, old, new in bodies[begin, end]:
-            faulty = body[:place] + new + body[place + len(old) :]
-            arms += "%d => {%s}\n" % (number, faulty)
-            taken.add(number)
-        text = "%s match crate::mutant() { %s _ => {%s} } %s" % (text[:begin], arms, body, text[end:])
-    return text, taken
+        bodies.setdefault(body_around(text, place, place + len(old)), []).append((number, old, new))
+    for (begin, end), inside in sorted(bodies.items(), reverse=True):
+        body = text[begin:end]
+        arms = "".join("%d => {\n%s}\n" % (number, body.replace(old, new)) for number, old, new in inside)
+        text = "%smatch crate::mutant() {\n%s_ => {\n%s}\n}\n%s" % (text[:begin], arms, body, text[end:])
+    return text

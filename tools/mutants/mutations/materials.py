@@ -1,8 +1,58 @@
-"""Faults in layered and mixed materials, and in what Dirac lobes beside others mean to weights."""
+"""Faults in scattering models, in layered and mixed materials, and in what Dirac lobes mean to weights."""
 
 from .tests import RUNNING, materials, unit
 
 MATERIALS = [
+    # --- scattering models ----------------------------------------------------------------
+    (
+        "eta squared forgotten",
+        "crates/bidir/src/bsdf/dielectric.rs",
+        "TransportMode::Radiance => 1.0 / sqr(self.eta_across(wo)),",
+        "TransportMode::Radiance => 1.0,",
+        unit("bsdf::tests::identities"),
+    ),
+    (
+        "eta squared forgotten in Dirac coefficients",
+        "crates/bidir/src/bsdf/dielectric.rs",
+        "pdf: prob * sqr(self.eta_at(wi)) * wi.z.abs(),",
+        "pdf: prob * wi.z.abs(),",
+        unit("bsdf::tests::identities"),
+    ),
+    (
+        "wrong Jacobian of refraction",
+        "crates/bidir/src/bsdf/dielectric.rs",
+        "1.0 / sqr(wi.dot(m) + wo.dot(m) / eta)",
+        "1.0 / sqr(wi.dot(m) + wo.dot(m) * eta)",
+        unit("bsdf::tests::densities"),
+    ),
+    (
+        "the way back through rough glass with the Jacobian of the way in",
+        "crates/bidir/src/bsdf/dielectric.rs",
+        "g1[1] * both / sqr(eta)",
+        "g1[1] * both",
+        unit("light_flows_both_ways"),
+    ),
+    (
+        "a metal's albedo for the way in, not for the way back",
+        "crates/bidir/src/bsdf/conductor.rs",
+        "albedo_reverse: self.albedo(wi)",
+        "albedo_reverse: self.albedo(wo)",
+        unit("light_flows_both_ways"),
+    ),
+    (
+        "visible normals without G1",
+        "crates/bidir/src/bsdf/microfacet.rs",
+        "quarter / ((1.0 + lambda) * w.z.abs())",
+        "quarter / w.z.abs()",
+        unit("samples_follow_the_density"),
+    ),
+    (
+        "anisotropy turned by a right angle",
+        "crates/bidir/src/bsdf/microfacet.rs",
+        "Vec3::new(m.x * self.alpha_x, m.y * self.alpha_y, m.z.max(1e-6)).normalize()",
+        "Vec3::new(m.x * self.alpha_y, m.y * self.alpha_x, m.z.max(1e-6)).normalize()",
+        unit("bsdf::tests::densities"),
+    ),
     # --- layered and mixed materials ----------------------------------------------------------
     (
         "a Dirac lobe of a walk not told to weights",

@@ -1,13 +1,10 @@
 """Faults in participating media."""
 
-from .tests import formats, media, unit
+from .tests import media, unit
 
 ADVANCE = "crates/bidir/src/scene/advance.rs"
 EDGE = "crates/bidir/src/scene/edge.rs"
 PASSAGE = "crates/bidir/src/scene/passage.rs"
-NESTING = "crates/bidir/src/scene/nesting.rs"
-ENCLOSURE = "crates/formats/src/import/enclosure.rs"
-GLOW = "crates/formats/src/pbrt/build/media/glow.rs"
 FURNACE = media("a_furnace_full_of_fog")
 EQUILIBRIUM = media("glow::matter_in_equilibrium")
 
@@ -188,122 +185,10 @@ MEDIA = [
         unit("light::tests::power"),
     ),
     (
-        "temperatures without their offset",
-        GLOW,
-        "(value - offset) * scale",
-        "(value - 0.0 * offset) * scale",
-        formats("hot_cells"),
-    ),
-    (
-        "the light of temperatures brought to luminance 1",
-        "crates/formats/src/spectra/color.rs",
-        "of_one.map(|channel| channel * luminance as f32)",
-        "of_one.map(|channel| channel * luminance.min(1.0) as f32)",
-        formats("hot_cells"),
-    ),
-    (
-        "rows of a NanoVDB map taken for columns",
-        "crates/formats/src/nanovdb/mod.rs",
-        "DMat3::from_cols_array(&matrix).transpose()",
-        "DMat3::from_cols_array(&matrix)",
-        formats("nanovdb::"),
-    ),
-    (
-        "cells of a NanoVDB leaf in the wrong order",
-        "crates/formats/src/nanovdb/tree.rs",
-        "(x << 6 | y << 3 | z) as usize",
-        "(z << 6 | y << 3 | x) as usize",
-        formats("nanovdb::"),
-    ),
-    (
         "boundaries in one place in the order of their hits",
         "crates/bidir/src/scene/passage.rs",
         "by_place.then(a.surface.cmp(&b.surface))",
         "by_place",
         unit("boundaries_in_one_place"),
-    ),
-    (
-        "parts of a NanoVDB tree without a child left empty",
-        "crates/formats/src/nanovdb/tree.rs",
-        "self.fill(range, bytes.f32(entry)?);",
-        "self.fill(range, 0.0 * bytes.f32(entry)?);",
-        formats("nanovdb::"),
-    ),
-    (
-        "volumes around what is not within them",
-        NESTING,
-        "if crossing.leaves { -1 } else { 1 }",
-        "if crossing.leaves { 1 } else { -1 }",
-        formats("nested::behind_an_inner_volume"),
-    ),
-    (
-        "the larger of two volumes fills what they share",
-        NESTING,
-        "let by_size = other.size.total_cmp(&self.size);",
-        "let by_size = self.size.total_cmp(&other.size);",
-        formats("nested::of_volumes_that_overlap"),
-    ),
-    (
-        "priorities without effect",
-        NESTING,
-        "self.volume.priority.cmp(&other.volume.priority)",
-        "0.cmp(&(0 * other.volume.priority))",
-        formats("nested::the_higher_priority"),
-    ),
-    (
-        "air around every volume",
-        NESTING,
-        "other.map_or(1.0, |other| other.volume.index)",
-        "other.map_or(1.0, |_| 1.0)",
-        formats("nested::surfaces_reflect_by_the_index"),
-    ),
-    (
-        "a surface between equal substances",
-        NESTING,
-        "a == b || a.map(substance) == b.map(substance)",
-        "a == b",
-        formats("nested::a_substance_within_itself"),
-    ),
-    (
-        "air between volumes that touch",
-        NESTING,
-        "gap <= least_gap(a.reach.max(b.reach)) + error",
-        "gap < 0.0 * (least_gap(a.reach.max(b.reach)) + error)",
-        formats("nested::a_liquid_meets_glass"),
-    ),
-    (
-        "volumes apart that rounding cannot tell",
-        NESTING,
-        "let gap = least_gap(reach(bounds));",
-        "let gap = 0.0 * least_gap(reach(bounds));",
-        formats("nested::a_liquid_meets_glass"),
-    ),
-    (
-        "boundaries within a volume counted",
-        NESTING,
-        "if before.is_none() {",
-        "if before.is_none() || true {",
-        formats("nested::boundaries_within"),
-    ),
-    (
-        "no mesh open",
-        ENCLOSURE,
-        "part.is_open |= area.length() > OPEN * part.area;",
-        "part.is_open |= area.length() > f64::INFINITY * part.area;",
-        formats("enclosure::"),
-    ),
-    (
-        "two-sided sheets closed",
-        ENCLOSURE,
-        "part.is_open |= part.volume.abs() <= FLAT",
-        "part.is_open |= part.volume.abs() < 0.0 * FLAT",
-        formats("enclosure::tests::a_sheet"),
-    ),
-    (
-        "cavities turned",
-        ENCLOSURE,
-        "wrong.filter(|&i| hull.winding(i, &roots) <= 0)",
-        "wrong.filter(|&i| hull.winding(i, &roots) <= i32::MAX)",
-        formats("enclosure::tests::parts_within"),
     ),
 ]

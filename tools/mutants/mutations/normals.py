@@ -41,13 +41,6 @@ NORMALS = [
         relief("plastic_keeps_its_light"),
     ),
     (
-        "a grain that turns with the texture of the colour",
-        "crates/formats/src/gltf/material.rs",
-        "if let Some(map) = map_of_tangents(described) {",
-        "if let Some(map) = map_of_tangents(described).filter(|map| map.set > 9) {",
-        formats("transforms_of_other_textures"),
-    ),
-    (
         "a coat lit by the cosine of its base",
         VISIBLE,
         "let ratios = locals.map(|local| (local.z / cos_g).max(0.0));",

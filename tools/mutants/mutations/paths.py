@@ -61,14 +61,19 @@ PATHS = [
         "view.film().sensor.respond(crate::spectrum::Lanes::Rgb.to_rgb(value))",
         unit("nothing_between_the_edges"),
     ),
+    (
+        "albedos as red, green and blue, whatever their lanes",
+        "crates/bidir/src/driver/features.rs",
+        "albedo: job.lanes.to_rgb(albedo),",
+        "albedo: crate::spectrum::Lanes::Rgb.to_rgb(albedo),",
+        unit("nothing_between_the_edges"),
+    ),
     # --- path: densities and weights ------------------------------------------------------
     (
         "forward and reverse density swapped",
         "crates/bidir/src/path/densities.rs",
-        "            drawn_density(job, &subpath[..=i]),\n"
-        "            vertex.pdf_rev * factor(job, n - 1 - i, after),",
-        "            vertex.pdf_rev * factor(job, n - 1 - i, after),\n"
-        "            drawn_density(job, &subpath[..=i]),",
+        "walked_densities(job, light, n).enumerate()",
+        "walked_densities(job, light, n).map(|[drawn, reverse]| [reverse, drawn]).enumerate()",
         PATH,
     ),
     (
@@ -272,74 +277,11 @@ PATHS = [
         RUNNING,
     ),
     (
-        "groups of one part in 16 of the pixels",
-        "crates/bidir/src/integrator/method.rs",
-        "(pixels / 18)",
-        "(pixels / 16)",
-        unit("neighbours_and_pixels_two_apart"),
-    ),
-    (
-        "smooth coats that are no blind spot",
-        "crates/bidir/src/material/specular.rs",
-        "self.has_smooth_coat() || self.has_smooth_facets()",
-        "self.has_smooth_facets()",
-        unit("what_is_rarely_specular"),
-    ),
-    (
         "roulette by a negative mean",
         "crates/bidir/src/select/simple.rs",
         "(part * mean_luminance).max(0.0)",
         "part * mean_luminance",
         unit("roulette_with_a_negative_mean"),
-    ),
-    (
-        "training samples along a diagonal",
-        "crates/bidir/src/driver/spread.rs",
-        "0x91e1_0da5_c79e_7b1d",
-        "0xc13f_a9a9_02a6_328f",
-        unit("samples_are_spread_over_films"),
-    ),
-    (
-        "blocked connections counted as those that arrive",
-        "crates/bidir/src/guide/proposals.rs",
-        "*arrived += u32::from(has_arrived);",
-        "*arrived += 1;",
-        unit("visibility_is_what_arrives"),
-    ),
-    (
-        "draws of a cell that begin behind it",
-        "crates/bidir/src/guide/proposals.rs",
-        "let begin = part as u16 * UNITS_OF_PART;",
-        "let begin = part as u16 * UNITS_OF_PART + UNITS_OF_PART / 2;",
-        unit("every_unit_leads_to_a_cell_that_has_it"),
-    ),
-    (
-        "a unit of each cell that leads to the next one",
-        "crates/bidir/src/guide/proposals.rs",
-        "while self.last[usize::from(cell) + 1] < unit {",
-        "while self.last[usize::from(cell) + 1] <= unit {",
-        unit("every_unit_leads_to_a_cell_that_has_it"),
-    ),
-    (
-        "the vertices of a cell drawn by the numbers of all units",
-        "crates/bidir/src/guide/proposals.rs",
-        "Part(number - begin, numbers_of(units))",
-        "Part(number - begin, numbers_of(UNIFORM_UNITS))",
-        unit("numbers_of_a_cell_lead_to_all_parts_of_it"),
-    ),
-    (
-        "draws of a camera vertex all in one part",
-        "crates/bidir/src/integrator/cache.rs",
-        "(first + m * part)",
-        "(first + 0 * m * part)",
-        unit("numbers_are_one_of_each_of_as_many_parts"),
-    ),
-    (
-        "light points that teach which cells to propose",
-        "crates/bidir/src/guide/proposals.rs",
-        "        *arrived += u32::from(has_arrived);\n",
-        "        *arrived += u32::from(has_arrived);\n        self.squares[pair] += 1.0;\n",
-        unit("traced_connections_change_visibility_alone"),
     ),
     (
         "light images of fewer subpaths not made up for",

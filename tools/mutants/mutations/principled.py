@@ -1,6 +1,6 @@
-"""Faults in the principled material and in what glTF files say."""
+"""Faults in the principled material, and in light between facets."""
 
-from .tests import formats, unit
+from .tests import unit
 
 MODEL = "crates/bidir/src/bsdf/principled/mod.rs"
 VALUE = "crates/bidir/src/bsdf/principled/value.rs"
@@ -99,20 +99,5 @@ PRINCIPLED = [
         "p.metallic > 0.0 || f0.max_lane()",
         "f0.max_lane()",
         unit("white_facets_vanish_in_a_furnace"),
-    ),
-    # --- glTF ---------------------------------------------------------------------------------
-    (
-        "textures of glTF upside down",
-        "crates/formats/src/gltf/mesh.rs",
-        "Vec2::new(s, 1.0 - t)",
-        "Vec2::new(s, t)",
-        formats("textures_are_the_right_way_up"),
-    ),
-    (
-        "mirrored nodes keep their winding",
-        "crates/formats/src/gltf/mesh/placing.rs",
-        "let orientation = if is_mirrored {",
-        "let orientation = if !is_mirrored && is_mirrored {",
-        formats("mirrored_nodes_turn_the_winding"),
     ),
 ]
