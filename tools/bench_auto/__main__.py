@@ -15,24 +15,24 @@ the same light: a scene of which `path` misses some, such as the light of a poin
 no comparison.
 """
 
-import argparse
 import sys
 from concurrent.futures import ProcessPoolExecutor
 from multiprocessing import get_context
 from pathlib import Path
 
+sys.path.append(str(Path(__file__).resolve().parents[1]))
+
 import figures
+import harness
 import measure
 import worlds
 
-SCENES = Path(__file__).resolve().parents[2] / "scenes"
+SCENES = harness.ROOT / "scenes"
 
 
 def arguments():
     """Read the command line."""
-    parser = argparse.ArgumentParser(
-        prog="tools/bench_auto", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
+    parser = harness.parser("bench_auto", __doc__)
     add = parser.add_argument
     add("scenes", nargs="*", type=Path, metavar="SCENE", help="files, or folders of them [scenes]")
     add("--worlds", type=Path, metavar="FOLDER", help="write the scenes of worlds.py there, and measure them")
@@ -83,10 +83,8 @@ def main():
         if rows:
             print(figures.table(rows))
     if not rows:
-        print("bench_auto: no scene was measured", file=sys.stderr)
-        return 1
-    return 0
+        sys.exit("bench_auto: no scene was measured")
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    main()

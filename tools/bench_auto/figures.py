@@ -4,6 +4,7 @@ import math
 from collections import Counter
 from dataclasses import dataclass
 
+import harness
 import numpy as np
 
 #: Added to the square of a pixel's mean, as by `bidir compare`.
@@ -132,20 +133,23 @@ def blocks(images):
 
 def table(rows):
     """Return Markdown, with the geometric mean of `auto` relative to the best of the others."""
-    names = list(rows[0].products)
-    titles = [*(f"`{name}`" for name in names), "over the best", "90 %", "`bdpt` over `auto`", "plan"]
-    lines = [f"| | {' | '.join(titles)} |", "|---|" + "---:|" * (len(names) + 3) + "---|"]
-    for row in rows:
-        cells = " | ".join(cell(product) for product in row.products.values())
-        interval = "{:.2f} to {:.2f}".format(*row.interval())
-        ahead = 1.0 / row.behind("bdpt")
-        lines.append(
-            f"| {row.scene} | {cells} | {row.behind():.2f} | {interval} | {ahead:.2f} | {row.plan()} |"
-        )
+    names = (f"`{name}`" for name in rows[0].products)
+    head = ["", *names, "over the best", "90 %", "`bdpt` over `auto`", "plan"]
+    lines = [
+        [
+            row.scene,
+            *map(cell, row.products.values()),
+            f"{row.behind():.2f}",
+            "{:.2f} to {:.2f}".format(*row.interval()),
+            f"{1.0 / row.behind('bdpt'):.2f}",
+            row.plan(),
+        ]
+        for row in rows
+    ]
     behind = [row.behind() for row in rows]
     mean = math.exp(sum(map(math.log, behind)) / len(behind))
-    lines += ["", f"{len(rows)} scenes: {mean:.3f} (geometric mean), {min(behind):.2f} to {max(behind):.2f}."]
-    return "\n".join(lines)
+    total = f"{len(rows)} scenes: {mean:.3f} (geometric mean), {min(behind):.2f} to {max(behind):.2f}."
+    return f"{harness.table(head, lines)}\n\n{total}"
 
 
 def cell(product):

@@ -1,8 +1,14 @@
 """Tests of this tool: python3 -m pytest tools/bench_auto/tests.py"""
 
-import figures
+import sys
+from pathlib import Path
+
 import numpy as np
 import pytest
+
+sys.path.append(str(Path(__file__).resolve().parents[1]))
+
+import figures
 
 SPP = 4
 

@@ -1,53 +1,41 @@
-"""Figures: tables, the file that stores them, and comparisons with it."""
+"""Figures: tables, the file that stores them, and comparisons with it.
+
+Figures are what the file has: the versions that made them, and numbers per sample of each scene and method,
+of stages and of functions.
+"""
 
 import json
-import os
+from pathlib import Path
 
+import harness
+
+KEPT = Path(__file__).with_name("figures.json")
 # Relative changes above this are shown; compilers and libraries cause smaller ones.
 TOLERANCE = 0.03
 # Changes of smaller parts of a sample are ignored. Unit: instructions.
 LEAST = 200.0
 
 
-def from_measured(measured, made_with):
-    """Converts figures for the file: the versions that made them, and numbers per sample by name."""
-    return {
-        "made_with": made_with,
-        "samples": {"%s, %s" % (row.scene, row.method): {
-            "instructions": round(row.instructions),
-            "rays": round(row.rays, 3),
-            "instructions_per_ray": round(row.instructions / row.rays),
-        } for row in measured.rows},
-        "stages": {name: round(count) for name, count in measured.stages.items()},
-        "functions": [[name, round(own), round(whole)] for name, own, whole in measured.functions],
-    }
+def load():
+    return json.loads(KEPT.read_text(encoding="utf-8"))
 
 
-def load(path):
-    """Reads the stored figures; empty if there is no file."""
-    if not os.path.exists(path):
-        return {"made_with": "", "samples": {}, "stages": {}, "functions": []}
-    with open(path, encoding="utf-8") as file:
-        return json.load(file)
-
-
-def save(path, figures):
-    with open(path, "w", encoding="utf-8") as file:
-        json.dump(figures, file, indent=1)
-        file.write("\n")
+def save(figures):
+    KEPT.write_text(json.dumps(figures, indent=1) + "\n", encoding="utf-8")
 
 
 def changes(new, kept):
     """Returns the figures that differ from the stored ones by more than the tolerance: (name, before, now)."""
-    found = []
-    for name, row in new["samples"].items():
-        if name in kept["samples"]:
-            before = kept["samples"][name]
-            found += [("%s: %s" % (name, key), before[key], row[key])
-                      for key in ("instructions", "rays")]
-    found += [("stage %s" % name, kept["stages"][name], count)
-              for name, count in new["stages"].items() if name in kept["stages"]]
-    return [one for one in found if _is_change(*one)]
+    before, now = _compared(kept), _compared(new)
+    return [(name, before[name], now[name]) for name in now
+            if name in before and _is_change(name, before[name], now[name])]
+
+
+def _compared(figures):
+    """Returns the numbers that are compared, by name."""
+    found = {"%s: %s" % (name, key): row[key] for name, row in figures["samples"].items()
+             for key in ("instructions", "rays")}
+    return found | {"stage " + name: count for name, count in figures["stages"].items()}
 
 
 def _is_change(name, before, now):
@@ -57,63 +45,45 @@ def _is_change(name, before, now):
     return abs(now - before) > TOLERANCE * before
 
 
-def missing(new, kept):
-    """Returns the names without a stored figure."""
-    return ([name for name in new["samples"] if name not in kept["samples"]]
-            + ["stage %s" % name for name in new["stages"] if name not in kept["stages"]])
-
-
 def report(new, kept):
     """Formats the tables and the changes."""
-    parts = [_table(new["samples"])]
+    parts = [_samples(new["samples"])]
     if new["stages"]:
         parts += [_stages(new["stages"]), _functions(new)]
-    lines = ["%s: %g, was %g (%+.1f %%)" % (name, now, before, 100 * (now / before - 1))
+    lines = ["- %s: %g, was %g (%+.1f %%)" % (name, now, before, 100 * (now / before - 1))
              for name, before, now in changes(new, kept) if before > 0]
-    lines += ["%s: new" % name for name in missing(new, kept)]
-    parts.append(_list("Changed by more than %g %%" % (100 * TOLERANCE), lines))
-    parts.append("Compared with figures of %s." % (kept["made_with"] or "nobody"))
+    lines += ["- %s: new" % name for name in _compared(new) if name not in _compared(kept)]
+    title = "Changed by more than %g %%:" % (100 * TOLERANCE)
+    parts.append("\n".join([title, "", *lines]) if lines else title + " nothing.")
+    parts.append("Compared with figures of %s." % kept["made_with"])
     return "\n\n".join(parts)
 
 
-def _list(title, lines):
-    if not lines:
-        return title + ": nothing."
-    return "\n".join([title + ":", ""] + ["- " + line for line in lines])
-
-
-def _table(samples):
+def _samples(samples):
     """Formats a table with scenes in rows and methods in columns."""
     pairs = [name.split(", ", 1) for name in samples]
     scenes, methods = [list(dict.fromkeys(pair[i] for pair in pairs)) for i in (0, 1)]
-    lines = ["| thousands of instructions per sample (rays per sample, instructions per ray) | "
-             + " | ".join("`%s`" % method for method in methods) + " |",
-             "|---|" + "---:|" * len(methods)]
-    for scene in scenes:
-        cells = [_cell(samples.get("%s, %s" % (scene, method))) for method in methods]
-        lines.append("| `%s` | %s |" % (scene, " | ".join(cells)))
-    return "\n".join(lines)
+    title = "thousands of instructions per sample (rays per sample, instructions per ray)"
+    rows = [["`%s`" % scene, *(_cell(samples.get("%s, %s" % (scene, method))) for method in methods)]
+            for scene in scenes]
+    return harness.table([title, *("`%s`" % method for method in methods)], rows)
 
 
 def _cell(row):
     if row is None:
         return "-"
-    return "%.1f (%.2f, %d)" % (row["instructions"] / 1e3, row["rays"],
-                                row["instructions_per_ray"])
+    return "%.1f (%.2f, %d)" % (row["instructions"] / 1e3, row["rays"], row["instructions_per_ray"])
 
 
 def _stages(stages):
     total = sum(stages.values())
-    lines = ["| stage of `bdpt`, `room-indirect` | thousands of instructions per sample | share |",
-             "|---|---:|---:|"]
-    lines += ["| %s | %.2f | %.1f %% |" % (name, count / 1e3, 100 * count / total)
-              for name, count in stages.items()]
-    return "\n".join(lines)
+    head = ["stage of `bdpt`, `room-indirect`", "thousands of instructions per sample", "share"]
+    return harness.table(head, [[name, "%.2f" % (count / 1e3), "%.1f %%" % (100 * count / total)]
+                                for name, count in stages.items()])
 
 
 def _functions(figures):
     total = sum(figures["stages"].values())
-    lines = ["| function, of the same | its own share | with what it calls |", "|---|---:|---:|"]
-    lines += ["| `%s` | %.1f %% | %.1f %% |" % (name, 100 * own / total, 100 * whole / total)
-              for name, own, whole in figures["functions"]]
-    return "\n".join(lines)
+    return harness.table(["function, of the same", "its own share", "with what it calls"],
+                         [["`%s`" % name, *("%.1f %%" % (100 * count / total) for count in counts)]
+                          for name, *counts in figures["functions"]])

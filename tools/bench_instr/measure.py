@@ -1,15 +1,14 @@
 """Runs the program under callgrind, and takes differences."""
 
-import json
 import os
 import re
 import subprocess
-from typing import NamedTuple
 
 import callgrind
+import harness
 
 SIZE = "40x30"
-PASSES = (1, 3)
+PASSES = ("1", "3")
 SCENES = ["cornell", "room-direct", "room-indirect", "apartment"]
 METHODS = {
     "path": ["--integrator", "path"],
@@ -33,72 +32,38 @@ STAGES = {
 }
 
 
-class Failed(Exception):
-    """A run gave no figures."""
-
-
-class Row(NamedTuple):
-    """A method in a scene, per sample."""
-
-    scene: str
-    method: str
-    instructions: float
-    rays: float
-
-
-class Figures:
-    """All counts."""
-
-    def __init__(self):
-        self.rows = []
-        self.stages = {}
-        self.functions = []
-
-
 def rows(text):
     """Returns the scenes and methods whose names contain a text."""
-    return ((scene, method) for scene in SCENES for method in METHODS
-            if text in "%s, %s" % (scene, method))
+    return [(scene, method) for scene in SCENES for method in METHODS if text in "%s, %s" % (scene, method)]
 
 
-class Bench(NamedTuple):
-    """The program, its scenes, and the folder of profiles."""
+def count(program, folder, row, figures):
+    """Adds the figures of a scene and a method, and the profile of the row with figures of stages."""
+    (few, before), (many, after) = [_profile(program, folder, row, spp) for spp in PASSES]
+    samples = after["samples"] - before["samples"]
+    profile = many.minus(few)
+    figures["samples"]["%s, %s" % row] = sample(
+        profile.total() / samples, (after["rays"]["total"] - before["rays"]["total"]) / samples)
+    if row == PROFILED:
+        figures["stages"] = stages(profile, samples)
+        figures["functions"] = functions(profile, samples)
 
-    program: str
-    scenes: str
-    folder: str
 
-    def count(self, scene, method, figures):
-        """Adds a row, and the profile of the row with figures of stages."""
-        (few, before), (many, after) = [self._run(scene, method, spp) for spp in PASSES]
-        samples = after["samples"] - before["samples"]
-        profile = many.minus(few)
-        rays = after["rays"]["total"] - before["rays"]["total"]
-        figures.rows.append(Row(scene, method, profile.total() / samples, rays / samples))
-        if (scene, method) == PROFILED:
-            figures.stages = stages(profile, samples)
-            figures.functions = functions(profile, samples)
+def sample(instructions, rays):
+    """Returns the figures of a sample, rounded for the file."""
+    return {"instructions": round(instructions), "rays": round(rays, 3),
+            "instructions_per_ray": round(instructions / rays)}
 
-    def _run(self, scene, method, spp):
-        """Returns the profile of a render, and its counters."""
-        path = [os.path.join(self.folder, name) for name in ("profile", "image.exr", "stats.json")]
-        command = ["valgrind", "--tool=callgrind", "--callgrind-out-file=" + path[0],
-                   "--dump-line=no", self.program, "render",
-                   os.path.join(self.scenes, scene + ".pbrt"), "-q", "-o", path[1],
-                   "--size", SIZE, "--spp", str(spp), "--threads", "1", "--seed", "0",
-                   "--stats", path[2]] + METHODS[method]
-        # Environment variables of the caller must not change the counts.
-        environment = {name: value for name, value in os.environ.items()
-                       if not name.startswith("BIDIR_")}
-        environment["BIDIR_ISA"] = "sse2"
-        run = subprocess.run(command, env=environment, stdout=subprocess.PIPE,
-                             stderr=subprocess.STDOUT, check=False)
-        if run.returncode != 0:
-            raise Failed("%s: %s" % (" ".join(command), run.stdout.decode(errors="replace")))
-        with open(path[0], encoding="utf-8") as file:
-            profile = callgrind.parse(file)
-        with open(path[2], encoding="utf-8") as file:
-            return profile, json.load(file)
+
+def _profile(program, folder, row, spp):
+    """Returns the profile of a render, and its counters."""
+    scene, method = row
+    path = os.path.join(folder, "profile")
+    command = ["valgrind", "--tool=callgrind", "--callgrind-out-file=" + path, "--dump-line=no", program]
+    counters, _ = harness.render(command, folder, harness.ROOT / "scenes" / (scene + ".pbrt"), "--size", SIZE,
+                                 "--spp", spp, "--threads", "1", "--seed", "0", *METHODS[method], BIDIR_ISA="sse2")
+    with open(path, encoding="utf-8") as file:
+        return callgrind.parse(file), counters
 
 
 def made_with(program):
@@ -118,17 +83,17 @@ def stages(profile, samples):
     for stage, pattern in STAGES.items():
         names = profile.find(pattern)
         if not names:
-            raise Failed("no function is `%s`, the stage %s: has it another name, or is it inlined?"
-                         % (pattern, stage))
+            raise harness.Failed("no function is `%s`, the stage %s: has it another name, or is it inlined?"
+                                 % (pattern, stage))
         found[stage] = sum(profile.inclusive(name) for name in names) / samples
     found["other"] = profile.total() / samples - sum(found.values())
-    return found
+    return {stage: round(count) for stage, count in found.items()}
 
 
 def functions(profile, samples, most=16):
-    """The functions with the most instructions of their own: (name, own, inclusive) per sample."""
-    return [(short(name), count / samples, profile.inclusive(name) / samples)
-            for name, count in profile.own.most_common(most)]
+    """The functions with the most instructions of their own: [name, own, inclusive] per sample."""
+    return [[short(name), round(own / samples), round(profile.inclusive(name) / samples)]
+            for name, own in profile.own.most_common(most)]
 
 
 def short(name):

@@ -24,9 +24,11 @@ import ray
 import bidir
 import bidir.ray
 
-HERE = os.path.dirname(os.path.abspath(__file__))
-ROOT = os.path.realpath(os.path.join(HERE, "..", ".."))
-SCENE = os.path.join(ROOT, "scenes", "room-indirect.pbrt")
+sys.path.append(os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
+
+import harness
+
+SCENE = harness.ROOT / "scenes" / "room-indirect.pbrt"
 #: Pixels of a film of 64 MiB: 144 bytes each.
 WIDE, HIGH = 720, 648
 SKY = 'Film "rgb" "integer xresolution" {} "integer yresolution" {}\nWorldBegin\nLightSource "infinite"\n'
@@ -34,9 +36,7 @@ SKY = 'Film "rgb" "integer xresolution" {} "integer yresolution" {}\nWorldBegin\
 
 def arguments():
     """Read the command line."""
-    parser = argparse.ArgumentParser(
-        prog="tools/bench_ray", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
+    parser = harness.parser("bench_ray", __doc__)
     add = parser.add_argument
     add("--only", choices=["time", "memory"], help="one table")
     add("--rounds", type=int, default=3, help="renders of each kind [%(default)s]")
@@ -63,20 +63,19 @@ def times(args):
     # By default Ray's workers have a low priority, so that other processes would affect the measurement.
     even = {"worker_niceness": 0}
     ray.init(address="local", include_dashboard=False, log_to_driver=False, _system_config=even)
-    rows = []
-    for _ in range(args.rounds):
+    rows, ratios = [], []
+    for number in range(1, args.rounds + 1):
         local, seconds = timed(lambda: bidir.render(scene, settings, spp=spp))
         cluster, longer = timed(lambda: bidir.ray.render(scene, settings, spp=spp, task_seconds=args.task))
         if cluster.film != local.film:
             sys.exit("the films differ")
-        rows.append((seconds, longer, longer / seconds))
+        ratios.append(longer / seconds)
+        rows.append([number, f"{seconds:.1f} s", f"{longer:.1f} s", f"{ratios[-1]:.3f}"])
     ray.shutdown()
     width, height = scene.size
     print(f"room-indirect, {width} x {height}, {spp} samples per pixel, tasks of {args.task:g} s, bdpt:\n")
-    print("| Round | local | Ray | ratio |\n|---|---:|---:|---:|")
-    for number, (seconds, longer, ratio) in enumerate(rows):
-        print(f"| {number + 1} | {seconds:.1f} s | {longer:.1f} s | {ratio:.3f} |")
-    print(f"| median | | | {statistics.median(ratio for *_, ratio in rows):.3f} |\n")
+    rows.append(["median", "", "", f"{statistics.median(ratios):.3f}"])
+    print(harness.table(["Round", "local", "Ray", "ratio"], rows) + "\n")
 
 
 def mebibytes():
@@ -95,16 +94,18 @@ def driver(args):
     after = mebibytes()
     ray.shutdown()
     assert image.film.spp == args.parts
-    print(f"| {args.parts} | {before:.0f} MiB | {after:.0f} MiB | {(after - before) / 64:.1f} |")
+    print(f"{before:.0f} {after:.0f}")
 
 
 def memory(args):
     """Print how much memory drivers take, for a few films and for many."""
-    print(f"films of {WIDE} x {HIGH} pixels, 64 MiB each:\n")
-    print("| Parts | driver before | at most | films more |\n|---|---:|---:|---:|", flush=True)
+    rows = []
     for parts in (args.parts // 8, args.parts):
-        command = [sys.executable, HERE, "--driver", "--parts", str(parts)]
-        subprocess.run(command, check=True)
+        command = [sys.executable, os.path.dirname(__file__), "--driver", "--parts", str(parts)]
+        before, after = map(int, subprocess.check_output(command).split())
+        rows.append([parts, f"{before} MiB", f"{after} MiB", f"{(after - before) / 64:.1f}"])
+    print(f"films of {WIDE} x {HIGH} pixels, 64 MiB each:\n")
+    print(harness.table(["Parts", "driver before", "at most", "films more"], rows))
 
 
 def main():

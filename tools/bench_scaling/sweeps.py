@@ -3,6 +3,7 @@
 import os
 from typing import NamedTuple
 
+import harness
 from runs import Case
 
 METHODS = ("path", "bdpt")
@@ -10,29 +11,25 @@ ONE_THREAD = ("--threads", "1")
 
 
 class Sweep(NamedTuple):
-    """Cases by size, and the columns beside the speeds: names, and a function of the size and of
-    the costs by method."""
+    """Cases by size, and the columns beside the speeds: functions of the size and of the costs by method."""
 
     title: str
     size: str
     cases: list
-    columns: list
-    values: object
+    columns: dict
 
     def table(self, costs):
         """Formats the costs as Markdown."""
         methods = list(dict.fromkeys(case.method for case in self.cases))
-        speeds = [name for method in methods
-                  for name in ("`%s`, samples per second" % method, "of the first")]
-        head = [self.size] + speeds + self.columns
-        lines = ["| %s |" % " | ".join(head), "|" + "---:|" * len(head)]
+        speeds = [name for method in methods for name in ("`%s`, samples per second" % method, "of the first")]
         sizes = list(dict.fromkeys(case.size for case in self.cases))
         first = {method: costs[sizes[0], method] for method in methods}
+        rows = []
         for size in sizes:
             at = {method: costs[size, method] for method in methods}
-            cells = [amount(size)] + _speeds(at, first) + self.values(size, at)
-            lines.append("| %s |" % " | ".join(cells))
-        return "\n".join(lines)
+            rows.append([amount(size), *_speeds(at, first),
+                         *(value(size, at) for value in self.columns.values())])
+        return harness.table([self.size, *speeds, *self.columns], rows)
 
 
 def _speeds(at, first):
@@ -52,96 +49,79 @@ def amount(number):
     return "%.3g" % number
 
 
+LOAD = {"load (s)": lambda _, at: "%.2f" % at["path"].load_seconds}
+PEAK = {"peak of memory (MB)": lambda _, at: "%.0f" % (at["path"].peak_bytes / 1e6)}
+
+
 def _cases(size, scene, *flags):
     return [Case(size, method, scene, flags) for method in METHODS]
 
 
-def threads(worlds, scenes):
+def _own(name):
+    return harness.ROOT / "scenes" / (name + ".pbrt")
+
+
+def _growing(title, size, built, columns):
+    """A sweep over generated scenes with their sizes, on one thread."""
+    return Sweep(title, size, [case for scene, count in built for case in _cases(count, scene, *ONE_THREAD)],
+                 columns)
+
+
+def threads(_worlds):
     """Powers of two up to the number of processors."""
-    del worlds
-    scene = os.path.join(scenes, "room-indirect.pbrt")
     counts = [1 << i for i in range(os.cpu_count().bit_length()) if 1 << i <= os.cpu_count()]
-    cases = [case for count in counts
-             for case in _cases(count, scene, "--threads", str(count), "--size", "160x120")]
-    return Sweep("Threads: `room-indirect`, 160 x 120", "threads", cases, [], lambda *_: [])
+    cases = [case for count in counts for case in _cases(
+        count, _own("room-indirect"), "--threads", str(count), "--size", "160x120")]
+    return Sweep("Threads: `room-indirect`, 160 x 120", "threads", cases, {})
 
 
-def triangles(worlds, scenes):
+def triangles(worlds):
     """One mesh of more and more triangles."""
-    del scenes
-    built = [worlds.triangles(10 ** i) for i in range(2, 7)]
-    cases = [case for scene, count in built for case in _cases(count, scene, *ONE_THREAD)]
-    return Sweep("Triangles: a terrain in a box", "triangles", cases,
-                 ["load (s)", "tree (bytes per triangle)", "peak of memory (MB)"],
-                 lambda size, at: [_load(at), "%.0f" % (at["path"].bvh_bytes / size), _peak(at)])
+    per_triangle = {"tree (bytes per triangle)": lambda size, at: "%.0f" % (at["path"].bvh_bytes / size)}
+    return _growing("Triangles: a terrain in a box", "triangles",
+                    [worlds.triangles(10 ** i) for i in range(2, 7)], LOAD | per_triangle | PEAK)
 
 
-def instances(worlds, scenes):
+def instances(worlds):
     """One mesh at more and more places."""
-    del scenes
-    built = [worlds.instances(places) for places in (1, 10, 100, 1000, 10000)]
-    cases = [case for scene, count in built for case in _cases(count, scene, *ONE_THREAD)]
-    return Sweep("Instances: a terrain of 968 triangles, at 1 to 10 000 places",
-                 "triangles placed", cases,
-                 ["load (s)", "tree (MB)", "peak of memory (MB)"],
-                 lambda _, at: [_load(at), "%.2f" % (at["path"].bvh_bytes / 1e6), _peak(at)])
+    tree = {"tree (MB)": lambda _, at: "%.2f" % (at["path"].bvh_bytes / 1e6)}
+    return _growing("Instances: a terrain of 968 triangles, at 1 to 10 000 places", "triangles placed",
+                    [worlds.instances(10 ** i) for i in range(5)], LOAD | tree | PEAK)
 
 
-def resolution(worlds, scenes):
+def resolution(_worlds):
     """More and more pixels, one sample of each."""
-    del worlds
-    scene = os.path.join(scenes, "cornell.pbrt")
-    flags = ONE_THREAD + ("--max-depth", "1", "--spp", "1", "--size")
-    cases = [Case(side * side, "path", scene, flags + ("%dx%d" % (side, side),))
+    flags = (*ONE_THREAD, "--max-depth", "1", "--spp", "1", "--size")
+    cases = [Case(side * side, "path", _own("cornell"), (*flags, "%dx%d" % (side, side)))
              for side in (128, 256, 512, 1024)]
-    return Sweep("Resolution: `cornell`, one pass of one bounce", "pixels", cases,
-                 ["film (bytes per pixel)", "peak of memory (MB)", "peak (bytes per pixel)"],
-                 lambda size, at: ["%.0f" % (at["path"].film_bytes / size), _peak(at),
-                                   "%.0f" % (at["path"].peak_bytes / size)])
+    film = {"film (bytes per pixel)": lambda size, at: "%.0f" % (at["path"].film_bytes / size)}
+    peak = {"peak (bytes per pixel)": lambda size, at: "%.0f" % (at["path"].peak_bytes / size)}
+    return Sweep("Resolution: `cornell`, one pass of one bounce", "pixels", cases, film | PEAK | peak)
 
 
-def lamps(worlds, scenes):
+def lamps(worlds):
     """More and more lamps of the same power together."""
-    del scenes
-    built = [worlds.lamps(10 ** i) for i in range(6)]
-    cases = [case for scene, count in built for case in _cases(count, scene, *ONE_THREAD)]
-    return Sweep("Lights: triangles that emit, of the same power together", "lights", cases,
-                 ["load (s)", "peak of memory (MB)"], lambda _, at: [_load(at), _peak(at)])
+    return _growing("Lights: triangles that emit, of the same power together", "lights",
+                    [worlds.lamps(10 ** i) for i in range(6)], LOAD | PEAK)
 
 
-def hall(worlds, scenes):
+def hall(worlds):
     """More and more lamps, each of which lights what is near."""
-    del scenes
-    built = [worlds.hall(10 ** i) for i in range(6)]
-    cases = [case for scene, count in built for case in _cases(count, scene, *ONE_THREAD)]
-    return Sweep("Lights all over a hall, of the same power together", "lights", cases,
-                 ["load (s)", "peak of memory (MB)"], lambda _, at: [_load(at), _peak(at)])
+    return _growing("Lights all over a hall, of the same power together", "lights",
+                    [worlds.hall(10 ** i) for i in range(6)], LOAD | PEAK)
 
 
-def length(worlds, scenes):
+def length(worlds):
     """Longer and longer paths; none ends by chance."""
-    del scenes
     scene, _ = worlds.lamps(1)
-    cases = [case for depth in (1, 2, 4, 8, 16)
-             for case in _cases(depth, scene, *ONE_THREAD, "--max-depth", str(depth),
-                                "--path-roulette", "off")]
-    def nanoseconds(_, at):
-        rays = [cost.rays_per_sample for cost in at.values()]
-        speeds = [cost.samples_per_second for cost in at.values()]
-        return ["%.1f, %.1f" % tuple(rays),
-                "%.0f, %.0f" % tuple(1e9 / (speed * ray) for speed, ray in zip(speeds, rays))]
-    return Sweep("Length of paths: an empty box, no roulette", "bounces", cases,
-                 ["rays per sample, of both", "ns per ray, of both"], nanoseconds)
+    cases = [case for depth in (1, 2, 4, 8, 16) for case in _cases(
+        depth, scene, *ONE_THREAD, "--max-depth", str(depth), "--path-roulette", "off")]
+    rays = {"rays per sample, of both": lambda _, at: ", ".join(
+        "%.1f" % cost.rays_per_sample for cost in at.values())}
+    times = {"ns per ray, of both": lambda _, at: ", ".join(
+        "%.0f" % (1e9 / (cost.samples_per_second * cost.rays_per_sample)) for cost in at.values())}
+    return Sweep("Length of paths: an empty box, no roulette", "bounces", cases, rays | times)
 
 
-SWEEPS = {"threads": threads, "triangles": triangles, "instances": instances,
-          "resolution": resolution, "lights": lamps, "hall": hall,
-          "length": length}
-
-
-def _load(at):
-    return "%.2f" % at["path"].load_seconds
-
-
-def _peak(at):
-    return "%.0f" % (at["path"].peak_bytes / 1e6)
+SWEEPS = {"threads": threads, "triangles": triangles, "instances": instances, "resolution": resolution,
+          "lights": lamps, "hall": hall, "length": length}

@@ -8,7 +8,6 @@ work of finding, choosing and keeping them grows.
 import math
 import os
 import struct
-from typing import NamedTuple
 
 FILM = (80, 60)
 BOX = ((-1.5, 1.5), (0.0, 2.0), (-1.5, 2.5))
@@ -24,16 +23,6 @@ Integrator "bdpt" "integer maxdepth" 6
 WorldBegin
 Material "diffuse" "rgb reflectance" [0.6 0.6 0.6]
 """
-
-
-class Ceiling(NamedTuple):
-    """The positions of lamps over a square around (0, height, centre); each covers the fraction `part` of
-    its own square."""
-
-    side: float = 1.0
-    part: float = 1.0
-    height: float = 1.98
-    centre: float = 0.0
 
 
 class Folder:
@@ -88,12 +77,12 @@ class Folder:
         across = max(1, round(math.sqrt(count)))
         body = ('AttributeBegin\nTranslate 0 0 -17\nScale 20 2 20\n%sAttributeEnd\n'
                 % self._mesh("terrain.ply", *_terrain(60)))
-        body += self._lamps(across, Ceiling(side=40.0, part=0.3, height=2.98, centre=-17.0))
+        body += self._lamps(across, side=40.0, part=0.3, height=2.98, centre=-17.0)
         return self._scene("hall-%d" % count, body, HALL), across * across
 
-    def _lamps(self, across, ceiling=None):
-        """Makes a square of downward lamps under the ceiling."""
-        side, part, height, centre = ceiling or Ceiling()
+    def _lamps(self, across, side=1.0, part=1.0, height=1.98, centre=0.0):
+        """Makes downward lamps over a square around (0, height, centre), each of which covers a part of its
+        own square."""
         # A lamp is half a square, so that the total area does not depend on the number.
         spacing = side / across
         count = across * across

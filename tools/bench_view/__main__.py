@@ -2,7 +2,6 @@
 
     python3 tools/bench_view                    a table, in Markdown; some four minutes
     python3 tools/bench_view --clients 64       other numbers of clients
-    python3 tools/bench_view --self-test        tests of this tool, which need no program
 
 One `bidir view` renders all the time. Measurements with and without clients alternate in pairs, whose
 order changes from pair to pair. Clients receive every frame; one of them connects and never reads. All
@@ -12,76 +11,61 @@ but excludes the cost of the clients. The exit code is 0, 1 if the server failed
 is wrong or there is no program. Needs Linux; standard library only.
 """
 
-import argparse
 import os
 import sys
-import unittest
 
 sys.dont_write_bytecode = True
+sys.path.append(os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
 
-import figures
+import harness
 import server
 
-HERE = os.path.dirname(os.path.abspath(__file__))
-ROOT = os.path.realpath(os.path.join(HERE, "..", ".."))
-TARGET = os.environ.get("CARGO_TARGET_DIR", os.path.join(ROOT, "target"))
+NAME = "bench_view"
 
 
 def arguments():
-    parser = argparse.ArgumentParser(prog="tools/bench_view", description=__doc__,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = harness.parser(NAME, __doc__)
+    harness.add_program(parser)
     add = parser.add_argument
-    add("--bidir", default=os.path.join(TARGET, "release", "bidir"), metavar="PROGRAM",
-        help="the program that is measured [%(default)s]")
-    add("--scene", default=os.path.join(ROOT, "scenes", "cornell.pbrt"),
-        help="what is rendered [%(default)s]")
+    add("--scene", default=str(harness.ROOT / "scenes" / "cornell.pbrt"), help="what is rendered [%(default)s]")
     add("--size", default="512x512", help="the film [%(default)s]")
     add("--clients", type=int, default=5, help="one of them never reads [%(default)s]")
     add("--seconds", type=float, default=10.0, help="of each half of a pair [%(default)s]")
     add("--pairs", type=int, default=12, help="how often both are measured [%(default)s]")
-    add("--self-test", action="store_true", help="test this tool")
     return parser.parse_args()
 
 
-def measured(options):
-    """Measures the rates of all pairs, and the memory of the server."""
-    pairs = []
+def run(options):
+    rates = {True: [], False: []}
     with server.View(options.bidir, options.scene, options.size) as view:
         view.settle()
-        for number in range(options.pairs):
-            rates, frames = {}, 0
-            for watched in (number % 2 == 0, number % 2 == 1):
-                with server.Clients(view, options.clients if watched else 0) as clients:
-                    rates[watched] = view.rate(options.seconds)
-                    frames = max(frames, clients.frames())
-            pairs.append(figures.Pair(rates[False], rates[True]))
-            print("pair %d: %.3f of the speed, %.3f of the processor time, %d frames" %
-                  (number, pairs[-1].speed(), pairs[-1].cost(), frames), file=sys.stderr, flush=True)
-        return pairs, view.memory()
+        for watched in harness.turns([True, False], options.pairs):
+            with server.Clients(view, options.clients if watched else 0):
+                rates[watched].append(view.rate(options.seconds))
+            if len(rates[True]) == len(rates[False]):
+                print("pair %d: %.3f of the speed, %.3f of the processor time" % (
+                    len(rates[True]), *ratios(rates[False][-1], rates[True][-1])), file=sys.stderr, flush=True)
+        print(table(rates[False], rates[True], view.memory(), options.clients))
 
 
-def self_test():
-    loader = unittest.TestLoader()
-    result = unittest.TextTestRunner().run(loader.discover(HERE, "tests.py"))
-    return 0 if result.wasSuccessful() and result.testsRun > 0 else 1
+def ratios(alone, watched):
+    """Returns the speed and the processor time with clients relative to those without."""
+    return tuple(b / a for a, b in zip(alone, watched))
 
 
-def main():
-    options = arguments()
-    if options.self_test:
-        return self_test()
-    if not os.path.exists(options.bidir):
-        print("bench_view: there is no %s: run `cargo build --release`" % options.bidir,
-              file=sys.stderr)
-        return 2
-    try:
-        pairs, memory = measured(options)
-    except (server.Failed, OSError) as error:
-        print("bench_view: %s" % error, file=sys.stderr)
-        return 1
-    print(figures.table(pairs, memory, options.clients))
-    return 0
+def table(alone, watched, memory, clients):
+    """Formats the rates of all pairs, and the server's first, last and largest memory in bytes."""
+    first, last, most = ("%.0f MB" % (size / 1e6) for size in memory)
+    speeds = ("%.0f k" % (harness.medians(rates)[0] / 1e3) for rates in (alone, watched))
+    speed, cost = map(harness.interval, zip(*map(ratios, alone, watched)))
+    return harness.table(["%d pairs" % len(alone), "alone", "watched"], [
+        ["clients, one of which never reads", 0, clients],
+        ["samples per second, median", *speeds],
+        ["the same of the pair", 1, speed],
+        ["processor time of the server for a sample, of the pair", 1, cost],
+        ["memory of the server: at first; at last, at most", first, "%s, %s" % (last, most)],
+    ])
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(harness.main(NAME, arguments(), run))

@@ -7,11 +7,12 @@ import re
 import selectors
 import signal
 import socket
-import struct
 import subprocess
 import threading
 import time
 import urllib.request
+
+import harness
 
 # The longest wait. Unit: seconds.
 PATIENCE = 60.0
@@ -19,10 +20,6 @@ PATIENCE = 60.0
 GAP = 0.005
 # The first part of a render, which sends frames more often. Unit: seconds.
 YOUTH = 4.0
-
-
-class Failed(Exception):
-    pass
 
 
 class View:
@@ -34,7 +31,7 @@ class View:
         self.url = self.process.stdout.readline().strip()
         if not self.url.startswith("http://"):
             self.process.kill()
-            raise Failed("`%s` printed no URL" % " ".join(command))
+            raise harness.Failed("`%s` printed no URL" % " ".join(command))
         self.address = re.match(r"http://([^/:]+):(\d+)/", self.url).groups()
         self.first_memory = 0
 
@@ -67,7 +64,7 @@ class View:
             if passes > before:
                 return time.monotonic(), passes, samples
             time.sleep(GAP)
-        raise Failed("the render makes no passes")
+        raise harness.Failed("the render makes no passes")
 
     def rate(self, seconds):
         """Returns samples per second, and processor seconds per sample, of whole passes in about this
@@ -106,46 +103,11 @@ def connected(address):
     while not answer.endswith(b"\r\n\r\n"):
         byte = peer.recv(1)
         if not byte:
-            raise Failed("the server has closed a connection")
+            raise harness.Failed("the server has closed a connection")
         answer += byte
     if b" 101 " not in answer.split(b"\r\n")[0]:
-        raise Failed("no WebSocket: %r" % answer)
+        raise harness.Failed("no WebSocket: %r" % answer)
     return peer
-
-
-class Stream:
-    """A receiver that counts and discards the messages of a server."""
-
-    def __init__(self):
-        self.head = b""
-        self.left = 0
-        self.frames = 0
-
-    def take(self, data):
-        view = memoryview(data)
-        while view:
-            if self.left:
-                eaten = min(self.left, len(view))
-                self.left -= eaten
-                view = view[eaten:]
-                continue
-            self.head += view[:1]
-            view = view[1:]
-            self.begin()
-
-    def begin(self):
-        """Starts a message if its head is complete."""
-        if len(self.head) < 2:
-            return
-        kind, length = self.head[0] & 15, self.head[1] & 127
-        extra = {126: ">H", 127: ">Q"}.get(length)
-        if extra:
-            if len(self.head) < 2 + struct.calcsize(extra):
-                return
-            length, = struct.unpack_from(extra, self.head, 2)
-        self.frames += kind == 2
-        self.left = length
-        self.head = b""
 
 
 class Clients:
@@ -153,7 +115,6 @@ class Clients:
 
     def __init__(self, view, count):
         self.peers = [connected(view.address) for _ in range(count)]
-        self.streams = [Stream() for _ in self.peers[:-1]]
         self.ended = threading.Event()
         self.thread = threading.Thread(target=self.read)
 
@@ -168,20 +129,12 @@ class Clients:
             peer.close()
 
     def read(self):
+        """Receives all that the server sends to all clients but the last."""
         room = bytearray(1 << 20)
         with selectors.DefaultSelector() as selector:
-            for peer, stream in zip(self.peers, self.streams):
-                selector.register(peer, selectors.EVENT_READ, stream)
+            for peer in self.peers[:-1]:
+                selector.register(peer, selectors.EVENT_READ)
             while not self.ended.is_set():
                 for key, _ in selector.select(0.1):
-                    count = key.fileobj.recv_into(room)
-                    if count:
-                        key.data.take(memoryview(room)[:count])
-                    else:
+                    if not key.fileobj.recv_into(room):
                         selector.unregister(key.fileobj)
-                if not self.streams:
-                    self.ended.wait()
-
-    def frames(self):
-        """Returns the number of frames received by all clients together."""
-        return sum(stream.frames for stream in self.streams)

@@ -17,18 +17,17 @@ values, in this order. The line below the table names command, date and file unl
 A file of data begins with the comments `# command: …`, `# date: …`, `# version: …`, `# machine: …`.
 """
 
-import argparse
 import csv
 import os
 import re
 import sys
-import unittest
 from pathlib import Path
 
 sys.dont_write_bytecode = True
+sys.path.append(str(Path(__file__).resolve().parents[1]))
 
-HERE = Path(__file__).resolve().parent
-ROOT = HERE.parents[1]
+import harness
+
 KEYS = ("command", "date", "version", "machine")
 SKIPPED = ("node_modules", "target")
 TABLE = re.compile(r"^<!-- table: (\S+)(.*?)-->$.*?^<!-- end of table -->$", re.DOTALL | re.MULTILINE)
@@ -114,23 +113,19 @@ def rewritten(page):
 
 def pages():
     """Return all pages of the tree."""
-    for folder, below, files in os.walk(ROOT):
+    for folder, below, files in os.walk(harness.ROOT):
         below[:] = sorted(name for name in below if name[0] != "." and name not in SKIPPED)
         yield from (Path(folder, name) for name in sorted(files) if name.endswith(".md"))
 
 
 def main():
-    parser = argparse.ArgumentParser(prog="tools/tables", description=__doc__,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = harness.parser("tables", __doc__)
     parser.add_argument("pages", nargs="*", type=Path, metavar="PAGE.md", help="pages [all]")
     parser.add_argument("--check", action="store_true", help="change nothing")
-    parser.add_argument("--self-test", action="store_true", help="test this tool")
+    parser.add_argument("--self-test", nargs=0, action=harness.SelfTest, help="test this tool")
     args = parser.parse_args()
-    if args.self_test:
-        result = unittest.TextTestRunner().run(unittest.TestLoader().discover(str(HERE), "tests.py"))
-        return 0 if result.wasSuccessful() and result.testsRun > 0 else 1
     faults = []
-    for place in [*sorted(ROOT.glob("docs/data/*.csv")), *(args.pages or pages())]:
+    for place in [*sorted(harness.ROOT.glob("docs/data/*.csv")), *(args.pages or pages())]:
         name = os.path.relpath(place)
         try:
             old, new = rewritten(place) if place.suffix == ".md" else (read(place),) * 2
