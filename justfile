@@ -117,7 +117,7 @@ mutants-changed:
 fuzz SECONDS *TARGETS:
     tools/fuzz {{SECONDS}} {{TARGETS}}
 
-# Kills the program, lets system calls fail, damages its inputs and strains it; or some parts of that.
+# Kills the program, lets system calls fail, damages its inputs and strains its limits; or some parts of that.
 attack *FLAGS:
     cargo build --release
     cargo build --release --example mutations

@@ -1,4 +1,4 @@
-"""Attacks the program: kills it, lets system calls fail, damages its inputs, and strains it.
+"""Attacks the program: kills it, lets system calls fail, damages its inputs, and strains its limits.
 
     python3 tools/attack                  the whole campaign: some two hours
     python3 tools/attack --minute         a little of every part
@@ -12,23 +12,21 @@ the same cases, but for the moments of kills. The exit code is 1 if a case faile
 Needs Linux or macOS and a built bidir; standard library only.
 """
 
-import argparse
 import importlib
 import os
 import shutil
 import sys
 import time
 import traceback
-import unittest
 
 sys.dont_write_bytecode = True
+sys.path.append(os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
 
+import harness
 import part
 
-HERE = os.path.dirname(os.path.abspath(__file__))
-ROOT = os.path.realpath(os.path.join(HERE, "..", ".."))
-TARGET = os.path.abspath(os.environ.get("CARGO_TARGET_DIR", os.path.join(ROOT, "target")))
-# Parts, with the cases of a night and of a minute. soak counts seconds.
+TARGET = harness.TARGET.absolute()
+# Parts, with the cases of a night and of a minute.
 PARTS = {
     "kills": (1000, 20),
     "faults": (3000, 60),
@@ -37,45 +35,29 @@ PARTS = {
     "bombs": (1000, 6),
     "scale": (1000, 6),
     "extremes": (1000, 12),
-    "soak": (600, 8),
 }
 
 
 def arguments():
-    parser = argparse.ArgumentParser(prog="tools/attack", description=__doc__,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = harness.parser("attack", __doc__)
+    harness.add_program(parser)
     add = parser.add_argument
     add("parts", nargs="*", metavar="PART", help="which of %s [all]" % ", ".join(PARTS))
     add("--minute", action="store_true", help="few cases")
     add("--count", type=int, metavar="N", help="cases of each part, instead")
-    add("--seed", type=int, metavar="N", help="random seed [the time]")
-    add("--bidir", default=os.path.join(TARGET, "release", "bidir"), metavar="PROGRAM",
-        help="the program that is attacked [%(default)s]")
-    add("--mutations", default=os.path.join(TARGET, "release", "examples", "mutations"),
+    add("--seed", type=int, default=int(time.time()), metavar="N", help="random seed [the time]")
+    add("--mutations", default=str(TARGET / "release" / "examples" / "mutations"),
         metavar="PROGRAM", help="the example `mutations` of bidir-lab [%(default)s]")
-    add("--self-test", action="store_true", help="test this tool")
+    add("--self-test", nargs=0, action=harness.SelfTest, help="test this tool")
     options = parser.parse_args()
     unknown = [name for name in options.parts if name not in PARTS]
     if unknown:
         parser.error("there is no part %s; the parts are %s" % (unknown[0], ", ".join(PARTS)))
-    return complete(options)
-
-
-def complete(options):
-    """Sets the defaults of missing options."""
     options.parts = options.parts or list(PARTS)
     options.bidir, options.mutations = map(os.path.abspath, (options.bidir, options.mutations))
-    options.root = ROOT
-    if options.seed is None:
-        options.seed = int(time.time())
-    options.out = os.path.join(TARGET, "attack", str(options.seed))
+    options.out = str(TARGET / "attack" / str(options.seed))
     options.counts = {name: options.count or counts[options.minute] for name, counts in PARTS.items()}
     return options
-
-
-def self_test():
-    result = unittest.TextTestRunner().run(unittest.TestLoader().discover(HERE, "tests.py"))
-    return 0 if result.wasSuccessful() and result.testsRun > 0 else 1
 
 
 def attack(name, options):
@@ -93,13 +75,7 @@ def attack(name, options):
     return work
 
 
-def main():
-    options = arguments()
-    if options.self_test:
-        return self_test()
-    if not os.path.exists(options.bidir):
-        print("attack: there is no %s: run `cargo build --release`" % options.bidir, file=sys.stderr)
-        return 2
+def run(options):
     print("seed %d, %s" % (options.seed, options.bidir), flush=True)
     works = [attack(name, options) for name in options.parts]
     failures = sum(work.failures for work in works)
@@ -114,4 +90,4 @@ def main():
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(harness.main("attack", arguments(), run))

@@ -4,6 +4,7 @@ import json
 import os
 
 import exr
+import harness
 import part
 import runs
 from worlds import ROOM
@@ -57,7 +58,7 @@ COMMANDS = {
 
 def prepare(work, folder):
     """The files that the commands read, in an empty folder."""
-    seeds = os.path.join(work.options.root, "fuzz", "seeds")
+    seeds = harness.ROOT / "fuzz" / "seeds"
     for name, data in (("room.pbrt", ROOM), ("info.pbrt", INFO), ("more.pbrt", MORE), ("small.toml", EXPERIMENT)):
         part.write(folder, name, data)
     for name, seed in (("picture.png", "image/rgb8.png"), ("mesh.ply", "ply/little.ply"),
@@ -80,16 +81,18 @@ def figures(path):
             for record in found["records"]]
 
 
-def results(folder, outputs):
-    """The contents of outputs by name: pixels of an EXR, whose attributes have times, else bytes."""
-    found = {}
-    for name in outputs:
-        path = os.path.join(folder, name)
-        if not os.path.exists(path):
-            found[name] = None
-        elif name.endswith(".exr"):
-            pixels = exr.read(path)
-            found[name] = {channel: values.tobytes() for channel, values in pixels.items()}
-        else:
-            found[name] = part.read(folder, name)
-    return found
+def content(path):
+    """Returns all of an output that has to be the same in every run: pixels of an EXR, whose attributes have times,
+    the figures of an experiment, or the bytes of a PNG."""
+    if not os.path.exists(path):
+        return "nothing"
+    if path.endswith(".exr"):
+        return {channel: values.tobytes() for channel, values in exr.read(path).items()}
+    if path.endswith("results.json"):
+        return figures(path)
+    return part.read("", path) if path.endswith(".png") else "a file"
+
+
+def contents(folder, outputs):
+    """Returns the contents of outputs by name."""
+    return {name: content(os.path.join(folder, name)) for name in outputs}

@@ -2,39 +2,33 @@
 
 import array
 import struct
-import sys
 import zlib
 
 # The number of rows of a block by the number of the compression.
 ROWS = {0: 1, 2: 1, 3: 16}
-# The letter of `array` and the bytes of a value by the number of a channel's type.
+# The letter of a value and its bytes by the number of a channel's type.
 TYPES = {0: ("I", 4), 1: ("e", 2), 2: ("f", 4)}
 
 
-def text(data, at):
-    end = data.index(b"\0", at)
-    return data[at:end].decode(), end + 1
-
-
-def header(data):
-    """The attributes by name, and where they end."""
-    attributes, at = {}, 8
+def attributes(data):
+    """Returns the attributes of the header by name, and where they end."""
+    found, at = {}, 8
     while data[at]:
-        name, at = text(data, at)
-        _, at = text(data, at)
-        size, = struct.unpack_from("<I", data, at)
-        attributes[name] = data[at + 4:at + 4 + size]
-        at += 4 + size
-    return attributes, at + 1
+        end = data.index(b"\0", at)
+        kind_end = data.index(b"\0", end + 1)
+        size, = struct.unpack_from("<I", data, kind_end + 1)
+        found[data[at:end].decode()] = data[kind_end + 5:kind_end + 5 + size]
+        at = kind_end + 5 + size
+    return found, at + 1
 
 
 def channels(data):
-    """Names and types, in the order of the file."""
+    """Returns names, letters and bytes, in the order of the file."""
     found, at = [], 0
     while data[at]:
-        name, at = text(data, at)
-        found.append((name, struct.unpack_from("<I", data, at)[0]))
-        at += 16
+        end = data.index(b"\0", at)
+        found.append((data[at:end].decode(), *TYPES[struct.unpack_from("<I", data, end + 1)[0]]))
+        at = end + 17
     return found
 
 
@@ -50,47 +44,31 @@ def unpack(block):
 
 
 def read(path):
-    """The values of every channel by name, row by row.
+    """Returns the values of every channel by name, row by row.
 
-    Raises ValueError for files that other programs may write."""
+    Raises KeyError for files that other programs may write."""
     with open(path, "rb") as file:
         data = file.read()
-    attributes, at = header(data)
-    compression = attributes["compression"][0]
-    if compression not in ROWS or attributes["lineOrder"][0] != 0:
-        raise ValueError("%s is packed in a way that is not read here" % path)
-    x0, y0, x1, y1 = struct.unpack("<4i", attributes["dataWindow"])
+    header, at = attributes(data)
+    most_rows = ROWS[header["compression"][0]]
+    x0, y0, x1, y1 = struct.unpack("<4i", header["dataWindow"])
     width, height = x1 - x0 + 1, y1 - y0 + 1
-    kinds = channels(attributes["channels"])
-    pixels = {name: array.array("f") for name, _ in kinds}
-    line = width * sum(TYPES[kind][1] for _, kind in kinds)
-    blocks = -(-height // ROWS[compression])
-    for offset in struct.unpack_from("<%dQ" % blocks, data, at):
+    kinds = channels(header["channels"])
+    pixels = {name: array.array("f") for name, _, _ in kinds}
+    line = width * sum(size for _, _, size in kinds)
+    for offset in struct.unpack_from("<%dQ" % -(-height // most_rows), data, at):
         y, size = struct.unpack_from("<iI", data, offset)
-        rows = min(ROWS[compression], height - (y - y0))
+        rows = min(most_rows, height - (y - y0))
         block = data[offset + 8:offset + 8 + size]
         # A block that would not become smaller is stored as it is.
-        block = unpack(block) if size < rows * line else block
-        lines(block, rows, width, kinds, pixels)
+        block, place = unpack(block) if size < rows * line else block, 0
+        for name, letter, size in kinds * rows:
+            pixels[name].extend(struct.unpack_from("<%d%s" % (width, letter), block, place))
+            place += size * width
     return pixels
 
 
-def lines(block, rows, width, kinds, pixels):
-    at = 0
-    for _ in range(rows):
-        for name, kind in kinds:
-            letter, size = TYPES[kind]
-            values = struct.unpack_from("<%d%s" % (width, letter), block, at)
-            pixels[name].extend(values)
-            at += size * width
-
-
 def mean(path):
-    """The mean of R, G and B over the image."""
+    """Returns the mean of R, G and B over the image."""
     pixels = read(path)
-    values = [value for name in "RGB" for value in pixels[name]]
-    return sum(values) / len(values)
-
-
-if __name__ == "__main__":
-    print(mean(sys.argv[1]))
+    return sum(sum(pixels[name]) for name in "RGB") / sum(len(pixels[name]) for name in "RGB")

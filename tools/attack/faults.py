@@ -41,7 +41,7 @@ class Target:
         with work.folder() as place:
             folder = self.copy(place)
             ended, self.counts = tracer.trace(self.command, folder, None, commands.LIMITS)
-            self.right = commands.results(folder, self.outputs)
+            self.right = commands.contents(folder, self.outputs)
             work.case("%s without a fault" % name, ended.wrong(0), folder, self.command)
 
     def copy(self, place):
@@ -57,7 +57,7 @@ class Target:
         changed = [name for name in self.inputs if name not in own and after.get(name) != self.inputs[name]]
         if changed:
             return "changes %s" % ", ".join(changed)
-        if ended.code == 0 and commands.results(folder, self.outputs) != self.right:
+        if ended.code == 0 and commands.contents(folder, self.outputs) != self.right:
             return "succeeds, but its results are wrong"
         return None
 

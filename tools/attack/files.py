@@ -8,6 +8,7 @@ import os
 import shutil
 
 import commands
+import harness
 import part
 import runs
 
@@ -60,7 +61,7 @@ class Kinds:
 
     def __init__(self, work, prepared):
         self.work, self.random, self.prepared = work, work.random, prepared
-        self.seeds = os.path.join(work.options.root, "fuzz", "seeds")
+        self.seeds = harness.ROOT / "fuzz" / "seeds"
         for name in ("reference", "experiment"):
             command = work.bidir(*commands.COMMANDS[name][0])
             ended = runs.run(command, prepared, commands.LIMITS)

@@ -7,7 +7,6 @@ by itself: its image must have all bits, and no file may be left over.
 import os
 
 import commands
-import exr
 import part
 import runs
 import tracer
@@ -24,17 +23,41 @@ SPP = 64
 
 
 class Whole:
-    """An uninterrupted render by an integrator."""
+    """An uninterrupted command, in a folder of its own: a render by an integrator, a reference or an experiment."""
 
-    def __init__(self, work, integrator, folder):
-        self.integrator, self.folder = integrator, folder
-        self.flags = ["render", "room.pbrt", "-q", "--threads", 1, "--size", "48x32", "--integrator",
-                      integrator]
-        part.write(folder, "room.pbrt", ROOM)
-        command = work.bidir(*self.flags, "--spp", SPP, "-o", "whole.exr", "--checkpoint", "whole.film")
-        ended = runs.run(command, folder, LIMITS)
+    def __init__(self, work, name, folder):
+        self.name = name
+        self.flags = ["render", "room.pbrt", "-q", "--threads", 1, "--size", "48x32", "--integrator", name]
+        self.command = work.bidir(*self.flags, "--spp", SPP, "-o", "a.exr", "--checkpoint", "a.film")
+        if name not in INTEGRATORS:
+            self.command = work.bidir(*commands.COMMANDS[name][0])
+        prepare(folder)
+        ended = runs.run(self.command, folder, LIMITS)
         self.seconds = None if ended.wrong(0) else ended.seconds
-        work.case("%s whole" % integrator, ended.wrong(0), folder, command)
+        work.case("%s whole" % name, ended.wrong(0), folder, self.command)
+        self.right = contents(folder)
+
+    def difference(self, folder):
+        """Returns the difference of a folder's files from the right ones. None: there is none."""
+        found = contents(folder)
+        names = sorted(set(found) ^ set(self.right))
+        if names:
+            return "the files differ: %s" % ", ".join(names)
+        wrong = [name for name in found if found[name] != self.right[name]]
+        return "differs: %s" % ", ".join(wrong) if wrong else None
+
+
+def prepare(folder):
+    for file, text in (("room.pbrt", ROOM), ("small.toml", commands.EXPERIMENT)):
+        part.write(folder, file, text)
+
+
+def contents(folder):
+    """Returns the contents of all files by name, but for those that a share or a merge has more or less of."""
+    paths = [os.path.relpath(os.path.join(place, name), folder)
+             for place, _, names in os.walk(folder) for name in names]
+    others = (".film", ".film.previous", "a.png")
+    return commands.contents(folder, [path for path in paths if not path.endswith(others)])
 
 
 class Kills:
@@ -72,25 +95,10 @@ class Kills:
         return runs.run(command, folder, LIMITS).wrong(0)
 
 
-def left_over(folder, wanted):
-    """Returns the difference of the files of a folder from the expected ones."""
-    surplus = sorted(set(os.listdir(folder)) - set(wanted) - {".said", "room.pbrt"})
-    return "leaves %s behind" % ", ".join(surplus) if surplus else None
-
-
-def same(work, whole, image, folder):
-    command = work.bidir("compare", "--exact", image, os.path.join(whole.folder, "whole.exr"))
-    return runs.run(command, folder, LIMITS).wrong(0)
-
-
 def resumed(kills, whole, folder):
     """One render with a checkpoint after every pass."""
-    work = kills.work
-    command = work.bidir(*whole.flags, "--spp", SPP, "-o", "a.exr", "--checkpoint", "a.film", "--resume",
-                         "--checkpoint-every", "0.001s")
-    fault = kills.insist("render", command, folder, whole.seconds)
-    fault = fault or same(work, whole, "a.exr", folder)
-    return fault or left_over(folder, ("a.exr", "a.png", "a.film", "a.film.previous")), command
+    command = [*whole.command, "--resume", "--checkpoint-every", "0.001s"]
+    return kills.insist("render", command, folder, whole.seconds), command
 
 
 def shared(kills, whole, folder):
@@ -105,10 +113,7 @@ def shared(kills, whole, folder):
         fault = kills.insist("share", command, folder, whole.seconds * (end - begin) / SPP)
         if fault:
             return fault, command
-    fault, command = merged(kills, films, folder)
-    fault = fault or same(work, whole, "a.exr", folder)
-    kept = {"a.exr", "a.png", "whole.film"}.union(films, (film + ".previous" for film in films))
-    return fault or left_over(folder, kept | {"whole.film.previous"}), command
+    return merged(kills, films, folder)
 
 
 def merged(kills, films, folder):
@@ -125,42 +130,9 @@ def merged(kills, films, folder):
     return None, command
 
 
-class Tree:
-    """The outputs of an uninterrupted command that writes a folder of results."""
-
-    def __init__(self, work, name, folder):
-        self.name = name
-        for file, text in (("room.pbrt", ROOM), ("small.toml", commands.EXPERIMENT)):
-            part.write(folder, file, text)
-        self.command = work.bidir(*commands.COMMANDS[name][0])
-        ended = runs.run(self.command, folder, LIMITS)
-        self.seconds = None if ended.wrong(0) else ended.seconds
-        work.case("%s whole" % name, ended.wrong(0), folder, self.command)
-        self.right = self.contents(folder)
-
-    def contents(self, folder):
-        """All files, with the pixels of images and the figures of results."""
-        found = {}
-        for place, _, names in os.walk(folder):
-            for path in (os.path.join(place, name) for name in names):
-                value = exr.read(path) if path.endswith(".exr") else None
-                value = commands.figures(path) if path.endswith("results.json") else value
-                found[os.path.relpath(path, folder)] = value
-        return found
-
-
-def continued(kills, tree, folder):
+def continued(kills, whole, folder):
     """A killed reference or experiment, which the same command resumes."""
-    for file, text in (("room.pbrt", ROOM), ("small.toml", commands.EXPERIMENT)):
-        part.write(folder, file, text)
-    fault = kills.insist(tree.name, tree.command, folder, tree.seconds)
-    found = {} if fault else tree.contents(folder)
-    names = sorted(set(found) ^ set(tree.right))
-    if not fault and names:
-        fault = "the files differ: %s" % ", ".join(names)
-    if not fault and found != tree.right:
-        fault = "differs: %s" % ", ".join(name for name in found if found[name] != tree.right[name])
-    return fault, tree.command
+    return kills.insist(whole.name, whole.command, folder, whole.seconds), whole.command
 
 
 def run(work):
@@ -172,14 +144,15 @@ def run(work):
             if name not in wholes:
                 folder = os.path.join(place, name)
                 os.mkdir(folder)
-                wholes[name] = (Whole if name in INTEGRATORS else Tree)(work, name, folder)
+                wholes[name] = Whole(work, name, folder)
                 if wholes[name].seconds is None:
                     return
             scenario = work.random.choice((resumed, shared)) if name in INTEGRATORS else continued
             with work.folder() as folder:
-                part.write(folder, "room.pbrt", ROOM)
+                prepare(folder)
                 before = kills.killed
                 fault, command = scenario(kills, wholes[name], folder)
+                fault = fault or wholes[name].difference(folder)
                 title = "%s %s after %d kills" % (name, scenario.__name__, kills.killed - before)
                 work.case(title, fault, folder, command)
     work.say("%d kills" % kills.killed)

@@ -20,7 +20,6 @@ import mutations
 import part
 import runs
 import scale
-import soak
 import tracer
 
 
@@ -94,10 +93,6 @@ class Cases(unittest.TestCase):
     def test_every_fault_is_of_a_call_that_is_traced(self):
         for name in (*faults.ERRORS, *kills.FILES):
             self.assertIn(name, tracer.NUMBERS)
-
-    def test_messages_of_clients_have_their_length(self):
-        self.assertEqual(soak.frame(b"ab"), b"\x81\x82\0\0\0\0ab")
-        self.assertEqual(soak.frame(bytes(300))[:4], b"\x81\xfe\x01\x2c")
 
     def test_names_of_targets_are_those_of_the_seeds(self):
         seeds = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "fuzz", "seeds")
