@@ -12,34 +12,29 @@ The exit code is 0 on success, 1 if a renderer failed, if its image differs from
 peer could run, and 2 if the command line is wrong.
 """
 
-import argparse
 import os
 import sys
 
 sys.dont_write_bytecode = True
+sys.path.append(os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
 
 import bench as benchmark
 import check
 import environment
+import harness
 import neutral
 import reference
 import renderers
 import verify
 
-ROOT = os.path.realpath(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", ".."))
-TARGET = os.environ.get("CARGO_TARGET_DIR", os.path.join(ROOT, "target"))
-
 
 def arguments():
-    parser = argparse.ArgumentParser(prog="tools/peers", description=__doc__,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("command", choices=["setup", "bench", "verify", "scenes", "reference",
-                                            "check"])
+    parser = harness.parser("peers", __doc__)
+    harness.add_program(parser)
     add = parser.add_argument
-    add("--folder", default=os.path.join(TARGET, "peers"),
+    add("command", choices=["setup", "bench", "verify", "scenes", "reference", "check"])
+    add("--folder", default=str(harness.TARGET / "peers"),
         help="where environment, scenes and images are [%(default)s]")
-    add("--bidir", default=os.path.join(TARGET, "release", "bidir"), metavar="PROGRAM",
-        help="the program that is measured [%(default)s]")
     add("--with-cycles", action="store_true", help="set up Cycles, too: 0.4 GB more")
     add("--scenes", default=neutral.SCENES, help="[%(default)s]")
     add("--only", default="", metavar="TEXT", help="renderers whose names contain this")
@@ -94,24 +89,22 @@ def run_verify(options):
     return min(1, verify.verify(bench, options.seconds or 8.0, options.repetitions or 8))
 
 
-def main():
-    options = arguments()
-    if options.command not in ("setup", "scenes") and not os.path.exists(options.bidir):
-        print("peers: there is no %s: run `cargo build --release`" % options.bidir,
-              file=sys.stderr)
-        return 2
-    if options.command == "bench":
-        return run_bench(options)
-    if options.command == "verify":
-        return run_verify(options)
+def run(options):
     if options.command == "check":
         return check.check(options.bidir)
     if options.command == "reference":
         return reference.render(prepare(options), options.seconds or 600.0)
+    return run_bench(options) if options.command == "bench" else run_verify(options)
+
+
+def main():
+    options = arguments()
     if options.command == "scenes":
         neutral.write(os.path.join(options.folder, "scenes"))
-        return 0
-    prepare(options)
+    elif options.command == "setup":
+        prepare(options)
+    else:
+        return harness.main("peers", options, run)
     return 0
 
 

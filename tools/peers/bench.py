@@ -2,19 +2,19 @@
 
 import json
 import os
-import platform
 import re
 import statistics
 import sys
 from typing import NamedTuple
 
+import harness
 import score
 import verify
-from renderers import Failed, Job, pixels
+from renderers import Job, pixels
 
 
 class Bench(NamedTuple):
-    """The environment, folder, scenes and renderers of a benchmark."""
+    """The environment, program, renderers and scenes of a benchmark."""
 
     environment: object
     program: str
@@ -71,13 +71,12 @@ def measure(bench, seconds, repetitions):
     records, failed = [], set()
     for repetition in range(repetitions):
         for scene in bench.scenes:
-            reference = score.Reference.load(scene)
             able = bench.able(scene)
             first = repetition * len(able) // repetitions
             for renderer in able[first:] + able[:first]:
                 try:
-                    record = _measure(bench, renderer, scene, seconds, repetition, reference)
-                except Failed as error:
+                    record = _measure(bench, renderer, scene, seconds, repetition)
+                except harness.Failed as error:
                     failed.add(renderer.name)
                     print("peers: %s failed: %s" % (renderer.name, error), file=sys.stderr)
                     continue
@@ -88,57 +87,61 @@ def measure(bench, seconds, repetitions):
     return records, failed
 
 
-def _measure(bench, renderer, scene, seconds, repetition, reference):
+def _measure(bench, renderer, scene, seconds, repetition):
     image = bench.image("bench", renderer, scene, repetition)
     run = renderer.render(bench.job(scene, seconds, repetition, image))
-    found = score.compare(bench.program, [run.image], reference)
+    return record(bench.program, renderer, scene, run)
+
+
+def record(program, renderer, scene, run):
+    """Returns a render with its error."""
+    reference = score.Reference.load(scene)
+    found = score.compare(program, [run.image], reference)
     return Record(renderer.name, renderer.ours, scene, run.samples, run.cpu, run.wall,
                   score.relmse(found, reference), found["mean_ratio"])
 
 
 class Row(NamedTuple):
-    """Returns medians over the repetitions of one renderer in one scene."""
+    """The records of one renderer in one scene."""
 
-    renderer: str
-    ours: bool
-    speed: float
-    variance: float
-    merit: float
-    low: float
-    high: float
-    ratio: float
+    records: list
+
+    def median(self, figure):
+        return statistics.median(getattr(record, figure) for record in self.records)
+
+    @property
+    def name(self):
+        return self.records[0].renderer
+
+    @property
+    def ours(self):
+        return self.records[0].ours
+
+    @property
+    def ratio(self):
+        return statistics.mean(record.ratio for record in self.records)
+
+    def cells(self):
+        merits = [record.merit for record in self.records]
+        return ["**%s**" % self.name if self.ours else self.name, "%.3g M" % (self.median("speed") / 1e6),
+                "%.3g" % self.median("variance"), "%.3g" % self.median("merit"),
+                "%.3g, %.3g" % (min(merits), max(merits)), "%.4f" % self.ratio]
 
 
 def rows(records, scene):
-    """Sorts the renderers, the best first."""
-    names = dict.fromkeys((r.renderer, r.ours) for r in records if r.scene == scene)
-    found = []
-    for name, ours in names:
-        mine = [r for r in records if r.scene == scene and r.renderer == name]
-        merits = [r.merit for r in mine]
-        found.append(Row(
-            renderer=name,
-            ours=ours,
-            speed=statistics.median(r.speed for r in mine),
-            variance=statistics.median(r.variance for r in mine),
-            merit=statistics.median(merits),
-            low=min(merits),
-            high=max(merits),
-            ratio=statistics.mean(r.ratio for r in mine),
-        ))
-    return sorted(found, key=lambda row: row.merit)
+    """Returns the renderers in a scene, the best first."""
+    found = {}
+    for one in records:
+        if one.scene == scene:
+            found.setdefault(one.renderer, []).append(one)
+    return sorted(map(Row, found.values()), key=lambda row: row.median("merit"))
 
 
 def table(records, scene):
     """Formats the records of a scene as Markdown."""
-    lines = ["| scene %s | samples per CPU second | relMSE × samples per pixel "
-             "| relMSE × CPU seconds | from, to | mean / reference |" % scene,
-             "|---|---:|---:|---:|---:|---:|"]
-    for row in rows(records, scene):
-        name = "**%s**" % row.renderer if row.ours else row.renderer
-        lines.append("| %s | %.3g M | %.3g | %.3g | %.3g, %.3g | %.4f |" % (
-            name, row.speed / 1e6, row.variance, row.merit, row.low, row.high, row.ratio))
-    return "\n".join(lines)
+    head = ["scene %s" % scene, "samples per CPU second", "relMSE × samples per pixel", "relMSE × CPU seconds",
+            "from, to", "mean / reference"]
+    return harness.table(head, [row.cells() for row in rows(records, scene)])
 
 
 def verdict(records, scene):
@@ -148,40 +151,32 @@ def verdict(records, scene):
     peer = next((row for row in found if not row.ours), None)
     if not (ours and peer):
         return "Scene %s: nothing to compare." % scene
-    return "Scene %s: our best, %s, is at %.2f of the best peer, %s; %.2f of its samples per " \
-        "second, %.2f of its error per sample." % (
-            scene, ours.renderer, ours.merit / peer.merit, peer.renderer,
-            ours.speed / peer.speed, ours.variance / peer.variance)
+    merit, speed, variance = (ours.median(figure) / peer.median(figure) for figure in ("merit", "speed", "variance"))
+    return "Scene %s: our best, %s, is at %.2f of the best peer, %s; %.2f of its samples per second, " \
+        "%.2f of its error per sample." % (scene, ours.name, merit, peer.name, speed, variance)
 
 
 def differing(records):
     """Returns the renderers whose images differ from the reference, as far as these short runs show it;
     `verify` is more sensitive."""
     found = []
-    for scene in sorted({r.scene for r in records}):
+    for scene in sorted({one.scene for one in records}):
         for row in rows(records, scene):
-            samples = sum(r.samples for r in records
-                          if (r.scene, r.renderer) == (scene, row.renderer))
-            noise = (row.variance / (samples * pixels())) ** 0.5
+            samples = sum(one.samples for one in row.records)
+            noise = (row.median("variance") / (samples * pixels())) ** 0.5
             if abs(row.ratio - 1) > verify.RATIO + 5 * noise:
-                found.append("%s in %s" % (row.renderer, scene))
+                found.append("%s in %s" % (row.name, scene))
     return found
 
 
 def machine(environment):
     """Describes processor, cores and versions in a line."""
-    model = platform.processor() or platform.machine()
-    try:
-        with open("/proc/cpuinfo", encoding="utf-8") as file:
-            model = re.search(r"model name\s*: (.*)", file.read())[1]
-    except (OSError, TypeError):
-        pass
     versions = environment.versions()
     peers = ["%s %s" % (name, versions[name])
              for name in ("mitsuba", "drjit", "pyluxcore", "bpy") if name in versions]
-    return "%s, %d cores; %s" % (model, os.cpu_count(), ", ".join(peers))
+    return "%s; %s" % (harness.machine(), ", ".join(peers))
 
 
 def save(path, records):
     with open(path, "w", encoding="utf-8") as file:
-        json.dump([record._asdict() for record in records], file, indent=1)
+        json.dump([one._asdict() for one in records], file, indent=1)

@@ -5,8 +5,7 @@ import sys
 import tempfile
 
 import neutral
-import score
-from bench import Record
+from bench import record
 from renderers import Job, Ours
 
 PASSES = 8
@@ -29,14 +28,10 @@ def check(program):
 
 
 def _check(program, folder, scene):
-    reference = score.Reference.load(scene)
-    image = os.path.join(folder, scene + ".exr")
-    run = Ours(program, "bdpt").passes(Job(folder, scene, 0.0, os.cpu_count(), 0, image), PASSES)
-    found = score.compare(program, [image], reference)
-    record = Record("bdpt", True, scene, run.samples, run.cpu, run.wall,
-                    score.relmse(found, reference), found["mean_ratio"])
-    good = abs(record.ratio - 1) <= RATIO and 0 < record.variance < 2
+    ours, image = Ours(program, "bdpt"), os.path.join(folder, scene + ".exr")
+    found = record(program, ours, scene, ours.passes(Job(folder, scene, 0.0, os.cpu_count(), 0, image), PASSES))
+    good = abs(found.ratio - 1) <= RATIO and 0 < found.variance < 2
     print("scene %s: %d samples per pixel, mean / reference %.4f, relMSE × CPU seconds %.3g%s" % (
-        scene, record.samples, record.ratio, record.merit, "" if good else ": WRONG"),
+        scene, found.samples, found.ratio, found.merit, "" if good else ": WRONG"),
         file=sys.stdout if good else sys.stderr)
     return good

@@ -37,7 +37,8 @@ class Environment(NamedTuple):
 
     def versions(self):
         """Returns the installed packages: {package: version}."""
-        lines = _output([self.python, "-m", "pip", "list", "--format=freeze"]).splitlines()
+        command = [self.python, "-m", "pip", "list", "--format=freeze"]
+        lines = subprocess.check_output(command, text=True).splitlines()
         return dict(line.split("==", 1) for line in lines if "==" in line)
 
     def llvm(self):
@@ -52,19 +53,17 @@ class Environment(NamedTuple):
                     found.append((int(version[1]), path))
         return min(found)[1] if found else None
 
-    def variables(self):
-        """Returns the environment variables of the peers' scripts."""
+    def variables(self, package=""):
+        """Returns the environment variables of the script of a peer."""
         variables = dict(os.environ, PYTHONDONTWRITEBYTECODE="1")
         if self.llvm():
             variables["DRJIT_LIBLLVM_PATH"] = self.llvm()
+        if package == "pyluxcore":
+            # Its allocator must be loaded first, or its sessions never end.
+            libraries = "".join(glob.glob(self.path("venv/lib/python3*/site-packages/pyluxcore.libs")))
+            variables["LD_PRELOAD"] = "".join(glob.glob(libraries + "/libtbbmalloc_proxy*")[:1])
+            variables["LD_LIBRARY_PATH"] = libraries
         return variables
-
-    def luxcore_variables(self):
-        """Returns the variables for LuxCore, whose allocator must be loaded first, or its sessions never
-        end."""
-        libraries = "".join(glob.glob(self.path("venv/lib/python3*/site-packages/pyluxcore.libs")))
-        allocator = "".join(glob.glob(libraries + "/libtbbmalloc_proxy*")[:1])
-        return dict(self.variables(), LD_PRELOAD=allocator, LD_LIBRARY_PATH=libraries)
 
 
 def set_up(environment, packages):
@@ -95,7 +94,3 @@ def _unpack_llvm(environment):
     except (OSError, ValueError, subprocess.CalledProcessError) as error:
         print("peers: no LLVM %d: %s; DRJIT_LIBLLVM_PATH can name one" % (LLVM, error),
               file=sys.stderr)
-
-
-def _output(command):
-    return subprocess.run(command, stdout=subprocess.PIPE, text=True, check=True).stdout

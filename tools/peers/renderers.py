@@ -7,9 +7,9 @@ import json
 import os
 import re
 import subprocess
-import time
 from typing import NamedTuple
 
+import harness
 import neutral
 
 HERE = os.path.dirname(os.path.abspath(__file__))
@@ -29,10 +29,6 @@ class Run(NamedTuple):
     samples: float   # per pixel
     cpu: float       # seconds, of all threads together
     wall: float      # seconds
-
-
-class Failed(Exception):
-    """A renderer ended with an error; the text is the end of its output."""
 
 
 class Ours:
@@ -73,15 +69,8 @@ class Ours:
         scene = os.path.join(job.scenes, job.scene + ".pbrt")
         command = [self.program, "render", scene, "-q", "-o", job.image, "--spp", str(passes),
                    "--seed", str(job.seed), "--threads", str(job.threads), "--integrator"]
-        start = time.monotonic()
-        child = subprocess.Popen(command + self.flags, stdout=subprocess.PIPE,
-                                 stderr=subprocess.STDOUT, text=True)
-        said = child.stdout.read()
-        _, status, usage = os.wait4(child.pid, 0)
-        child.returncode = os.waitstatus_to_exitcode(status)
-        if child.returncode != 0:
-            raise Failed(said[-400:])
-        return Run(job.image, passes, usage.ru_utime + usage.ru_stime, time.monotonic() - start)
+        usage = harness.run(command + self.flags)
+        return Run(job.image, passes, usage.cpu, usage.wall)
 
 
 class Peer:
@@ -108,16 +97,14 @@ class Peer:
     def render(self, job):
         script = os.path.join(HERE, "render_%s.py" % self.package)
         work = dict(job._asdict(), **self.settings)
-        variables = self.environment.variables()
-        if self.package == "pyluxcore":
-            variables = self.environment.luxcore_variables()
+        variables = self.environment.variables(self.package)
         done = subprocess.run([self.environment.python, script, json.dumps(work)], env=variables,
                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
                               errors="replace", check=False)
         # Some print other lines, too, and some crash at the end although the render succeeded.
         found = re.findall(r'\{"samples".*?\}', done.stdout)
         if not found:
-            raise Failed(done.stdout[-400:])
+            raise harness.Failed(done.stdout[-400:])
         return Run(image=job.image, **json.loads(found[-1]))
 
 

@@ -12,8 +12,6 @@ PROVENANCE = os.path.join(REFERENCES, "provenance.json")
 
 def provenance():
     """Returns the provenance of the references: {scene: facts}."""
-    if not os.path.exists(PROVENANCE):
-        return {}
     with open(PROVENANCE, encoding="utf-8") as file:
         return json.load(file)
 
@@ -32,7 +30,7 @@ class Reference(NamedTuple):
 def compare(program, images, reference):
     """Runs `bidir compare` for an image, or for several with independent seeds; returns its results."""
     command = [program, "compare", "--json", *images, "--reference", reference.path]
-    return json.loads(subprocess.run(command, stdout=subprocess.PIPE, check=True).stdout)
+    return json.loads(subprocess.check_output(command))
 
 
 def relmse(comparison, reference):

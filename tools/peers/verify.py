@@ -4,8 +4,8 @@ import json
 import os
 import subprocess
 
+import harness
 import score
-from renderers import Failed
 
 RATIO = 0.003         # allowed relative difference between the means of an image and the reference
 SIGNIFICANCE = 0.001  # a difference of less probability is no noise
@@ -26,7 +26,7 @@ def verify(bench, seconds, replicates):
         for renderer in bench.able(scene):
             try:
                 row, same = _verify(bench, scene, renderer, seconds, replicates)
-            except Failed as error:
+            except harness.Failed as error:
                 row, same = "| | | | failed: %s |" % " ".join(str(error).split()), False
             print("| %s | %s %s" % (scene, renderer.name, row), flush=True)
             failures += not same
@@ -56,5 +56,4 @@ def pool(environment, kind, out, images):
     """Runs `pool.py` in the environment, whose packages it needs; returns its report."""
     script = os.path.join(score.HERE, "pool.py")
     command = [environment.python, script, kind, out, *images]
-    done = subprocess.run(command, env=environment.variables(), stdout=subprocess.PIPE, check=True)
-    return json.loads(done.stdout)
+    return json.loads(subprocess.check_output(command, env=environment.variables()))
