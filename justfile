@@ -60,7 +60,7 @@ pictures:
     target/release/bidir experiment experiments/shadow-rays.toml -o out/shadow-rays
     cd crates/viewer/browser && node pictures.js report {{justfile_directory()}}/out/shadow-rays/report.html {{justfile_directory()}}/docs/images/report.jpg
 
-# Writes the project's own scenes.
+# Writes the scenes of furnished rooms.
 scenes:
     python3 tools/make_scenes
 

@@ -22,7 +22,7 @@ from primitives import moulding
 from room import spheres, write_shell
 from writer import SceneText
 
-CAMERA = ((0.95, 1.5, 0.4), (2.85, 1.08, 4.2), 54, "")
+CAMERA = ((0.95, 1.5, 0.4), (2.85, 1.08, 4.2), 54)
 HEIGHT, DOOR = 2.6, 2.05
 LIVING_PANEL = (2.5, HEIGHT, 1.7)
 
@@ -220,12 +220,12 @@ def write_rooms(project):
     _study_and_store(out)
     out.note("The tray of the living room's light")
     out.place(lamps.ceiling_panel(0.8), LIVING_PANEL)
-    out.finish(listed=False)
+    out.finish()
 
 
 def write_scene(project, path, comment, panel, strength):
     out = SceneText(project, path, comment)
-    out.header((640, 480), CAMERA, maxdepth=8)
+    out.header(*CAMERA)
     out.include("parts/materials.pbrt")
     out.include("parts/apartment-rooms.pbrt")
     _lamps(out, strength)

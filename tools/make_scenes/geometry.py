@@ -47,17 +47,10 @@ def rotation(axis, degrees):
 class Mesh:
     """Points, optional per-vertex normals (same length) and triangles."""
 
-    def __init__(self):
-        self.points = []
-        self.normals = []
-        self.triangles = []
-
-    def copy(self):
-        out = Mesh()
-        out.points = list(self.points)
-        out.normals = list(self.normals)
-        out.triangles = list(self.triangles)
-        return out
+    def __init__(self, points=(), normals=(), triangles=()):
+        self.points = list(points)
+        self.normals = list(normals)
+        self.triangles = list(triangles)
 
     def face(self, *corners):
         """A flat convex polygon with its own vertices and its own flat normal."""
@@ -79,35 +72,17 @@ class Mesh:
         return self
 
     def moved(self, x, y, z):
-        out = self.copy()
-        out.points = [add(p, (x, y, z)) for p in self.points]
-        return out
+        return Mesh([add(p, (x, y, z)) for p in self.points], self.normals, self.triangles)
 
     def turned(self, axis, degrees):
         rows = rotation(axis, degrees)
-        out = self.copy()
-        out.points = [tuple(dot(r, p) for r in rows) for p in self.points]
-        out.normals = [tuple(dot(r, n) for r in rows) for n in self.normals]
-        return out
-
-    def scaled(self, s):
-        """Uniform scale by a positive factor."""
-        out = self.copy()
-        out.points = [mul(p, s) for p in self.points]
-        return out
+        points, normals = ([tuple(dot(r, v) for r in rows) for v in vectors]
+                           for vectors in (self.points, self.normals))
+        return Mesh(points, normals, self.triangles)
 
     def flipped(self):
         """The same surface facing the other way."""
-        out = self.copy()
-        out.normals = [mul(n, -1.0) for n in self.normals]
-        out.triangles = [(a, c, b) for a, b, c in self.triangles]
-        return out
-
-    def mapped(self, warp, crease=60.0):
-        """Every point through `warp`, normals computed afresh."""
-        out = self.copy()
-        out.points = [warp(p) for p in self.points]
-        return smoothed(out, crease)
+        return Mesh(self.points, [mul(n, -1.0) for n in self.normals], [(a, c, b) for a, b, c in self.triangles])
 
     def is_flat_shaded(self):
         """True where the vertex normals say nothing that the winding does not."""

@@ -9,7 +9,7 @@ from primitives import box, moulding
 from shell import carve
 from writer import SceneText
 
-CAMERA = ((3.6, 1.5, 0.3), (1.62, 0.86, 4.0), 56, "")
+CAMERA = ((3.6, 1.5, 0.3), (1.62, 0.86, 4.0), 56)
 LAMP = (0.48, 0.0, 4.55)          # where the uplighter stands
 PANEL = (2.2, 3.0, 2.6)           # where the ceiling light hangs
 
@@ -19,7 +19,7 @@ def write_palette(project):
                     ["The named materials of the room and of the apartment.",
                      "To be included after WorldBegin."])
     out.materials(MATERIALS)
-    out.finish(listed=False)
+    out.finish()
 
 
 def spheres(out, places):
@@ -115,7 +115,7 @@ def write_furniture(project):
     out.note("The lamps, unlit")
     out.place(lamps.uplighter(), LAMP)
     out.place(lamps.ceiling_panel(1.1), PANEL)
-    out.finish(listed=False)
+    out.finish()
 
 
 def _emitter_disk(out, lit):
@@ -141,7 +141,7 @@ def _emitter_panel(out, lit):
 
 def write_room(project, path, comment, panel, lamp):
     out = SceneText(project, path, comment)
-    out.header((640, 480), CAMERA, maxdepth=8, filter_text='"gaussian"')
+    out.header(*CAMERA)
     out.include("parts/materials.pbrt")
     out.include("parts/room-furniture.pbrt")
     out.note("Ceiling light: " + ("on" if panel else "off"))

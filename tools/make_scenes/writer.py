@@ -24,47 +24,33 @@ def _wrapped(values, per_line, indent):
 
 
 class Project:
-    """The output folder: remembers the meshes written and the scenes made."""
+    """The output folder: remembers the meshes written."""
 
     def __init__(self, root):
         self.root = root
-        self.meshes = {}    # name -> (triangles, bytes)
-        self.scenes = []    # (path, triangles, title) for the README
-        self.broken = []    # (path, what is wrong)
-        self.parts = {}     # include file -> triangles
-        for folder in ("meshes", "parts", "torture", "broken"):
+        self.meshes = {}    # name -> bytes
+        for folder in ("meshes", "parts"):
             os.makedirs(os.path.join(root, folder), exist_ok=True)
 
-    def write(self, path, text):
-        with open(os.path.join(self.root, path), "w", encoding="utf-8", newline="\n") as out:
-            out.write(text)
-
-    def write_bytes(self, path, data):
+    def write(self, path, data):
         with open(os.path.join(self.root, path), "wb") as out:
             out.write(data)
 
     def write_ply(self, name, mesh):
-        normals = not mesh.is_flat_shaded()
-        head = ["ply", "format binary_little_endian 1.0",
-                "element vertex %d" % len(mesh.points)]
-        head += ["property float " + axis for axis in "xyz"]
-        if normals:
-            head += ["property float n" + axis for axis in "xyz"]
-        head += ["element face %d" % len(mesh.triangles),
-                 "property list uchar int vertex_indices", "end_header", ""]
-        data = bytearray("\n".join(head).encode("ascii"))
+        has_normals = not mesh.is_flat_shaded()
+        properties = ["x", "y", "z", *(["nx", "ny", "nz"] if has_normals else [])]
+        head = ["ply", "format binary_little_endian 1.0", "element vertex %d" % len(mesh.points),
+                *("property float " + name for name in properties), "element face %d" % len(mesh.triangles),
+                "property list uchar int vertex_indices", "end_header", ""]
         # rounded first, so that the last bits of a sine do not show
-        for point, normal in zip(mesh.points, mesh.normals):
-            data += struct.pack("<3f", *(round(v, 5) + 0.0 for v in point))
-            if normals:
-                data += struct.pack("<3f", *(round(v, 4) + 0.0 for v in normal))
-        for triangle in mesh.triangles:
-            data += struct.pack("<B3i", 3, *triangle)
-        data = bytes(data)
-        if self.meshes.setdefault(name, (len(mesh.triangles), data))[1] != data:
+        points = [[round(v, 5) + 0.0 for v in point] for point in mesh.points]
+        normals = [[round(v, 4) + 0.0 for v in normal] if has_normals else [] for normal in mesh.normals]
+        data = "\n".join(head).encode()
+        data += b"".join(struct.pack("<%df" % len(properties), *p, *n) for p, n in zip(points, normals))
+        data += b"".join(struct.pack("<B3i", 3, *triangle) for triangle in mesh.triangles)
+        if self.meshes.setdefault(name, data) != data:
             raise ValueError("two different meshes named " + name)
-        with open(os.path.join(self.root, "meshes", name + ".ply"), "wb") as out:
-            out.write(data)
+        self.write("meshes/" + name + ".ply", data)
 
 
 class SceneText:
@@ -73,8 +59,6 @@ class SceneText:
     def __init__(self, project, path, comment):
         self.project = project
         self.path = path
-        self.title = comment[0]
-        self.triangles = 0
         self.lines = ["# " + line if line else "#" for line in comment] + [""]
         self.indent = ""
 
@@ -84,28 +68,19 @@ class SceneText:
     def note(self, text):
         self.lines += ["", self.indent + "# " + text]
 
-    def header(self, film, camera, integrator="bdpt", maxdepth=8, filter_text='"gaussian"',
-               sampler='"sobol" "integer pixelsamples" 64', film_extra=""):
-        """film: (width, height); camera: (eye, target, fov, extra parameters), or a text in
-        place of the angle where it is another camera than `perspective`."""
+    def header(self, eye, target, angle):
         name = os.path.basename(self.path)[:-5] + ".exr"
-        eye, target, fov, extra = camera
-        self.line("LookAt %s  %s  0 1 0" % (nums(eye), nums(target)))
-        kind = fov if isinstance(fov, str) else '"perspective" "float fov" ' + num(fov)
-        self.line("Camera %s%s" % (kind, extra))
-        self.line('Film "rgb" "integer xresolution" %d "integer yresolution" %d%s'
-                  % (film[0], film[1], film_extra))
-        self.line('  "string filename" "%s"' % name)
-        self.line("PixelFilter " + filter_text)
-        self.line("Sampler " + sampler)
-        self.line('Integrator "%s" "integer maxdepth" %d' % (integrator, maxdepth))
-        self.line()
-        self.line("WorldBegin")
-
-    def values(self, parameter, values):
-        """A parameter of many numbers."""
-        text = _wrapped([num(value) for value in values], 18, self.indent + "    ")
-        self.line('  "%s" [%s]' % (parameter, text))
+        self.lines += [
+            "LookAt %s  %s  0 1 0" % (nums(eye), nums(target)),
+            'Camera "perspective" "float fov" ' + num(angle),
+            'Film "rgb" "integer xresolution" 640 "integer yresolution" 480',
+            '  "string filename" "%s"' % name,
+            'PixelFilter "gaussian"',
+            'Sampler "sobol" "integer pixelsamples" 64',
+            'Integrator "bdpt" "integer maxdepth" 8',
+            "",
+            "WorldBegin",
+        ]
 
     def begin(self):
         self.line("AttributeBegin")
@@ -126,24 +101,19 @@ class SceneText:
         """Names the group of the lights of this block; others than bidir ignore it."""
         self.line('Attribute "light" "string lightgroup" "%s"' % name)
 
-    def emit(self, rgb, extra=""):
-        self.line('AreaLightSource "diffuse" "rgb L" [%s]%s' % (nums(rgb), extra))
+    def emit(self, rgb):
+        self.line('AreaLightSource "diffuse" "rgb L" [%s]' % nums(rgb))
 
     def include(self, path):
         self.line('Include "%s"' % path)
-        self.triangles += self.project.parts[path]
 
-    def mesh(self, mesh, normals=None):
-        """Writes an inline trianglemesh, with normals if shading needs them or they are given."""
-        self.triangles += len(mesh.triangles)
-        if normals is None:
-            normals = not mesh.is_flat_shaded()
+    def mesh(self, mesh):
+        """Writes an inline trianglemesh, with normals if shading needs them."""
         indent = self.indent + "    "
         self.line('Shape "trianglemesh"')
-        self.line('  "integer indices" [%s]' % _wrapped(
-            ["%d %d %d" % t for t in mesh.triangles], 12, indent))
+        self.line('  "integer indices" [%s]' % _wrapped(["%d %d %d" % t for t in mesh.triangles], 12, indent))
         self.line('  "point3 P" [%s]' % _wrapped([nums(p) for p in mesh.points], 6, indent))
-        if normals:
+        if not mesh.is_flat_shaded():
             self.line('  "normal N" [%s]' % _wrapped(
                 [nums(round(v, 5) for v in n) for n in mesh.normals], 6, indent))
 
@@ -153,10 +123,9 @@ class SceneText:
             self.mesh(mesh)
             return
         self.project.write_ply(name, mesh)
-        self.triangles += len(mesh.triangles)
         self.line('Shape "plymesh" "string filename" "meshes/%s.ply"' % name)
 
-    def place(self, model, at, angle=0.0, swap=None, scale=1.0):
+    def place(self, model, at, angle=0.0, swap=None):
         """A model of the furniture at a point of the plan, turned about the
         vertical. swap: {material of the model: material to use instead}."""
         self.begin()
@@ -164,19 +133,13 @@ class SceneText:
         self.line("Translate " + nums(at))
         if angle:
             self.line("Rotate %s 0 1 0" % num(angle))
-        if scale != 1.0:
-            self.line("Scale %s %s %s" % ((num(scale),) * 3))
         for part, material, mesh in model.parts:
             self.use((swap or {}).get(material, material))
             self.big_mesh(model.name + "-" + part, mesh)
         self.end()
 
-    def finish(self, listed=True):
-        self.project.write(self.path, "\n".join(self.lines) + "\n")
-        if listed:
-            self.project.scenes.append((self.path, self.triangles, self.title))
-        else:
-            self.project.parts[self.path] = self.triangles
+    def finish(self):
+        self.project.write(self.path, ("\n".join(self.lines) + "\n").encode())
 
 
 class Model:
