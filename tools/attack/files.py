@@ -74,57 +74,68 @@ class Kinds:
         name = self.random.choice(sorted(os.listdir(folder)))
         return name, part.read(folder, name)
 
-    def ends(self, title, folder, *arguments):
+    def run(self, title, folder, *arguments, **means):
+        """Returns the title, how the program ended, and the command."""
         command = self.work.bidir(*arguments)
-        ended = runs.run(command, folder, LIMITS)
+        return title, runs.run(command, folder, LIMITS, **means), command
+
+    def ends(self, *case):
+        title, ended, command = self.run(*case)
         return title, ended.fault(), command
 
-    def scene(self, folder):
-        kind = self.random.choice(("pbrt", "gltf"))
+    def refused(self, *case):
+        """Damage has to be found."""
+        title, ended, command = self.run(*case)
+        return title, ended.fault() or (None if ended.code else "the damage is not found"), command
+
+    def mutated(self, folder, kind, begin=0):
+        """Writes a mutated seed, without its first bytes. Returns its name."""
         name, data = self.seed(kind)
-        part.write(folder, name, mutate(self.random, data))
+        part.write(folder, name, mutate(self.random, data[begin:]))
+        return name
+
+    def rendered(self, folder, name, body):
+        """Renders a scene that names a file."""
+        part.write(folder, "s.pbrt", 'Camera "perspective" WorldBegin ' + body.replace("FILE", name))
+        return self.ends(name, folder, "render", "s.pbrt", *TINY, "-o", "out.exr")
+
+    def scene(self, folder):
+        name = self.mutated(folder, self.random.choice(("pbrt", "gltf")))
         lenient = self.random.choice(([], ["--lenient"]))
         if self.random.random() < 0.5:
             return self.ends(name, folder, "info", name, *lenient)
         return self.ends(name, folder, "render", name, *TINY, "-o", "out.exr", *lenient)
 
     def mesh(self, folder):
-        name, data = self.seed("ply")
-        part.write(folder, name, mutate(self.random, data))
-        part.write(folder, "s.pbrt", 'Camera "perspective" WorldBegin LightSource "infinite" '
-                   'Shape "plymesh" "string filename" "%s"' % name)
-        return self.ends(name, folder, "render", "s.pbrt", *TINY, "-o", "out.exr")
+        name = self.mutated(folder, "ply")
+        return self.rendered(folder, name, 'LightSource "infinite" Shape "plymesh" "string filename" "FILE"')
 
     def spectrum(self, folder):
-        name, data = self.seed("spectrum")
-        part.write(folder, name, mutate(self.random, data))
-        part.write(folder, "s.pbrt", 'Camera "perspective" WorldBegin LightSource "infinite" "spectrum L" "%s" '
-                   'Material "conductor" "spectrum eta" "%s" Shape "sphere"' % (name, name))
-        return self.ends(name, folder, "render", "s.pbrt", *TINY, "-o", "out.exr")
+        name = self.mutated(folder, "spectrum")
+        return self.rendered(folder, name, 'LightSource "infinite" "spectrum L" "FILE" '
+                             'Material "conductor" "spectrum eta" "FILE" Shape "sphere"')
 
     def image(self, folder):
-        name, data = self.seed("image")
         # The first byte of a seed names the format.
-        part.write(folder, name, mutate(self.random, data[1:]))
+        name = self.mutated(folder, "image", begin=1)
         kind = self.random.choice(("tonemap", "compare", "texture", "sky"))
         if kind == "tonemap":
             return self.ends(name, folder, "tonemap", name, "-o", "out.png")
         if kind == "compare":
             return self.ends(name, folder, "compare", name, name)
-        use = ('LightSource "infinite" "string filename" "%s"' if kind == "sky" else
-               'LightSource "infinite" Texture "t" "spectrum" "imagemap" "string filename" "%s" '
-               'Material "diffuse" "texture reflectance" "t" Shape "sphere"') % name
-        part.write(folder, "s.pbrt", 'Camera "perspective" WorldBegin ' + use)
-        return self.ends(name, folder, "render", "s.pbrt", *TINY, "-o", "out.exr")
+        if kind == "sky":
+            return self.rendered(folder, name, 'LightSource "infinite" "string filename" "FILE"')
+        return self.rendered(folder, name, 'LightSource "infinite" Texture "t" "spectrum" "imagemap" "string filename" '
+                             '"FILE" Material "diffuse" "texture reflectance" "t" Shape "sphere"')
 
     def description(self, folder):
         self.copy(folder, ("room.pbrt",))
         text = mutate(self.random, commands.EXPERIMENT.encode())
         part.write(folder, "small.toml", text)
-        command = self.work.bidir("experiment", "small.toml", "-o", "out", "-q", "--quick", "--threads", "1")
-        ended = runs.run(command, folder, LIMITS, kill_after=PATIENCE)
+        title, ended, command = self.run("small.toml", folder, "experiment", "small.toml", "-o", "out", "-q", "--quick",
+                                         "--threads", "1", kill_after=PATIENCE)
         # A valid description may take unlimited time.
-        return "small.toml", None if ended.code == -9 else ended.fault(), command
+        return title, None if ended.code == -9 else ended.fault(), command
 
     def copy(self, folder, names):
         for name in names:
@@ -149,10 +160,7 @@ class Kinds:
         title = self.damage(folder, ("a.film",))
         arguments = self.random.choice((("film", "verify", "a.film"), ("film", "develop", "a.film", "-o", "o.exr"),
                                         ("merge", "a.film", "b.film", "-o", "o.film")))
-        title, fault, command = self.ends(title, folder, *arguments)
-        if not fault and runs.run(command, folder, LIMITS).code == 0:
-            fault = "the damage is not found"
-        return title, fault, command
+        return self.refused(title, folder, *arguments)
 
     def records(self, folder):
         """A resumed experiment has the same results, or is refused."""
@@ -172,10 +180,7 @@ class Kinds:
                                      "out-reference/provenance.json"))
         text = commands.EXPERIMENT.replace("reference-spp = 32", 'size = "8x6"\nreference = "out-reference"')
         part.write(folder, "small.toml", text)
-        title, fault, command = self.ends(title, folder, "experiment", "small.toml", "-o", "out", "-q")
-        if not fault and runs.run(command, folder, LIMITS).code == 0:
-            fault = "the damage is not found"
-        return title, fault, command
+        return self.refused(title, folder, "experiment", "small.toml", "-o", "out", "-q")
 
 
 def run(work):

@@ -20,7 +20,7 @@ import seating
 from geometry import Mesh
 from primitives import moulding
 from room import spheres, write_shell
-from writer import SceneText
+from writer import SceneText, emission, group, named, translation
 
 CAMERA = ((0.95, 1.5, 0.4), (2.85, 1.08, 4.2), 54)
 HEIGHT, DOOR = 2.6, 2.05
@@ -170,14 +170,10 @@ def _study_and_store(out):
     out.place(lamps.ceiling_panel(0.5), (7.76, HEIGHT, 7.6))
 
 
-def _disk_down(out, group, centre, radius, rgb):
-    out.begin()
-    out.group(group)
-    out.emit(rgb)
-    out.line("Translate %g %g %g" % centre)
-    out.line("Rotate 90 1 0 0  # the disk's normal, +z, now points down")
-    out.line('Shape "disk" "float radius" %g' % radius)
-    out.end()
+def _disk_down(out, name, centre, radius, rgb):
+    with out.block(group(name), emission(rgb), translation(centre)):
+        out.line("Rotate 90 1 0 0  # the disk's normal, +z, now points down")
+        out.line('Shape "disk" "float radius" %g' % radius)
 
 
 def _lamps(out, strength):
@@ -194,19 +190,11 @@ def _lamps(out, strength):
     globes = [("hall", (3.5, HEIGHT - 0.31, 4.95), 0.10, (42, 38, 32))]
     globes += [("bedroom", (bx, 0.4995 + 0.40, 9.15), 0.045, (190, 150, 100))
                for bx in (4.30, 6.40)]
-    for group, centre, radius, rgb in globes:
-        out.begin()
-        out.group(group)
-        out.emit(times(rgb))
-        out.line("Translate %g %g %g" % centre)
-        out.line('Shape "sphere" "float radius" %g' % radius)
-        out.end()
-    out.begin()
-    out.group("store")
-    out.emit(times((30, 30, 30)))
-    out.line("Translate %g %g %g" % (7.76, HEIGHT, 7.6))
-    out.mesh(lamps.panel_emitter(0.44))
-    out.end()
+    for name, centre, radius, rgb in globes:
+        with out.block(group(name), emission(times(rgb)), translation(centre)):
+            out.line('Shape "sphere" "float radius" %g' % radius)
+    with out.block(group("store"), emission(times((30, 30, 30))), translation((7.76, HEIGHT, 7.6))):
+        out.mesh(lamps.panel_emitter(0.44))
 
 
 def write_rooms(project):
@@ -230,14 +218,9 @@ def write_scene(project, path, comment, panel, strength):
     out.include("parts/apartment-rooms.pbrt")
     _lamps(out, strength)
     out.note("The living room's ceiling light: " + ("on" if panel else "off"))
-    out.begin()
-    if panel:
-        out.group("living")
-        out.emit(panel)
-    out.use("white")
-    out.line("Translate %g %g %g" % LIVING_PANEL)
-    out.mesh(lamps.panel_emitter(0.7))
-    out.end()
+    light = [group("living"), emission(panel)] if panel else []
+    with out.block(*light, named("white"), translation(LIVING_PANEL)):
+        out.mesh(lamps.panel_emitter(0.7))
     out.finish()
 
 

@@ -7,7 +7,7 @@ import seating
 from palette import MATERIALS
 from primitives import box, moulding
 from shell import carve
-from writer import SceneText
+from writer import SceneText, emission, named, translation
 
 CAMERA = ((3.6, 1.5, 0.3), (1.62, 0.86, 4.0), 56)
 LAMP = (0.48, 0.0, 4.55)          # where the uplighter stands
@@ -18,18 +18,16 @@ def write_palette(project):
     out = SceneText(project, "parts/materials.pbrt",
                     ["The named materials of the room and of the apartment.",
                      "To be included after WorldBegin."])
-    out.materials(MATERIALS)
+    for name in sorted(MATERIALS):
+        out.line('MakeNamedMaterial "%s" %s' % (name, MATERIALS[name]))
     out.finish()
 
 
 def spheres(out, places):
     """Sphere shapes: (material, centre, radius)."""
     for material, centre, radius in places:
-        out.begin()
-        out.use(material)
-        out.line("Translate %g %g %g" % centre)
-        out.line('Shape "sphere" "float radius" %g' % radius)
-        out.end()
+        with out.block(named(material), translation(centre)):
+            out.line('Shape "sphere" "float radius" %g' % radius)
 
 
 def write_shell(out, name, air, materials):
@@ -119,24 +117,15 @@ def write_furniture(project):
 
 
 def _emitter_disk(out, lit):
-    out.begin()
-    if lit:
-        out.emit(lit)
-    out.use("white")
-    out.line("Translate %g %g %g" % (LAMP[0], lamps.UPLIGHT_DISK, LAMP[2]))
-    out.line("Rotate -90 1 0 0  # the disk's normal, +z, now points up")
-    out.line('Shape "disk" "float radius" %g' % lamps.UPLIGHT_RADIUS)
-    out.end()
+    at = (LAMP[0], lamps.UPLIGHT_DISK, LAMP[2])
+    with out.block(lit and emission(lit), named("white"), translation(at)):
+        out.line("Rotate -90 1 0 0  # the disk's normal, +z, now points up")
+        out.line('Shape "disk" "float radius" %g' % lamps.UPLIGHT_RADIUS)
 
 
 def _emitter_panel(out, lit):
-    out.begin()
-    if lit:
-        out.emit(lit)
-    out.use("white")
-    out.line("Translate %g %g %g" % PANEL)
-    out.mesh(lamps.panel_emitter(1.0))
-    out.end()
+    with out.block(lit and emission(lit), named("white"), translation(PANEL)):
+        out.mesh(lamps.panel_emitter(1.0))
 
 
 def write_room(project, path, comment, panel, lamp):

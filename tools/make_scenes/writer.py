@@ -1,10 +1,10 @@
 """Writes pbrt-v4 text and the binary PLY meshes it refers to."""
 
+import contextlib
 import os
 import struct
 
 from geometry import Mesh
-from palette import MATERIALS
 
 INLINE_LIMIT = 64  # triangles; larger meshes go to meshes/*.ply
 
@@ -21,6 +21,23 @@ def nums(values):
 def _wrapped(values, per_line, indent):
     lines = [values[i:i + per_line] for i in range(0, len(values), per_line)]
     return ("\n" + indent).join(" ".join(line) for line in lines)
+
+
+def named(material):
+    return 'NamedMaterial "%s"' % material
+
+
+def group(name):
+    """Names the group of the lights of a block; others than bidir ignore it."""
+    return 'Attribute "light" "string lightgroup" "%s"' % name
+
+
+def emission(rgb):
+    return 'AreaLightSource "diffuse" "rgb L" [%s]' % nums(rgb)
+
+
+def translation(at):
+    return "Translate %g %g %g" % at
 
 
 class Project:
@@ -82,27 +99,19 @@ class SceneText:
             "WorldBegin",
         ]
 
-    def begin(self):
+    @contextlib.contextmanager
+    def block(self, *head):
+        """A block of attributes, with its first lines: what is None is left out."""
         self.line("AttributeBegin")
         self.indent += "  "
-
-    def end(self):
+        for line in filter(None, head):
+            self.line(line)
+        yield
         self.indent = self.indent[:-2]
         self.line("AttributeEnd")
 
-    def materials(self, names):
-        for name in sorted(names):
-            self.line('MakeNamedMaterial "%s" %s' % (name, MATERIALS[name]))
-
     def use(self, material):
-        self.line('NamedMaterial "%s"' % material)
-
-    def group(self, name):
-        """Names the group of the lights of this block; others than bidir ignore it."""
-        self.line('Attribute "light" "string lightgroup" "%s"' % name)
-
-    def emit(self, rgb):
-        self.line('AreaLightSource "diffuse" "rgb L" [%s]' % nums(rgb))
+        self.line(named(material))
 
     def include(self, path):
         self.line('Include "%s"' % path)
@@ -128,15 +137,11 @@ class SceneText:
     def place(self, model, at, angle=0.0, swap=None):
         """A model of the furniture at a point of the plan, turned about the
         vertical. swap: {material of the model: material to use instead}."""
-        self.begin()
-        self.line("# " + model.name)
-        self.line("Translate " + nums(at))
-        if angle:
-            self.line("Rotate %s 0 1 0" % num(angle))
-        for part, material, mesh in model.parts:
-            self.use((swap or {}).get(material, material))
-            self.big_mesh(model.name + "-" + part, mesh)
-        self.end()
+        turn = "Rotate %s 0 1 0" % num(angle) if angle else None
+        with self.block("# " + model.name, "Translate " + nums(at), turn):
+            for part, material, mesh in model.parts:
+                self.use((swap or {}).get(material, material))
+                self.big_mesh(model.name + "-" + part, mesh)
 
     def finish(self):
         self.project.write(self.path, ("\n".join(self.lines) + "\n").encode())
