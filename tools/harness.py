@@ -29,19 +29,14 @@ class Failed(Exception):
 
 def parser(name, description):
     """Returns the parser of the command line of a tool."""
-    return argparse.ArgumentParser(
-        prog="tools/" + name, description=description, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
+    return argparse.ArgumentParser(prog="tools/" + name, description=description,
+                                   formatter_class=argparse.RawDescriptionHelpFormatter)
 
 
 def add_program(to):
     """Adds the options of benches that measure the command."""
-    to.add_argument(
-        "--bidir",
-        default=str(TARGET / "release" / "bidir"),
-        metavar="PROGRAM",
-        help="the program that is measured [%(default)s]",
-    )
+    default = str(TARGET / "release" / "bidir")
+    to.add_argument("--bidir", default=default, metavar="PROGRAM", help="the program that is measured [%(default)s]")
 
 
 def main(name, options, run):
@@ -106,8 +101,13 @@ def render(command, folder, scene, *flags, **variables):
     """Renders with a command that ends in the program. Returns the numbers of `--stats`, and the Usage."""
     image, stats = (os.path.join(folder, name) for name in ("image.exr", "stats.json"))
     usage = run([*command, "render", str(scene), "-q", "-o", image, "--stats", stats, *flags], **variables)
-    with open(stats, encoding="utf-8") as file:
-        return json.load(file), usage
+    return json.loads(Path(stats).read_text(encoding="utf-8")), usage
+
+
+def processor_time(pid):
+    """Returns the user and system time of all threads of a process; OSError where the system has no /proc."""
+    fields = Path(f"/proc/{pid}/stat").read_text(encoding="ascii").rpartition(")")[2].split()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
 
 def turns(cases, rounds):

@@ -61,7 +61,7 @@ def arguments():
 
 
 def attack(name, options):
-    """Runs a part to its end."""
+    """Runs a part to its end. Returns the cells of the table, and the number of failures."""
     work = part.Part(name, options)
     shutil.rmtree(work.out, ignore_errors=True)
     try:
@@ -69,24 +69,20 @@ def attack(name, options):
     except Exception:
         # A fault of this tool must not hide the results of the other parts.
         work.case("the tool", traceback.format_exc())
-    if work.skipped:
-        work.say("skipped: " + work.skipped)
-    print(work.end(), flush=True)
-    return work
+    row = work.row()
+    print(*row, sep="  ", flush=True)
+    return row, work.failures
 
 
 def run(options):
     print("seed %d, %s" % (options.seed, options.bidir), flush=True)
-    works = [attack(name, options) for name in options.parts]
-    failures = sum(work.failures for work in works)
-    print("\nSeed %d.\n\n| part | cases | failures | seconds |\n|---|---:|---:|---:|" % options.seed)
-    for work in works:
-        print(work.row)
-    print("| total | %d | %d | %.0f |" % (sum(work.cases for work in works), failures,
-                                       sum(work.seconds for work in works)))
-    if failures:
+    rows, failures = zip(*(attack(name, options) for name in options.parts))
+    total = ["total", sum(row[1] for row in rows), sum(failures), sum(row[3] for row in rows)]
+    print("\nSeed %d.\n\n%s" % (options.seed, harness.table(["part", "cases", "failures", "seconds"], [*rows, total])))
+    if any(failures):
         print("\nFailures are in %s." % options.out)
-    return 1 if failures else 0
+        return 1
+    return 0
 
 
 if __name__ == "__main__":

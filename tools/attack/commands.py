@@ -2,6 +2,7 @@
 
 import json
 import os
+from pathlib import Path
 
 import exr
 import harness
@@ -67,18 +68,27 @@ def prepare(work, folder):
         # The first byte of the seed of an image is the format.
         part.write(folder, name, data[1:] if seed.startswith("image/") else data)
     for name, passes in (("a", "0..2"), ("b", "2..4")):
-        command = work.bidir(*RENDER, "--passes", passes, "--checkpoint", name + ".film", "-o", name + ".exr")
-        ended = runs.run(command, folder, LIMITS)
-        if ended.wrong(0):
-            raise RuntimeError("%s: %s\n%s" % (" ".join(command), ended.wrong(0), ended.said))
+        must(work, folder, *RENDER, "--passes", passes, "--checkpoint", name + ".film", "-o", name + ".exr")
+
+
+def must(work, folder, *arguments):
+    """Runs what the cases need; raises RuntimeError if it fails."""
+    ended = runs.run(work.bidir(*arguments), folder, LIMITS)
+    if ended.wrong(0):
+        raise RuntimeError("%s: %s\n%s" % (" ".join(ended.command), ended.wrong(0), ended.said))
+
+
+def render(work, text, folder, flags, limits):
+    """Renders a scene to the file a.exr. Returns how that ended."""
+    part.write(folder, "scene.pbrt", text)
+    command = work.bidir("render", "scene.pbrt", "-q", *flags, "-o", "a.exr")
+    return runs.run(command, folder, limits)
 
 
 def figures(path):
     """The results of an experiment without times, which differ from run to run."""
-    with open(path) as file:
-        found = json.load(file)
-    return [{key: value for key, value in record.items() if "seconds" not in key}
-            for record in found["records"]]
+    records = json.loads(Path(path).read_text())["records"]
+    return [{key: value for key, value in record.items() if "seconds" not in key} for record in records]
 
 
 def content(path):

@@ -3,6 +3,7 @@
 import array
 import struct
 import zlib
+from pathlib import Path
 
 # The number of rows of a block by the number of the compression.
 ROWS = {0: 1, 2: 1, 3: 16}
@@ -47,8 +48,7 @@ def read(path):
     """Returns the values of every channel by name, row by row.
 
     Raises KeyError for files that other programs may write."""
-    with open(path, "rb") as file:
-        data = file.read()
+    data = Path(path).read_bytes()
     header, at = attributes(data)
     most_rows = ROWS[header["compression"][0]]
     x0, y0, x1, y1 = struct.unpack("<4i", header["dataWindow"])

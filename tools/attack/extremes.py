@@ -4,8 +4,8 @@ memory, and no pixel is infinite or not a number."""
 import math
 import os
 
+import commands
 import exr
-import part
 import runs
 from worlds import INTEGRATORS, LAMP, ROOM, WALLS
 
@@ -101,18 +101,14 @@ def not_finite(path):
 
 def render(work, text, integrator, flags, folder):
     """Returns the fault and the command."""
-    part.write(folder, "scene.pbrt", text)
-    command = ["render", "scene.pbrt", "-q", "--integrator", integrator, *flags, "-o", "a.exr"]
-    command += [] if "--size" in flags else ["--size", "8x8"]
-    command += [] if "--spp" in flags else ["--spp", "4"]
-    command += [] if "--threads" in flags else ["--threads", "2"]
-    command = work.bidir(*command)
-    ended = runs.run(command, folder, LIMITS)
+    defaults = (("--size", "8x8"), ("--spp", "4"), ("--threads", "2"))
+    flags = [*flags, "--integrator", integrator, *(word for pair in defaults if pair[0] not in flags for word in pair)]
+    ended = commands.render(work, text, folder, flags, LIMITS)
     fault = ended.fault()
     if not fault and ended.code == 0:
         count = not_finite(os.path.join(folder, "a.exr"))
         fault = "%d values are not finite" % count if count else None
-    return fault, command
+    return fault, ended.command
 
 
 def run(work):

@@ -63,10 +63,7 @@ class Kinds:
         self.work, self.random, self.prepared = work, work.random, prepared
         self.seeds = harness.ROOT / "fuzz" / "seeds"
         for name in ("reference", "experiment"):
-            command = work.bidir(*commands.COMMANDS[name][0])
-            ended = runs.run(command, prepared, commands.LIMITS)
-            if ended.wrong(0):
-                raise RuntimeError("%s: %s\n%s" % (command, ended.wrong(0), ended.said))
+            commands.must(work, prepared, *commands.COMMANDS[name][0])
         self.right = commands.figures(os.path.join(prepared, "out-results", "results.json"))
 
     def seed(self, kind):

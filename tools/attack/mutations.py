@@ -10,7 +10,7 @@ import resource
 import subprocess
 import time
 
-import part
+import harness
 import runs
 
 # Parsers and their shares of the cases; those that build scenes are slower and have more code.
@@ -47,11 +47,9 @@ class Reader:
     def used(self):
         """Seconds of processors; 0 where the system does not count them."""
         try:
-            with open("/proc/%d/stat" % self.process.pid) as file:
-                fields = file.read().rsplit(")", 1)[1].split()
+            return harness.processor_time(self.process.pid)
         except OSError:
             return 0.0
-        return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
     def wait(self):
         """Waits for the end. Returns the number of an input that takes too long, which ends it, or None."""

@@ -6,6 +6,7 @@ import random
 import shutil
 import tempfile
 import time
+from pathlib import Path
 
 # Folders of cases are in memory where that is possible: thousands of them sync their files.
 MEMORY = "/dev/shm" if os.access("/dev/shm", os.W_OK) else None
@@ -55,30 +56,23 @@ class Part:
         if folder:
             shutil.copytree(folder, place, symlinks=True, ignore_dangling_symlinks=True)
         os.makedirs(place, exist_ok=True)
-        with open(os.path.join(place, "failure.txt"), "w") as file:
-            file.write("%s\n%s\n%s\n" % (title, problem, " ".join(map(str, command))))
+        write(place, "failure.txt", "%s\n%s\n%s\n" % (title, problem, " ".join(map(str, command))))
 
     def say(self, text):
         print("%s: %s" % (self.name, text), flush=True)
 
-    def end(self):
-        """Stops the clock. Returns the row of the table."""
-        self.seconds = time.monotonic() - self.begin
-        result = "skipped: " + self.skipped if self.skipped else str(self.failures)
-        self.row = "| %s | %d | %s | %.0f |" % (self.name, self.cases, result, self.seconds)
-        return self.row
+    def row(self):
+        """Stops the clock. Returns the cells of the table."""
+        result = "skipped: " + self.skipped if self.skipped else self.failures
+        return [self.name, self.cases, result, round(time.monotonic() - self.begin)]
 
 
 def write(folder, name, data):
-    path = os.path.join(folder, name)
-    with open(path, "wb" if isinstance(data, bytes) else "w") as file:
-        file.write(data)
-    return path
+    Path(folder, name).write_bytes(data if isinstance(data, bytes) else data.encode())
 
 
 def read(folder, name):
-    with open(os.path.join(folder, name), "rb") as file:
-        return file.read()
+    return Path(folder, name).read_bytes()
 
 
 def digest(folder, names):

@@ -6,6 +6,10 @@ import signal
 import subprocess
 import sys
 import time
+from pathlib import Path
+from typing import NamedTuple
+
+import harness
 
 # The exit codes of docs/reference/cli.md that a program may choose itself.
 DOCUMENTED = {0, 1, 2, 3, 4, 5, 6, 7, 75, 130, 143}
@@ -22,11 +26,12 @@ def limit_memory(size):
         pass
 
 
-class Limits:
+class Limits(NamedTuple):
     """Means of a run. Unit: seconds of all processors and of the clock, bytes."""
 
-    def __init__(self, cpu=10, wall=300, memory=GIB):
-        self.cpu, self.wall, self.memory = cpu, wall, memory
+    cpu: float = 10
+    wall: float = 300
+    memory: int = GIB
 
     def impose(self):
         """Called in the new process, before the program. The verdict comes from what was used: the
@@ -77,12 +82,7 @@ def start(command, folder, limits):
     with open(os.path.join(folder, ".said"), "wb") as said:
         return subprocess.Popen(command, cwd=folder, stdin=subprocess.DEVNULL, stdout=said,
                                 stderr=subprocess.STDOUT, preexec_fn=limits.impose,
-                                env=environment())
-
-
-def environment():
-    """Returns the caller's environment without settings of the program, which would change the results."""
-    return {name: value for name, value in os.environ.items() if not name.startswith("BIDIR_")}
+                                env=harness.environment())
 
 
 def wait(process, limits, kill_after=None):
@@ -106,8 +106,7 @@ def wait(process, limits, kill_after=None):
 
 
 def said(folder):
-    with open(os.path.join(folder, ".said"), errors="replace") as file:
-        return file.read()
+    return Path(folder, ".said").read_text(errors="replace")
 
 
 def run(command, folder, limits=None, kill_after=None):

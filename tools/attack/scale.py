@@ -6,8 +6,8 @@ estimator agrees within 1 % with that of the room of two units by path tracing.
 
 import os
 
+import commands
 import exr
-import part
 import runs
 from worlds import LAMP, WALLS
 
@@ -64,31 +64,27 @@ def scenes():
     return found
 
 
-def render(work, text, estimator, seed):
+def render(work, text, estimator, folder):
     """Returns the mean of the image, the fault and the command."""
-    with work.folder() as folder:
-        part.write(folder, "room.pbrt", text)
-        command = work.bidir("render", "room.pbrt", "-q", "--integrator", estimator, "--spp", SPP[estimator],
-                             "--seed", seed, "-o", "a.exr")
-        ended = runs.run(command, folder, LIMITS)
-        fault = ended.wrong(0)
-        fault = fault and "%s: %s" % (fault, ended.said.strip())
-        return (None if fault else exr.mean(os.path.join(folder, "a.exr"))), fault, command
+    flags = ("--integrator", estimator, "--spp", SPP[estimator], "--seed", work.options.seed % 1000)
+    ended = commands.render(work, text, folder, flags, LIMITS)
+    if ended.wrong(0):
+        return None, "%s: %s" % (ended.wrong(0), ended.said.strip()), ended.command
+    return exr.mean(os.path.join(folder, "a.exr")), None, ended.command
 
 
 def run(work):
-    seed = work.options.seed % 1000
-    right, fault, command = render(work, scaled_points(1.0), "path", seed)
-    work.case("the room of two units", fault, None, command)
+    with work.folder() as folder:
+        right, fault, command = render(work, scaled_points(1.0), "path", folder)
+        work.case("the room of two units", fault, folder, command)
     if fault:
         return
     cases = [(title, text, estimator) for title, text in scenes() for estimator in ESTIMATORS]
     if work.count() < len(cases):
         cases = work.random.sample(cases, work.count())
     for title, text, estimator in cases:
-        mean, fault, command = render(work, text, estimator, seed)
-        if not fault and not abs(mean / right - 1) <= TOLERANCE:
-            fault = "the mean is %.4f of that of the room of two units" % (mean / right)
         with work.folder() as folder:
-            part.write(folder, "room.pbrt", text)
+            mean, fault, command = render(work, text, estimator, folder)
+            if not fault and not abs(mean / right - 1) <= TOLERANCE:
+                fault = "the mean is %.4f of that of the room of two units" % (mean / right)
             work.case("%s, %s" % (title, estimator), fault, folder, command)

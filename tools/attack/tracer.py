@@ -10,6 +10,7 @@ import os
 import platform
 import signal
 
+import harness
 import runs
 
 # Numbers of system calls of x86-64.
@@ -123,7 +124,7 @@ def child(command, folder, limits):
         for old, new in ((null, 0), (said, 1), (said, 2)):
             os.dup2(old, new)
         ptrace(TRACEME, 0)
-        os.execve(command[0], command, runs.environment())
+        os.execve(command[0], command, harness.environment())
     except BaseException:
         os._exit(127)
 

@@ -1,16 +1,11 @@
 """Six scenes of daylight, glass and fog, of the kinds that people bring.
 
-Those in FITTED may be looked at while the model of `auto` is mended; JUDGES show whether that helped.
-`path` finds all of their light.
+The model of `auto` may be mended by looking at `house`, `bathroom` and `floor_object`; the others judge
+whether that helped. `path` finds all of their light.
 """
 
 import math
 import struct
-
-#: Scenes by which the model of `auto` may be mended.
-FITTED = ("house", "bathroom", "floor-object")
-#: Scenes that judge it.
-JUDGES = ("class-room", "fog-lantern", "water-glass")
 
 SKY_SIZE = 128
 SKY_ZENITH = (0.25, 0.45, 0.95)
@@ -35,38 +30,33 @@ def write(folder):
     """Writes the sky and the scenes into a folder; returns the paths of the scenes."""
     _write_sky(folder / "sky.pfm")
     paths = []
-    for name in FITTED + JUDGES:
-        path = folder / f"{name}.pbrt"
-        path.write_text(SCENES[name](), encoding="utf-8")
-        paths.append(path)
+    for make in (house, bathroom, floor_object, class_room, fog_lantern, water_glass):
+        paths.append(folder / f"{make.__name__.replace('_', '-')}.pbrt")
+        paths[-1].write_text(make(), encoding="utf-8")
     return paths
 
 
 def _write_sky(path):
     """Writes a clear sky in pbrt's equal-area octahedral map, whose z axis points up."""
     rows = [
-        [_radiance(*_octahedral((x + 0.5) / SKY_SIZE, (y + 0.5) / SKY_SIZE)) for x in range(SKY_SIZE)]
+        [_radiance(_octahedral_height((x + 0.5) / SKY_SIZE, (y + 0.5) / SKY_SIZE)) for x in range(SKY_SIZE)]
         for y in range(SKY_SIZE)
     ]
     data = b"".join(struct.pack("<3f", *pixel) for row in reversed(rows) for pixel in row)
     path.write_bytes(b"PF\n%d %d\n-1.0\n" % (SKY_SIZE, SKY_SIZE) + data)
 
 
-def _radiance(_x, _y, height):
+def _radiance(height):
     """Returns the radiance of the sky at this sine of the elevation; below the horizon it is haze."""
     part = math.sqrt(max(height, 0.0))
     return tuple(low + (high - low) * part for low, high in zip(SKY_HORIZON, SKY_ZENITH, strict=True))
 
 
-def _octahedral(u, v):
-    """Returns the direction of a point of the unit square [Clarberg08]."""
-    x, y = 2.0 * u - 1.0, 2.0 * v - 1.0
-    distance = 1.0 - abs(x) - abs(y)
+def _octahedral_height(u, v):
+    """Returns the sine of the elevation of a point of the unit square [Clarberg08]."""
+    distance = 1.0 - abs(2.0 * u - 1.0) - abs(2.0 * v - 1.0)
     radius = 1.0 - abs(distance)
-    angle = (0.0 if radius == 0.0 else (abs(y) - abs(x)) / radius + 1.0) * math.pi / 4.0
-    height = math.copysign(1.0 - radius * radius, distance)
-    across = radius * math.sqrt(2.0 - radius * radius)
-    return math.copysign(across * math.cos(angle), x), math.copysign(across * math.sin(angle), y), height
+    return math.copysign(1.0 - radius * radius, distance)
 
 
 def _head(eye, target, fov, lights, before=""):
@@ -283,13 +273,3 @@ def _disk(index, radius, height):
     """Makes a level surface; what is below has this index relative to what is above."""
     material = f'Material "dielectric" "float eta" {index:.6g}\n'
     return material + f'Shape "disk" "float radius" {radius} "float height" {height}\n'
-
-
-SCENES = {
-    "house": house,
-    "bathroom": bathroom,
-    "floor-object": floor_object,
-    "class-room": class_room,
-    "fog-lantern": fog_lantern,
-    "water-glass": water_glass,
-}

@@ -102,41 +102,31 @@ class Stages(unittest.TestCase):
 class Comparing(unittest.TestCase):
     KEPT = {
         "made_with": "valgrind-1",
-        "samples": {"room, path": {"instructions": 10000, "rays": 2.0,
-                                   "instructions_per_ray": 5000}},
+        "samples": {"room, path": {"instructions": 10000, "rays": 2.0, "instructions_per_ray": 5000}},
         "stages": {"walk": 6000, "select": 100, "other": 500},
         "functions": [["traverse", 2000, 3000]],
     }
 
-    def changed(self, *path, factor):
+    def check(self, part, key, factor, *changed):
+        """Compares figures of which one is multiplied, and expects the names of those that changed."""
         new = copy.deepcopy(self.KEPT)
-        place = new
-        for key in path[:-1]:
-            place = place[key]
-        place[path[-1]] *= factor
-        return new
-
-    def changes(self, new):
-        return [name for name, _, _ in figures.changes(new, self.KEPT)]
+        (new[part]["room, path"] if part == "samples" else new[part])[key] *= factor
+        self.assertEqual([name for name, _, _ in figures.changes(new, self.KEPT)], list(changed))
+        self.assertIn("%+.1f %%" % (100 * (factor - 1)) if changed else "than 3 %: nothing.",
+                      figures.report(new, self.KEPT))
 
     def test_three_percent_are_shown_in_both_directions(self):
         for factor in (0.969, 1.031):
-            new = self.changed("samples", "room, path", "instructions", factor=factor)
-            self.assertEqual(self.changes(new), ["room, path: instructions"])
-            self.assertIn("%+.1f %%" % (100 * (factor - 1)), figures.report(new, self.KEPT))
-            self.assertEqual(self.changes(self.changed("stages", "walk", factor=factor)),
-                             ["stage walk"])
+            self.check("samples", "instructions", factor, "room, path: instructions")
+            self.check("stages", "walk", factor, "stage walk")
         for factor in (0.971, 1.0, 1.029):
-            new = self.changed("samples", "room, path", "instructions", factor=factor)
-            self.assertEqual(self.changes(new), [])
-            self.assertIn("than 3 %: nothing.", figures.report(new, self.KEPT))
+            self.check("samples", "instructions", factor)
 
     def test_rays_count_and_small_stages_do_not(self):
-        rays = self.changed("samples", "room, path", "rays", factor=1.1)
-        self.assertEqual(self.changes(rays), ["room, path: rays"])
-        self.assertEqual(self.changes(self.changed("stages", "select", factor=1.5)), [])
-        self.assertEqual(self.changes(self.changed("stages", "select", factor=3)), ["stage select"])
-        self.assertEqual(self.changes(self.changed("stages", "other", factor=3)), [])
+        self.check("samples", "rays", 1.1, "room, path: rays")
+        self.check("stages", "select", 1.5)
+        self.check("stages", "select", 3, "stage select")
+        self.check("stages", "other", 3)
 
     def test_new_rows_are_listed_but_are_no_change(self):
         empty = {"made_with": "", "samples": {}, "stages": {}, "functions": []}

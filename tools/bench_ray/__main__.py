@@ -80,8 +80,7 @@ def times(args):
 
 def mebibytes():
     """Return the most memory that this process had so far. Unit: MiB."""
-    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-    return peak / (1 << 20 if sys.platform == "darwin" else 1 << 10)
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * harness.RSS_UNIT / (1 << 20)
 
 
 def driver(args):

@@ -1,5 +1,6 @@
 """Tests of this tool: python3 tools/bench_scaling --self-test"""
 
+import itertools
 import os
 import struct
 import tempfile
@@ -39,16 +40,10 @@ class Worlds(unittest.TestCase):
             self.assertEqual(968 * file.read().count("ObjectInstance"), count)
 
     def test_lamps_have_the_same_area_and_face_down(self):
-        self.check_lamps(self.worlds.lamps, 0.5)
-
-    def test_lamps_of_the_hall_too(self):
-        self.check_lamps(self.worlds.hall, 72.0)
-
-    def check_lamps(self, make, whole):
-        for asked in (1, 10, 100, 1000):
+        makers = ((self.worlds.lamps, 0.5), (self.worlds.hall, 72.0))
+        for (make, whole), asked in itertools.product(makers, (1, 10, 100, 1000)):
             _, count = make(asked)
-            across = round(count ** 0.5)
-            points, faces = self.mesh("lamps-%d.ply" % across)
+            points, faces = self.mesh("lamps-%d.ply" % round(count ** 0.5))
             self.assertEqual(len(faces), count)
             area = 0.0
             for face in faces:

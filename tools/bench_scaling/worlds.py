@@ -8,6 +8,7 @@ work of finding, choosing and keeping them grows.
 import math
 import os
 import struct
+from pathlib import Path
 
 FILM = (80, 60)
 BOX = ((-1.5, 1.5), (0.0, 2.0), (-1.5, 2.5))
@@ -44,9 +45,8 @@ class Folder:
         return 'Shape "plymesh" "string filename" "%s"\n' % name
 
     def _scene(self, name, body, box=BOX):
-        path = os.path.join(self.path, name + ".pbrt")
-        with open(path, "w", encoding="utf-8") as file:
-            file.write(HEAD % FILM + _walls(box) + body)
+        path = Path(self.path, name + ".pbrt")
+        path.write_text(HEAD % FILM + _walls(box) + body, encoding="utf-8")
         return path
 
     def triangles(self, count):

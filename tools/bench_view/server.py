@@ -70,17 +70,11 @@ class View:
         """Returns samples per second, and processor seconds per sample, of whole passes in about this
         many seconds."""
         begin, first, samples = self.pass_end()
-        used = self.processor_time()
+        used = harness.processor_time(self.process.pid)
         time.sleep(seconds)
         end, last, _ = self.pass_end()
         count = (last - first) * samples
-        return count / (end - begin), (self.processor_time() - used) / count
-
-    def processor_time(self):
-        """Returns the user and system time of all threads of the server. Unit: seconds."""
-        with open("/proc/%d/stat" % self.process.pid, encoding="ascii") as file:
-            fields = file.read().rsplit(")", 1)[1].split()
-        return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+        return count / (end - begin), (harness.processor_time(self.process.pid) - used) / count
 
     def status_memory(self, name):
         with open("/proc/%d/status" % self.process.pid, encoding="ascii") as file:

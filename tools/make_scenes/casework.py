@@ -23,10 +23,8 @@ def table(name, width, depth, height):
     """A rectangular table with tapered legs."""
     parts = [rounded_box(width, 0.03, depth, 0.01).moved(0, height - 0.015, 0)]
     x, z = width / 2 - 0.05, depth / 2 - 0.05
-    for sx in (-1, 1):
-        for sz in (-1, 1):
-            parts.append(rod((sx * x, -0.001, sz * z), (sx * x, height - 0.02, sz * z),
-                             0.014, 0.026))
+    parts += [rod((sx * x, -0.001, sz * z), (sx * x, height - 0.02, sz * z), 0.014, 0.026)
+              for sx in (-1, 1) for sz in (-1, 1)]
     for s in (-1, 1):
         parts.append(box(-x, x, height - 0.09, height - 0.024, s * z - 0.01, s * z + 0.01))
         parts.append(box(s * x - 0.01, s * x + 0.01, height - 0.088, height - 0.025, -z, z))

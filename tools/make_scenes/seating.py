@@ -17,9 +17,7 @@ def sofa(name, width, seats):
     middles = [-(width / 2 - arm) + inner * (i + 0.5) for i in range(seats)]
     frame = [rounded_box(width - 0.03, 0.22, 0.80, 0.03).moved(0, 0.215, 0.02),
              rounded_box(width - 0.05, 0.62, 0.18, 0.07).turned("x", 9).moved(0, 0.52, 0.37)]
-    for side in (-1, 1):
-        frame.append(rounded_box(arm, 0.50, 0.86, 0.065).moved(
-            side * (width - arm) / 2, 0.36, 0.0))
+    frame += [rounded_box(arm, 0.50, 0.86, 0.065).moved(side * (width - arm) / 2, 0.36, 0.0) for side in (-1, 1)]
     seat = [cushion(inner - 0.01, 0.13, 0.66, 0.03).moved(x, 0.395, -0.09) for x in middles]
     back = [cushion(inner - 0.03, 0.13, 0.44, 0.035).turned("x", 104).moved(x, 0.67, 0.22)
             for x in middles]
@@ -43,8 +41,8 @@ def chair():
         wood.append(rod((side * 0.19, -0.001, -0.185), (side * 0.185, 0.45, -0.17), 0.014, 0.02))
         wood.append(rod((side * 0.19, -0.001, 0.22), (side * 0.185, 0.46, 0.18), 0.014, 0.02))
         wood.append(rod((side * 0.185, 0.44, 0.18), (side * 0.18, 0.92, 0.245), 0.019, 0.013))
-    for y, z in ((0.89, 0.241), (0.78, 0.226), (0.67, 0.211)):
-        wood.append(rounded_box(0.36, 0.055, 0.014, 0.006).turned("x", 8).moved(0, y, z))
+    wood += [rounded_box(0.36, 0.055, 0.014, 0.006).turned("x", 8).moved(0, y, z)
+             for y, z in ((0.89, 0.241), (0.78, 0.226), (0.67, 0.211))]
     pad = rounded_box(0.39, 0.03, 0.37, 0.014).moved(0, 0.481, -0.005)
     return Model("chair").part("frame", "wood", *wood).part("pad", "fabric-cream", pad)
 
@@ -53,8 +51,7 @@ def stool():
     """A round-legged bar stool, seat at 0.66 m."""
     legs = [rod((sx * 0.17, -0.001, sz * 0.17), (sx * 0.11, 0.64, sz * 0.11), 0.012, 0.017)
             for sx in (-1, 1) for sz in (-1, 1)]
-    for s in (-1, 1):
-        legs.append(rod((-0.145, 0.25, s * 0.146), (0.145, 0.25, s * 0.146), 0.009))
+    legs += [rod((-0.145, 0.25, s * 0.146), (0.145, 0.25, s * 0.146), 0.009) for s in (-1, 1)]
     seat = rounded_box(0.34, 0.05, 0.34, 0.022).moved(0, 0.655, 0)
     return Model("stool").part("legs", "wood-pale", *legs).part("seat", "fabric-rust", seat)
 
@@ -78,7 +75,6 @@ def bed():
 def bench():
     """A low hall bench with a cushion."""
     wood = [box(-0.5, 0.5, 0.40, 0.44, -0.17, 0.17)]
-    for side in (-1, 1):
-        wood.append(box(side * 0.44 - 0.02, side * 0.44 + 0.02, -0.001, 0.405, -0.15, 0.15))
+    wood += [box(side * 0.44 - 0.02, side * 0.44 + 0.02, -0.001, 0.405, -0.15, 0.15) for side in (-1, 1)]
     pad = rounded_box(0.96, 0.05, 0.32, 0.02).moved(0, 0.464, 0)
     return Model("bench").part("frame", "wood-pale", *wood).part("pad", "fabric-rust", pad)

@@ -4,6 +4,8 @@ All boxes are cut along one common grid and only the faces between air and solid
 are kept, so the result is closed, never doubled and free of T-junctions.
 """
 
+import itertools
+
 from geometry import Mesh
 
 # (axis, direction to the neighbour, corner order with the normal into the cell)
@@ -38,15 +40,10 @@ def carve(air_boxes):
         return None
 
     meshes = {}
-    for i in range(len(cuts[0]) - 1):
-        for j in range(len(cuts[1]) - 1):
-            for k in range(len(cuts[2]) - 1):
-                tag = tag_of((i, j, k))
-                if tag is None:
-                    continue
-                for side, step, order in _SIDES:
-                    if tag_of((i + step[0], j + step[1], k + step[2])) is None:
-                        corners = [(cuts[0][i + a], cuts[1][j + b], cuts[2][k + c])
-                                   for a, b, c in order]
-                        meshes.setdefault((tag, side), Mesh()).face(*corners)
+    for cell in itertools.product(*(range(len(values) - 1) for values in cuts)):
+        tag = tag_of(cell)
+        for side, step, order in _SIDES if tag else ():
+            if tag_of([c + s for c, s in zip(cell, step)]) is None:
+                corners = [tuple(values[c + o] for values, c, o in zip(cuts, cell, offset)) for offset in order]
+                meshes.setdefault((tag, side), Mesh()).face(*corners)
     return meshes

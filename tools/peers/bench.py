@@ -5,6 +5,7 @@ import os
 import re
 import statistics
 import sys
+from pathlib import Path
 from typing import NamedTuple
 
 import harness
@@ -178,5 +179,4 @@ def machine(environment):
 
 
 def save(path, records):
-    with open(path, "w", encoding="utf-8") as file:
-        json.dump([one._asdict() for one in records], file, indent=1)
+    Path(path).write_text(json.dumps([one._asdict() for one in records], indent=1), encoding="utf-8")

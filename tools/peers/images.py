@@ -30,6 +30,7 @@ def read_channel(path, name):
         return np.array(file.channels()[name].pixels, np.float64)
 
 
-def report(samples, cpu, wall):
-    """Reports samples and times to the caller, which reads the last line."""
+def finish(path, image, samples, cpu, wall):
+    """Writes an image, and reports samples and times to the caller, which reads the last line."""
+    write(path, np.float32(image))
     print(json.dumps({"samples": samples, "cpu": cpu, "wall": wall}), flush=True)

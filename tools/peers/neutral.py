@@ -10,6 +10,7 @@ renderer's script reads its scene from here.
 
 import math
 import os
+from pathlib import Path
 from typing import NamedTuple, Optional
 
 SIDE = 256         # pixels of the square image; one-pixel box filter, linear Rec. 709
@@ -169,7 +170,5 @@ def write(folder):
     for scene in SCENES:
         os.makedirs(os.path.join(folder, "meshes-" + scene), exist_ok=True)
         for quad in quads(scene) + (FOG[scene].faces() if scene in FOG else []):
-            with open(mesh_path(folder, scene, quad), "w", encoding="ascii") as out:
-                out.write(ply_text(quad))
-        with open(os.path.join(folder, scene + ".pbrt"), "w", encoding="ascii") as out:
-            out.write(pbrt_text(scene))
+            Path(mesh_path(folder, scene, quad)).write_text(ply_text(quad), encoding="ascii")
+        Path(folder, scene + ".pbrt").write_text(pbrt_text(scene), encoding="ascii")

@@ -6,6 +6,7 @@
 import json
 import os
 import subprocess
+from pathlib import Path
 
 import renderers
 import score
@@ -50,8 +51,7 @@ def keep(bench, scene, folder):
     path = os.path.join(score.REFERENCES, scene + ".exr")
     pictures = [os.path.join(folder, name + ".exr") for name in ("picture", "against")]
     noise = verify.pool(bench.environment, "mix", path, pictures)["noise"]
-    with open(os.path.join(folder, "provenance.json"), encoding="utf-8") as file:
-        made = json.load(file)
+    made = json.loads(Path(folder, "provenance.json").read_text(encoding="utf-8"))
     known = score.provenance()
     known[scene] = {
         "noise": noise,
@@ -61,6 +61,5 @@ def keep(bench, scene, folder):
         "samples": [estimator["spp"] for estimator in made["estimators"]],
         "p_of_agreement": made["agreement"]["p"],
     }
-    with open(score.PROVENANCE, "w", encoding="utf-8") as file:
-        json.dump(known, file, indent=2, sort_keys=True)
-        file.write("\n")
+    text = json.dumps(known, indent=2, sort_keys=True) + "\n"
+    Path(score.PROVENANCE).write_text(text, encoding="utf-8")

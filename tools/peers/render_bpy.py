@@ -110,8 +110,7 @@ def main():
         samples *= 2
     samples = max(1, round(samples * job["seconds"] / cpu))
     cpu, wall = render(scene, samples)
-    images.write(job["image"], images.read(job["image"]).astype("float32"))
-    images.report(samples, cpu, wall)
+    images.finish(job["image"], images.read(job["image"]), samples, cpu, wall)
 
 
 if __name__ == "__main__":

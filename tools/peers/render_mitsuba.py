@@ -91,9 +91,7 @@ def main():
     job = json.loads(sys.argv[1])
     mitsuba.set_variant(job["variant"])
     drjit.set_thread_count(job["threads"])
-    picture, samples, cpu, wall = render(scene(job), job["seconds"], job["seed"])
-    images.write(job["image"], picture.astype(np.float32))
-    images.report(samples, cpu, wall)
+    images.finish(job["image"], *render(scene(job), job["seconds"], job["seed"]))
 
 
 if __name__ == "__main__":

@@ -98,8 +98,7 @@ def main():
     session.Stop()
     picture = np.zeros((neutral.SIDE, neutral.SIDE, 3), np.float32)
     session.GetFilm().GetOutputFloat(pyluxcore.FilmOutputType.RGB, picture, 0)
-    images.write(job["image"], picture[::-1])
-    images.report(drawn / neutral.SIDE**2, cpu, wall)
+    images.finish(job["image"], picture[::-1], drawn / neutral.SIDE**2, cpu, wall)
     # Its threads do not survive an orderly end of the interpreter.
     os._exit(0)
 

@@ -3,6 +3,7 @@
 import json
 import os
 import subprocess
+from pathlib import Path
 from typing import NamedTuple
 
 HERE = os.path.dirname(os.path.abspath(__file__))
@@ -12,8 +13,7 @@ PROVENANCE = os.path.join(REFERENCES, "provenance.json")
 
 def provenance():
     """Returns the provenance of the references: {scene: facts}."""
-    with open(PROVENANCE, encoding="utf-8") as file:
-        return json.load(file)
+    return json.loads(Path(PROVENANCE).read_text(encoding="utf-8"))
 
 
 class Reference(NamedTuple):

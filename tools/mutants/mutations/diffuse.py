@@ -56,13 +56,6 @@ DIFFUSE_ENDS = [
         analytic("a_closed_sphere"),
     ),
     (
-        "scores of four connections by light with its sign",
-        "crates/bidir/src/spectrum/four.rs",
-        "self.0.map(Vec4::abs)",
-        "self.0",
-        unit("four_are_as_each_alone"),
-    ),
-    (
         "four spectra that are black where one lane is",
         "crates/bidir/src/spectrum/four.rs",
         "(a & b) & (c & d)",

@@ -178,13 +178,6 @@ MEDIA = [
         unit("light::tests::densities"),
     ),
     (
-        "points of a fire drawn by the centres of cells alone",
-        "crates/bidir/src/medium/grid.rs",
-        "*mean = 0.125 * low + 0.75 * before[i] + 0.125 * high;",
-        "*mean = 0.0 * (low + high) + before[i];",
-        unit("light::tests::power"),
-    ),
-    (
         "boundaries in one place in the order of their hits",
         "crates/bidir/src/scene/passage.rs",
         "by_place.then(a.surface.cmp(&b.surface))",

@@ -277,13 +277,6 @@ PATHS = [
         RUNNING,
     ),
     (
-        "roulette by a negative mean",
-        "crates/bidir/src/select/simple.rs",
-        "(part * mean_luminance).max(0.0)",
-        "part * mean_luminance",
-        unit("roulette_with_a_negative_mean"),
-    ),
-    (
         "light images of fewer subpaths not made up for",
         "crates/bidir/src/integrator/stages/light_image.rs",
         "let contribution = c * share as f32;",
@@ -345,13 +338,6 @@ PATHS = [
         "crates/bidir/src/select/grouped.rs",
         "prob: prob(picked.of(candidates), sum),",
         "prob: 1.0 / group.len() as f64,",
-        unit("select::"),
-    ),
-    (
-        "vertices of a light cache in the groups of their depths",
-        "crates/bidir/src/select/grouped.rs",
-        "=> candidate.light_vertex,",
-        "=> u32::from(candidate.term.strategy.s) - 1,",
         unit("select::"),
     ),
     (
