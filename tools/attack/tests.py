@@ -53,17 +53,15 @@ class Verdicts(unittest.TestCase):
 class Images(unittest.TestCase):
     def image(self, rows, packed):
         """A file with one channel of two values a row."""
-        def attribute(name, kind, data):
-            return name + b"\0" + kind + b"\0" + struct.pack("<I", len(data)) + data
-
-        head = struct.pack("<II", 20000630, 2)
-        head += attribute(b"channels", b"chlist", b"R\0" + struct.pack("<IIII", 1, 0, 1, 1) + b"\0")
-        head += attribute(b"compression", b"compression", bytes([3]))
-        head += attribute(b"dataWindow", b"box2i", struct.pack("<4i", 0, 0, 1, rows - 1))
-        head += attribute(b"lineOrder", b"lineOrder", b"\0") + b"\0"
-        data = b"".join(struct.pack("<ee", y, 0.5) for y in range(rows))
-        body = struct.pack("<iI", 0, len(packed(data))) + packed(data)
-        return head + struct.pack("<Q", len(head) + 8) + body
+        attributes = (
+            (b"channels", b"chlist", b"R\0" + struct.pack("<IIII", 1, 0, 1, 1) + b"\0"),
+            (b"compression", b"compression", bytes([3])),
+            (b"dataWindow", b"box2i", struct.pack("<4i", 0, 0, 1, rows - 1)),
+        )
+        head = struct.pack("<II", 20000630, 2) + b"".join(
+            b"%s\0%s\0%s%s" % (name, kind, struct.pack("<I", len(data)), data) for name, kind, data in attributes)
+        data = packed(b"".join(struct.pack("<ee", y, 0.5) for y in range(rows)))
+        return head + b"\0" + struct.pack("<QiI", len(head) + 9, 0, len(data)) + data
 
     def test_blocks_are_unpacked(self):
         def pack(data):

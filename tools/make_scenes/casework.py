@@ -113,8 +113,8 @@ def door(name="door", width=0.86, height=2.04):
         for s in (-1, 1):
             leaf.append(box(0.13, width - 0.13, y0, y1, s * 0.022 - 0.005, s * 0.022 + 0.005))
     handle = []
+    x = width - 0.07
     for s in (-1, 1):
-        x = width - 0.07
         handle.append(rod((x, 1.0, s * 0.015), (x, 1.0, s * 0.065), 0.01))
         handle.append(rod((x + 0.01, 1.0, s * 0.062), (x - 0.11, 1.0, s * 0.062), 0.009))
     return Model(name).part("leaf", "trim", *leaf).part("handle", "metal-brass", *handle)
