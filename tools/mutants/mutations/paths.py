@@ -72,8 +72,8 @@ PATHS = [
     (
         "forward and reverse density swapped",
         "crates/bidir/src/path/densities.rs",
-        "walked_densities(job, light, n).enumerate()",
-        "walked_densities(job, light, n).map(|[drawn, reverse]| [reverse, drawn]).enumerate()",
+        "from_light: drawn,\n                from_camera: back,",
+        "from_light: back,\n                from_camera: drawn,",
         PATH,
     ),
     (
