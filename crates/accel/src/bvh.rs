@@ -237,8 +237,8 @@ fn place(
             reason,
         })
     };
-    let placed: Vec<_> = instances.par_iter().map(place).collect();
-    let placed: Result<Vec<_>, _> = placed.into_iter().enumerate().map(numbered).collect();
+    let tried: Vec<_> = instances.par_iter().map(place).collect();
+    let placed: Result<Vec<_>, _> = tried.into_iter().enumerate().map(numbered).collect();
     Ok(placed?.into_iter().unzip())
 }
 

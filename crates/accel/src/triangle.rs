@@ -124,8 +124,8 @@ impl TriangleBlock {
             let row = ray.ray.axes[axis];
             debug_assert!(row < 3, "axis {row}");
             // SAFETY: `axes` is a permutation of 0, 1 and 2.
-            let row = unsafe { self.vertices[vertex].get_unchecked(row) };
-            V::load(row) - ray.origin[axis]
+            let coordinates = unsafe { self.vertices[vertex].get_unchecked(row) };
+            V::load(coordinates) - ray.origin[axis]
         };
         let sheared = |vertex: usize| {
             let z = relative(vertex, 2);
@@ -238,9 +238,9 @@ impl TriangleRay {
     /// The same in all lanes.
     #[inline(always)]
     pub(crate) fn lanes<V: F32x4>(&self) -> TriangleLanes<V> {
-        let o = self.origin.to_array();
+        let origin = self.origin.to_array();
         let [x, y, z] = self.axes;
-        let o = |axis: usize| V::splat(o[axis % 3]);
+        let o = |axis: usize| V::splat(origin[axis % 3]);
         TriangleLanes {
             ray: *self,
             origin: [o(x), o(y), o(z)],

@@ -136,10 +136,9 @@ impl FromStr for Strategies {
     type Err = StrategiesError;
 
     fn from_str(text: &str) -> Result<Self, StrategiesError> {
-        let rules = text.split(',').map(|item| {
-            parse_rule(item.trim()).ok_or_else(|| StrategiesError(item.trim().to_owned()))
-        });
-        let mut rules = rules.collect::<Result<Vec<_>, _>>()?;
+        let parse = |item: &str| parse_rule(item).ok_or_else(|| StrategiesError(item.to_owned()));
+        let items = text.split(',').map(str::trim);
+        let mut rules = items.map(parse).collect::<Result<Vec<_>, _>>()?;
         if rules.first().is_some_and(|rule| !rule.enable) {
             rules.insert(0, Rule::ALL);
         }

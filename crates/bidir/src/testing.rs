@@ -221,8 +221,8 @@ pub(crate) fn view(film: FilmSettings) -> View {
         lens_radius: 0.0,
         focal_distance: 1.0,
     });
-    let camera = Camera::Perspective(camera.expect("the map is rigid"));
-    View::new(camera, film).expect("the film is not empty")
+    let camera = camera.expect("the map is rigid");
+    View::new(Camera::Perspective(camera), film).expect("the film is not empty")
 }
 
 #[cfg(test)]

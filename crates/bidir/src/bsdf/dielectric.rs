@@ -122,8 +122,8 @@ impl Dielectric {
         if half.length_squared() == 0.0 {
             return None;
         }
-        let m = half.normalize();
-        let m = if m.z < 0.0 { -m } else { m };
+        let unit = half.normalize();
+        let m = if unit.z < 0.0 { -unit } else { unit };
         let seen = wo.dot(m) * wo.z > 0.0 && wi.dot(m) * wi.z > 0.0;
         seen.then_some((m, lobe))
     }

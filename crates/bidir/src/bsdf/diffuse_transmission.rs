@@ -55,8 +55,8 @@ impl DiffuseTransmission {
     pub(super) fn sample(&self, wo: Vec3, u_lobe: f32, u: Vec2) -> Option<BsdfSample> {
         let prob = self.reflection_prob()?;
         let side = if u_lobe < prob { wo.z } else { -wo.z };
-        let wi = warp::cosine_hemisphere(u);
-        let wi = Vec3::new(wi.x, wi.y, wi.z.copysign(side));
+        let upper = warp::cosine_hemisphere(u);
+        let wi = upper.with_z(upper.z.copysign(side));
         BsdfSample::of_value(wi, &self.eval(wo, wi))
     }
 

@@ -159,10 +159,9 @@ impl Pose {
         // Rodrigues' formula.
         let rotate = |v: Vec3| v * cos + axis.cross(v) * sin + axis * axis.dot(v) * (1.0 - cos);
         let forward = rotate(self.forward).normalize();
-        let right = rotate(self.right).reject_from_normalized(forward);
-        let right = right.normalize();
-        let up = rotate(self.up).reject_from_normalized(forward);
-        let up = up.reject_from_normalized(right).normalize();
+        let across = |axis| rotate(axis).reject_from_normalized(forward);
+        let right = across(self.right).normalize();
+        let up = across(self.up).reject_from_normalized(right).normalize();
         Self {
             origin: pivot + rotate(self.origin - pivot),
             right,

@@ -95,9 +95,9 @@ impl Spherical {
         let Some([_, inverse]) = &self.stretch else {
             return (local, 1.0);
         };
-        let local = *inverse * local;
-        let length = local.length();
-        (local / length, 1.0 / (length * length * length))
+        let stretched = *inverse * local;
+        let length = stretched.length();
+        (stretched / length, 1.0 / (length * length * length))
     }
 
     #[inline]
@@ -105,8 +105,8 @@ impl Spherical {
         let (local, _) = self.in_camera(w);
         let p = match self.mapping {
             SphericalMapping::Equirectangular => {
-                let around = libm::atan2f(local.z, local.x) / (2.0 * PI);
-                let around = if around < 0.0 { around + 1.0 } else { around };
+                let turn = libm::atan2f(local.z, local.x) / (2.0 * PI);
+                let around = if turn < 0.0 { turn + 1.0 } else { turn };
                 let across = libm::hypotf(local.x, local.z);
                 Vec2::new(around, libm::atan2f(across, local.y) / PI)
             }

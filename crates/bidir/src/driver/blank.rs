@@ -97,8 +97,8 @@ fn darkness(scene: &Scene, view: &View, settings: &Settings) -> String {
     if path.strategies.to_string() != Strategies::default().to_string() {
         return format!("the strategies `{}` find no light here", path.strategies);
     }
-    let missed = blind_spots(scene, view, settings.integrator);
-    let missed = missed.iter().find(|spot| spot.is_missing());
+    let spots = blind_spots(scene, view, settings.integrator);
+    let missed = spots.iter().find(|spot| spot.is_missing());
     if path.max_depth == Some(0) {
         return "with at most 0 scattering events only lights are seen, and none is in view".into();
     }

@@ -37,8 +37,8 @@ impl Session<'_> {
         parts.filter_map(move |strategy| {
             let part = self.film().layers().weighted_part(strategy)?;
             let pixels = self.film().part_pixels(part);
-            let pixels = pixels.map(|pixel| f64::from(luminance(pixel)));
-            let (count, sum, squares) = pixels.fold((0.0, 0.0, 0.0), |(n, sum, squares), y| {
+            let luminances = pixels.map(|pixel| f64::from(luminance(pixel)));
+            let (count, sum, squares) = luminances.fold((0.0, 0.0, 0.0), |(n, sum, squares), y| {
                 (n + 1.0, sum + y, squares + y * y)
             });
             Some(StrategyMoments {

@@ -28,8 +28,8 @@ impl Picture {
     /// independent, so it is rather too large than too small.
     pub fn relative_error(&self) -> f64 {
         let n = self.pixels.len().max(1) as f64;
-        let mean = self.pixels.iter().map(|rgb| f64::from(luminance(*rgb)));
-        let mean = mean.sum::<f64>() / n;
+        let luminances = self.pixels.iter().map(|rgb| f64::from(luminance(*rgb)));
+        let mean = luminances.sum::<f64>() / n;
         let squares = self.variance.iter().map(|variance| {
             let error = f64::from(luminance(variance.map(f32::sqrt)));
             error * error
@@ -139,13 +139,13 @@ impl Film {
             Aov::Samples => vec![vec![self.passes.len() as f32; self.pixels().len()]],
             _ => vec![self.feature(aov)],
         };
-        let images = channels.iter().zip(data);
-        let images = images.map(|(channels, data)| LayerImage {
-            name: channels.layer.to_owned(),
-            channels: channels.names,
-            data,
-        });
-        images.collect()
+        (channels.iter().zip(data))
+            .map(|(channels, data)| LayerImage {
+                name: channels.layer.to_owned(),
+                channels: channels.names,
+                data,
+            })
+            .collect()
     }
 
     /// Returns the variance of every channel's mean, and the same relative to the square of the mean, 0
@@ -155,12 +155,12 @@ impl Film {
             pixels, variance, ..
         } = self.develop();
         let absolute: Vec<_> = variance.into_iter().flatten().collect();
-        let relative = pixels.into_iter().flatten().zip(&absolute);
-        let relative = relative.map(|(mean, variance)| {
-            let square = mean * mean;
-            if square > 0.0 { variance / square } else { 0.0 }
-        });
-        let relative = relative.collect();
+        let relative = (pixels.into_iter().flatten().zip(&absolute))
+            .map(|(mean, variance)| {
+                let square = mean * mean;
+                if square > 0.0 { variance / square } else { 0.0 }
+            })
+            .collect();
         [absolute, relative]
     }
 

@@ -152,8 +152,8 @@ impl Axis {
             let value = self.eval(x - 0.5 - first as f32);
             return (value != 0.0).then_some((first, value));
         }
-        let mut values = [0.0f32; MAX_PIXELS];
-        let values = &mut values[..usize::try_from(last - first + 1).ok()?.min(MAX_PIXELS)];
+        let mut room = [0.0f32; MAX_PIXELS];
+        let values = &mut room[..usize::try_from(last - first + 1).ok()?.min(MAX_PIXELS)];
         let mut sum = 0.0;
         for (i, value) in values.iter_mut().enumerate() {
             *value = self.eval(x - 0.5 - (first + i as i64) as f32);

@@ -285,13 +285,11 @@ impl Layers {
 
     /// Returns the layers' names of all parts: `lightgroup.NAME`, `sStT`, `longer`, and `raw.sStT`.
     pub fn part_names(&self) -> impl Iterator<Item = String> + '_ {
-        let groups = self.light_groups.iter();
-        let groups = groups.map(|name| format!("lightgroup.{name}"));
+        let groups = (self.light_groups.iter()).map(|name| format!("lightgroup.{name}"));
         let longer = (self.strategy_vertices > 0).then(|| "longer".to_owned());
         let strategies = self.kept_strategies().map(|strategy| strategy.to_string());
         let is_raw = |strategy: &Strategy| self.raw_part(*strategy).is_some();
-        let raw = self.kept_strategies().filter(is_raw);
-        let raw = raw.map(|strategy| format!("raw.{strategy}"));
+        let raw = (self.kept_strategies().filter(is_raw)).map(|strategy| format!("raw.{strategy}"));
         groups.chain(strategies).chain(longer).chain(raw)
     }
 }

@@ -215,8 +215,8 @@ mod tests {
     fn normals_have_six_classes() {
         let cells = Cells::new(&mut []);
         let axes = [Vec3::X, Vec3::Y, Vec3::Z];
-        let classes = axes.map(|n| [n, -n].map(|n| cells.of(Vec3::ZERO, n).0));
-        let mut classes = classes.as_flattened().to_vec();
+        let of_axes = axes.map(|n| [n, -n].map(|n| cells.of(Vec3::ZERO, n).0));
+        let mut classes = of_axes.as_flattened().to_vec();
         classes.sort_unstable();
         classes.dedup();
         assert_eq!(classes.len(), NORMALS);

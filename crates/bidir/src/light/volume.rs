@@ -47,8 +47,7 @@ impl VolumeLight {
 
     /// Returns the light of medium number `id`, which is within `bounds` if it has no box of its own.
     pub(crate) fn new(id: MediumId, medium: &Medium, bounds: Option<Aabb>) -> Self {
-        let cells = medium.glow_cells(bounds);
-        let cells = cells.and_then(|cells| {
+        let cells = medium.glow_cells(bounds).and_then(|cells| {
             let bounds = medium.bounds().or(bounds)?;
             Cells::new(&cells, bounds, medium.brightest())
         });

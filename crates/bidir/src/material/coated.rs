@@ -127,12 +127,9 @@ struct Fillings {
 
 impl Fillings {
     fn new(coat: &CoatSettings, layers: &Layers) -> Self {
-        let depths = (0..=8).map(|i| 4.0 * sqr(i as f32 / 8.0));
-        let mut depths = Axis::of_texture(&coat.thickness, depths);
-        depths
-            .0
-            .iter_mut()
-            .for_each(|depth| *depth = depth.max(0.0));
+        let nodes = (0..=8).map(|i| 4.0 * sqr(i as f32 / 8.0));
+        let mut depths = Axis::of_texture(&coat.thickness, nodes);
+        (depths.0.iter_mut()).for_each(|depth| *depth = depth.max(0.0));
         let cosines = Axis::of_texture(&coat.g, (-2..=2).map(|i| 0.45 * i as f32));
         let (cosines, albedos) = if coat.is_clear() {
             (Axis(vec![0.0]), Axis(vec![0.0]))
@@ -141,16 +138,15 @@ impl Fillings {
             let albedos = (0..=16).map(|i| 1.0 - sqr(1.0 - i as f32 / 16.0));
             (cosines, Axis(albedos.collect()))
         };
-        let slabs = layers.layers.iter().flat_map(|layer| {
+        let mut slabs = Vec::new();
+        for layer in &*layers.layers {
             let of_depth = |&depth| cosines.0.iter().map(move |&g| Slab::new(layer, depth, g));
-            let slabs = depths.0.iter().flat_map(of_depth);
-            slabs.map(move |slab| (layer, slab)).collect::<Vec<_>>()
-        });
-        let slabs: Vec<_> = slabs.collect();
-        let tables = slabs
-            .par_iter()
-            .flat_map(|(layer, slab)| slab.tables(layer, &albedos.0));
-        let tables: Vec<_> = tables.collect();
+            let of_layer = depths.0.iter().flat_map(of_depth);
+            slabs.extend(of_layer.map(|slab| (layer, slab)));
+        }
+        let tables: Vec<_> = (slabs.par_iter())
+            .flat_map(|(layer, slab)| slab.tables(layer, &albedos.0))
+            .collect();
         Self {
             depths,
             cosines,
@@ -385,8 +381,8 @@ mod tests {
         for alpha in [0.05, 0.2, 0.7] {
             let filled = |layer: &Layer| Slab::new(layer, 0.0, 0.0).tables(layer, &[0.0])[0];
             let (low, high, t) = layers.axis.locate(alpha);
-            let ends = [(1.0 - t, low), (t, high)];
-            let ends = ends.map(|(share, i)| (share, filled(&layers.layers[i])));
+            let ends =
+                [(1.0 - t, low), (t, high)].map(|(weight, i)| (weight, filled(&layers.layers[i])));
             let own = Layer::new(eta, alpha);
             let coats = [
                 (layers.at(alpha), Filled::mixed(ends.into_iter())),

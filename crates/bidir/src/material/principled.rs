@@ -252,9 +252,9 @@ impl PrincipledMaterial {
             Needs::NOTHING
         };
         let grain = self.anisotropy.texture.as_ref();
-        let all = colors.into_iter().map(ScaledColor::needs);
-        let all = all.chain(numbers.into_iter().map(ScaledFloat::needs));
-        all.chain(grain.map(ColorTexture::needs))
+        (colors.into_iter().map(ScaledColor::needs))
+            .chain(numbers.into_iter().map(ScaledFloat::needs))
+            .chain(grain.map(ColorTexture::needs))
             .fold(sides, Needs::and)
     }
 

@@ -57,8 +57,8 @@ pub enum Domain {
 pub fn kronecker_point(u: Vec2, k: u16) -> Vec2 {
     const STEP: [f64; 2] = [0.754_877_666_246_692_8, 0.569_840_290_998_053_3];
     let moved = |x: f32, step: f64| (f64::from(x) + f64::from(k) * step).fract() as f32;
-    let moved = Vec2::new(moved(u.x, STEP[0]), moved(u.y, STEP[1]));
-    moved.min(Vec2::splat(ONE_MINUS_EPSILON))
+    let point = Vec2::new(moved(u.x, STEP[0]), moved(u.y, STEP[1]));
+    point.min(Vec2::splat(ONE_MINUS_EPSILON))
 }
 
 /// Number `k` of the sequence u + k / φ modulo 1, φ² = φ + 1: a third coordinate of [`kronecker_point`]s.

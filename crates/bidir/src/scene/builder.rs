@@ -266,8 +266,7 @@ impl SceneBuilder {
     /// light, as in pbrt-v4.
     pub fn coverage(&mut self, shape: usize, alpha: FloatTexture) -> &mut Self {
         let surface = &mut self.surfaces[shape];
-        let light = surface.light.map(|light| &mut self.lights[light as usize]);
-        let light = light.and_then(|light| match light {
+        let light = (surface.light).and_then(|light| match &mut self.lights[light as usize] {
             Light::Area(light) => Some(light),
             _ => None,
         });

@@ -204,8 +204,8 @@ mod tests {
             reflectance: ColorTexture::Constant([0.5; 3]),
         });
         for _ in 0..100 {
-            let veil = Sphere::new(Affine3A::IDENTITY, 1.0, Orientation::Natural);
-            let veil = builder.shape(Shape::Sphere(veil), material, None);
+            let sphere = Sphere::new(Affine3A::IDENTITY, 1.0, Orientation::Natural);
+            let veil = builder.shape(Shape::Sphere(sphere), material, None);
             builder.coverage(veil, FloatTexture::Constant(1e-3));
         }
         let scene = builder.build().expect("the scene is valid");

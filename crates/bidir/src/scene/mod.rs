@@ -323,8 +323,8 @@ impl Scene {
     /// Returns the target of a hit: the instance, if it is of one, and the part of a shape.
     #[inline]
     fn resolve(&self, hit: &accel::Hit) -> (Option<&Placed>, PrimitiveRef) {
-        let placed = hit.instance.checked_sub(1);
-        let placed = placed.map(|instance| &self.instances[instance as usize]);
+        let instance = hit.instance.checked_sub(1);
+        let placed = instance.map(|instance| &self.instances[instance as usize]);
         let first = placed.map_or(0, |placed| placed.first_primitive);
         (placed, self.primitives[(first + hit.primitive) as usize])
     }

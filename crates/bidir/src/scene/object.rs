@@ -94,14 +94,12 @@ impl Objects {
             let tree = accel::Bvh::with_instances(&own, Vec::new(), &[], &options);
             trees.push(Arc::new(tree.map_err(error)?));
         }
-        let instances = self
-            .instances
-            .iter()
+        let instances: Vec<_> = (self.instances.iter())
             .map(|(object, place)| accel::Instance {
                 object: object.0,
                 world_from_object: place.0,
-            });
-        let instances: Vec<_> = instances.collect();
+            })
+            .collect();
         let own = Gathered {
             shapes,
             primitives: &primitives[..in_world],

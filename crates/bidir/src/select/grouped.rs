@@ -108,8 +108,8 @@ impl Selector for OnePerGroup {
         // Members are sorted by group: the chosen one of each moves to the front.
         let mut next = kept;
         while next < chosen.len() {
-            let group = self.groups(candidates, &chosen[next..]).next();
-            let group = group.expect("members are left");
+            let first = self.groups(candidates, &chosen[next..]).next();
+            let group = first.expect("members are left");
             let number = self.number(group[0].of(candidates));
             let picked = pick(candidates, group, draws.get(number as usize));
             next += group.len();

@@ -272,8 +272,8 @@ impl Shape {
 /// Returns the azimuth of a local point, as part of `phi_max`.
 #[inline]
 fn azimuth_part(local: Vec3, phi_max: f32) -> f32 {
-    let phi = libm::atan2f(local.y, local.x);
-    let phi = if phi < 0.0 { phi + 2.0 * PI } else { phi };
+    let angle = libm::atan2f(local.y, local.x);
+    let phi = if angle < 0.0 { angle + 2.0 * PI } else { angle };
     (phi / phi_max).min(1.0)
 }
 

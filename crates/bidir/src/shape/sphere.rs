@@ -208,8 +208,8 @@ impl Sphere {
         let direction = warp::uniform_cone(u, height);
         let sin2 = sqr(direction.x) + sqr(direction.y);
         let sin_max = radius / distance;
-        let cos_alpha = sin2 / sin_max + direction.z * safe_sqrt(1.0 - sin2 / sqr(sin_max));
-        let cos_alpha = cos_alpha.clamp(-1.0, 1.0);
+        let cos = sin2 / sin_max + direction.z * safe_sqrt(1.0 - sin2 / sqr(sin_max));
+        let cos_alpha = cos.clamp(-1.0, 1.0);
         let sin_alpha = safe_sqrt(1.0 - sqr(cos_alpha));
         let around = Vec2::new(direction.x, direction.y).normalize_or(Vec2::X) * sin_alpha;
         let to_reference = Frame::from_z((reference - centre) / distance);

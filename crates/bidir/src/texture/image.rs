@@ -97,10 +97,9 @@ impl<const N: usize> Image<N> {
             }
             sum.map(|sum| sum as f32)
         };
-        let texels = rows
-            .iter()
-            .flat_map(|y| columns.iter().map(move |x| mean(x, y)));
-        let texels: Vec<_> = texels.collect();
+        let texels: Vec<_> = (rows.iter())
+            .flat_map(|y| columns.iter().map(move |x| mean(x, y)))
+            .collect();
         Self {
             width: columns.len(),
             height: rows.len(),

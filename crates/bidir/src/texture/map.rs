@@ -86,8 +86,8 @@ impl<const N: usize> ImageMap<N> {
     /// Returns the value at a point.
     #[inline]
     pub fn eval(&self, at: &TexturePoint) -> [f32; N] {
-        let st = self.mapping.st(at);
-        let st = Vec2::new(st.x, 1.0 - st.y);
+        let upwards = self.mapping.st(at);
+        let st = Vec2::new(upwards.x, 1.0 - upwards.y);
         let value = match self.filter {
             ImageFilter::Point => {
                 let texel = countable(st * size(&self.image)).floor();

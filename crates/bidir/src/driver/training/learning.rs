@@ -219,8 +219,8 @@ impl Survey {
             cells: ends.places.map(|place| self.found.cell(cells, place)),
             evidence,
         };
-        let traced = self.found.traced.iter();
-        let traced = traced.map(|&(ends, arrived)| connection(ends, Evidence::Traced(arrived)));
+        let traced = (self.found.traced.iter())
+            .map(|&(ends, arrived)| connection(ends, Evidence::Traced(arrived)));
         let possible = self.found.possible.iter().map(|possible| {
             let value = self.terms[possible.term as usize].value_by(film, counts);
             let count = counts.of_connection(possible.strategy);

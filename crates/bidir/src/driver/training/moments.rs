@@ -388,8 +388,8 @@ mod tests {
             let [own_variance, own_cost] = of_path("s0,s1", start, start);
             let difference = (variance / own_variance - 1.0).abs();
             assert!(difference < 0.2, "{start}: {variance} for {own_variance}");
-            let difference = (cost / own_cost - 1.0).abs();
-            assert!(difference < 0.02, "{start}: {cost} for {own_cost}");
+            let dearer = (cost / own_cost - 1.0).abs();
+            assert!(dearer < 0.02, "{start}: {cost} for {own_cost}");
         }
     }
 

@@ -118,8 +118,9 @@ mod tests {
 
     /// Returns the variance of the sum of what arrives of a budget's choice from these candidates.
     fn simulated(candidates: &[Expected], rays: u32) -> f64 {
-        let offered: Vec<_> = candidates.iter().map(|of| of.score as f32).collect();
-        let offered: Vec<_> = offered.iter().map(|&score| candidate(score)).collect();
+        let offered: Vec<_> = (candidates.iter())
+            .map(|of| candidate(of.score as f32))
+            .collect();
         let arrived: f64 = candidates.iter().map(|of| of.value).sum();
         let mut chosen: Vec<Chosen> = Vec::new();
         let draws = 256;

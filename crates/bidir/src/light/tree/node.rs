@@ -165,8 +165,8 @@ impl Node {
         let n = receiver.facing.normal();
         let cos = (across[0] * n.x + across[1] * n.y + across[2] * n.z) * -inverse_distance;
         let arrives = reception(receiver.facing, cos, &seen);
-        let factor = (leaves * arrives).max(Vec4::splat(LEAST));
-        let factor = Vec4::select(is_outside, factor, Vec4::ONE);
+        let cosines = (leaves * arrives).max(Vec4::splat(LEAST));
+        let factor = Vec4::select(is_outside, cosines, Vec4::ONE);
         let irradiance = self.intensity / distance2.max(self.radius2) * factor;
         // Neither zero nor infinite, so that every child has a share.
         let [least, most] = [f32::MIN_POSITIVE, f32::MAX / 8.0].map(Vec4::splat);
