@@ -91,7 +91,7 @@ impl Kernel for AreBlocked<'_> {
                     }
                 }
             }
-            let found = leaves.visit_all::<S>((bvh, stop), &active);
+            let found = leaves.visit_all::<S>(bvh, stop, &active);
             for (number, (ray, stack)) in active.iter_mut().zip(&mut stacks).enumerate() {
                 let is_blocked = found >> number & 1 == 1;
                 if let Some(done) = ray
@@ -173,7 +173,7 @@ impl ActiveRay {
 
     /// Returns true if the ray hits something in the leaf `child`.
     #[inline(always)]
-    fn is_blocked_in<S: Simd>(&self, (bvh, stop): (&Bvh, Stop<'_>), child: Child) -> bool {
+    fn is_blocked_in<S: Simd>(&self, bvh: &Bvh, stop: Stop<'_>, child: Child) -> bool {
         let (mut ray, mut query) = (self.ray, Anything { found: false });
         if let Some((first, count)) = child.as_triangles() {
             let triangle_ray = self.triangle_ray.lanes::<S::Four>();
@@ -321,7 +321,8 @@ impl LeafQueue {
     #[inline(always)]
     fn visit_all<S: Simd>(
         &mut self,
-        (bvh, stop): (&Bvh, Stop<'_>),
+        bvh: &Bvh,
+        stop: Stop<'_>,
         active: &[Option<ActiveRay>; RAYS],
     ) -> u32 {
         self.load_ahead(&bvh.tree);
@@ -335,7 +336,7 @@ impl LeafQueue {
             let place = usize::from(place) % RAYS;
             if blocked >> place & 1 == 0
                 && let Some(ray) = &active[place]
-                && ray.is_blocked_in::<S>((bvh, stop), Child::from_bits(leaf))
+                && ray.is_blocked_in::<S>(bvh, stop, Child::from_bits(leaf))
             {
                 blocked |= 1 << place;
             }

@@ -79,17 +79,22 @@ struct MetalSeen {
 }
 
 impl CoatedConductor {
-    /// Returns `metal` under an interface of `ggx`; `tables` are those of the two surfaces.
+    /// Returns `metal` under an interface of `ggx`, with the tables of the two surfaces.
     pub fn new(
-        tables: (&Layer, &Reflections),
+        layer: &Layer,
+        reflections: &Reflections,
         ggx: Ggx,
         filling: &Filling,
         metal: CoatedMetal,
     ) -> Self {
-        let (layer, reflections) = tables;
         let absorption = filling.absorption();
-        let crossing = (absorption, reflections.length);
-        let coat = Coat::new(layer, ggx, reflections.ratio, crossing);
+        let coat = Coat::new(
+            layer,
+            ggx,
+            reflections.ratio,
+            absorption,
+            reflections.length,
+        );
         let metal = CoatedMetal {
             ggx: seen_through(metal.ggx, ggx, coat.eta()),
             ..metal
@@ -303,7 +308,7 @@ impl CoatedConductor {
                 k: Spectrum([2.4, 1.7, 1.6, 1.6]),
                 ggx: facets,
             };
-            Self::new((&layer, &reflections), ggx, &filling, metal)
+            Self::new(&layer, &reflections, ggx, &filling, metal)
         };
         [
             ("coated conductor smooth", coated(1.5, 0.0, [0.0; 2], 0.01)),

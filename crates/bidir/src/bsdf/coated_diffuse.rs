@@ -59,8 +59,8 @@ impl CoatedDiffuse {
         reflectance: Spectrum,
     ) -> Self {
         let lanes = |value: fn(&Filled) -> f32| Spectrum(filled.each_ref().map(value));
-        let crossing = (lanes(|lane| lane.depth), mean.length);
-        let coat = Coat::new(layer, ggx, layer.ratio, crossing);
+        let depth = lanes(|lane| lane.depth);
+        let coat = Coat::new(layer, ggx, layer.ratio, depth, mean.length);
         let trips = lanes(|lane| lane.internal);
         let base = reflectance.zip(trips, |rho, trip| {
             rho * all_orders(rho * trip) * INV_PI / sqr(coat.eta())

@@ -251,9 +251,9 @@ impl<'a> Session<'a> {
             let job = self.job(begin, progress.stop());
             if self.method.shares_light() {
                 let keep = |batch: &mut Batch| self.deposit(&job).take_splats(batch);
-                self.walk_light(&job, places.clone(), pass, (batch, BATCH), keep);
+                self.walk_light(&job, places.clone(), pass, batch, BATCH, keep);
             }
-            if !self.render_group(&job, places.clone(), pass, (batch, progress)) {
+            if !self.render_group(&job, places.clone(), pass, batch, progress) {
                 return false;
             }
             progress.advance(places.end - places.start);
@@ -308,7 +308,8 @@ impl<'a> Session<'a> {
         job: &Job<'_>,
         mut places: Range<u64>,
         pass: u64,
-        (batch, progress): (&mut Batch, &dyn Progress),
+        batch: &mut Batch,
+        progress: &dyn Progress,
     ) -> bool {
         let layers = self.film.layers();
         // Features are measured of one sample at a time.

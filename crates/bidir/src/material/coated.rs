@@ -77,9 +77,9 @@ impl Axis {
         }
     }
 
-    /// Returns the indices of the values on both sides of `value`, and where it is between them.
+    /// Returns the position of `value`, limited to the ends.
     #[inline]
-    fn locate(&self, value: f32) -> (usize, usize, f32) {
+    fn locate(&self, value: f32) -> Position {
         let after = self.0.partition_point(|&node| node < value);
         let (low, high) = (after.saturating_sub(1), after.min(self.0.len() - 1));
         let width = self.0[high] - self.0[low];
@@ -88,8 +88,16 @@ impl Axis {
         } else {
             0.0
         };
-        (low, high, t)
+        Position { low, high, t }
     }
+}
+
+/// A position on an [`Axis`]: between the values with the indices `low` and `high`, at the fraction `t` of the way.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Position {
+    low: usize,
+    high: usize,
+    t: f32,
 }
 
 /// Layers by slope.
@@ -111,7 +119,7 @@ impl Layers {
 
     #[inline]
     fn at(&self, alpha: f32) -> Layer {
-        let (low, high, t) = self.axis.locate(alpha);
+        let Position { low, high, t } = self.axis.locate(alpha);
         self.layers[low].lerp(&self.layers[high], t)
     }
 }
@@ -156,7 +164,7 @@ impl Fillings {
     }
 
     /// Returns the tables of each lane, for the slope between two of the layers.
-    fn at(&self, slope: (usize, usize, f32), filling: &Filling) -> [Filled; 4] {
+    fn at(&self, slope: Position, filling: &Filling) -> [Filled; 4] {
         if let [only] = *self.tables {
             return [only; 4];
         }
@@ -173,32 +181,25 @@ impl Fillings {
         })
     }
 
-    /// Returns the mean of the tables around a point, which is between two values on each axis.
-    fn mixed(&self, point: [(usize, usize, f32); 4]) -> Filled {
+    /// Returns the mean of the tables around a point, of which this is the position on each axis.
+    fn mixed(&self, point: [Position; 4]) -> Filled {
         let sizes = [
             self.depths.0.len(),
             self.cosines.0.len(),
             self.albedos.0.len(),
         ];
         let corner = |number: usize| {
-            let is_high = |axis: usize| number >> axis & 1 == 1;
-            let index = |axis: usize| {
-                if is_high(axis) {
-                    point[axis].1
-                } else {
-                    point[axis].0
+            let ends: [(usize, f32); 4] = std::array::from_fn(|axis| {
+                let Position { low, high, t } = point[axis];
+                match number >> axis & 1 {
+                    0 => (low, 1.0 - t),
+                    _ => (high, t),
                 }
-            };
-            let weight = |axis: usize| {
-                if is_high(axis) {
-                    point[axis].2
-                } else {
-                    1.0 - point[axis].2
-                }
-            };
-            let row = (index(0) * sizes[0] + index(1)) * sizes[1] + index(2);
-            let weight = (0..4).map(weight).product::<f32>();
-            (weight, self.tables[row * sizes[2] + index(3)])
+            });
+            let [a, b, c, d] = ends.map(|(index, _)| index);
+            let row = (a * sizes[0] + b) * sizes[1] + c;
+            let weight = ends.iter().map(|(_, weight)| weight).product::<f32>();
+            (weight, self.tables[row * sizes[2] + d])
         };
         let corners = (0..16).map(corner).filter(|&(weight, _)| weight > 0.0);
         Filled::mixed(corners)
@@ -281,11 +282,11 @@ impl CoatedConductorMaterial {
 
     #[inline]
     fn reflections(&self, coat: f32, metal: f32) -> Reflections {
-        let (low, high, t) = self.layers.axis.locate(coat);
-        let (m_low, m_high, m_t) = self.metal_axis.locate(metal);
+        let Position { low, high, t } = self.layers.axis.locate(coat);
+        let metal = self.metal_axis.locate(metal);
         let row = |i: usize| {
             let row = &self.reflections[i * self.metal_axis.0.len()..];
-            row[m_low].lerp(&row[m_high], m_t)
+            row[metal.low].lerp(&row[metal.high], metal.t)
         };
         row(low).lerp(&row(high), t)
     }
@@ -307,8 +308,13 @@ impl CoatedConductorMaterial {
         let (coat_alpha, metal_alpha) = (ggx.mean_alpha(), facets.mean_alpha());
         let layer = self.layers.at(coat_alpha);
         let reflections = self.reflections(coat_alpha, metal_alpha);
-        let tables = (&layer, &reflections);
-        Bsdf::CoatedConductor(CoatedConductor::new(tables, ggx, &filling, metal))
+        Bsdf::CoatedConductor(CoatedConductor::new(
+            &layer,
+            &reflections,
+            ggx,
+            &filling,
+            metal,
+        ))
     }
 }
 
@@ -327,10 +333,11 @@ mod tests {
     #[test]
     fn slopes_are_found_between_their_neighbours() {
         let axis = Axis(vec![0.0, 0.25, 1.0]);
-        assert_eq!(axis.locate(0.0), (0, 0, 0.0));
-        assert_eq!(axis.locate(0.5), (1, 2, 1.0 / 3.0));
-        assert_eq!(axis.locate(3.0), (2, 2, 0.0));
-        assert_eq!(Axis(vec![0.3]).locate(0.3), (0, 0, 0.0));
+        let position = |low, high, t| Position { low, high, t };
+        assert_eq!(axis.locate(0.0), position(0, 0, 0.0));
+        assert_eq!(axis.locate(0.5), position(1, 2, 1.0 / 3.0));
+        assert_eq!(axis.locate(3.0), position(2, 2, 0.0));
+        assert_eq!(Axis(vec![0.3]).locate(0.3), position(0, 0, 0.0));
     }
 
     /// Makes a base of 0.6 under a haze of this albedo.
@@ -380,7 +387,7 @@ mod tests {
         };
         for alpha in [0.05, 0.2, 0.7] {
             let filled = |layer: &Layer| Slab::new(layer, 0.0, 0.0).tables(layer, &[0.0])[0];
-            let (low, high, t) = layers.axis.locate(alpha);
+            let Position { low, high, t } = layers.axis.locate(alpha);
             let ends =
                 [(1.0 - t, low), (t, high)].map(|(weight, i)| (weight, filled(&layers.layers[i])));
             let own = Layer::new(eta, alpha);

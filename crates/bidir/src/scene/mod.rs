@@ -278,7 +278,7 @@ impl Scene {
         let place = placed.map(|placed| &placed.place);
         let differentials = of_shape
             .is_detailed
-            .then(|| self.shapes[number].differentials(place, (index, uv), &surface));
+            .then(|| self.shapes[number].differentials(place, index, uv, &surface));
         SurfaceHit {
             surface,
             differentials,

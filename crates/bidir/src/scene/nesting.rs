@@ -186,7 +186,7 @@ impl Scene {
             return (hit, None);
         }
         let stops = |hit: &Hit| self.stops(ray, hit, chances);
-        let interface = self.settle((ray, chances.stop), end, crossings, stops);
+        let interface = self.settle(ray, chances.stop, end, crossings, stops);
         (
             interface.map_or(hit, |interface| Some(interface.hit)),
             interface,
@@ -201,7 +201,7 @@ impl Scene {
         crossings: &mut Crossings,
     ) -> f32 {
         let mut visible = 1.0;
-        let interface = self.settle((ray, stop), ray.t_max, crossings, |hit| {
+        let interface = self.settle(ray, stop, ray.t_max, crossings, |hit| {
             let alpha = self.coverage(ray, hit);
             visible *= 1.0 - alpha;
             alpha >= 1.0
@@ -213,7 +213,8 @@ impl Scene {
     /// those within volumes. Ends at a surface that stops the ray.
     fn settle(
         &self,
-        (ray, stop): (&Ray, Stop<'_>),
+        ray: &Ray,
+        stop: Stop<'_>,
         end: f32,
         crossings: &mut Crossings,
         mut stops: impl FnMut(&Hit) -> bool,
@@ -363,7 +364,7 @@ impl Scene {
             ControlFlow::Continue(())
         });
         if self.nests() {
-            self.settle((ray, Stop::NEVER), f32::INFINITY, &mut crossings, |_| false);
+            self.settle(ray, Stop::NEVER, f32::INFINITY, &mut crossings, |_| false);
         }
         crossings
     }

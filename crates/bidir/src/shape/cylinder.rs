@@ -122,7 +122,8 @@ impl Cylinder {
         let upwards = Vec3::Z * (self.z_max - self.z_min);
         self.placement.differentials(
             [turned * self.radius, upwards],
-            (normal, [turned, Vec3::ZERO]),
+            normal,
+            [turned, Vec3::ZERO],
             self.orientation,
         )
     }

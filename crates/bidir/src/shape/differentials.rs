@@ -70,7 +70,8 @@ impl Placement {
     pub(super) fn differentials(
         &self,
         tangents: [Vec3; 2],
-        (normal, changes): (Vec3, [Vec3; 2]),
+        normal: Vec3,
+        changes: [Vec3; 2],
         orientation: Orientation,
     ) -> Differentials {
         let n = self.normal(normal) * orientation.sign();

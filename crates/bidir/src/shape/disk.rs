@@ -96,9 +96,9 @@ impl Disk {
         let along = Vec3::new(-local.y, local.x, 0.0) * self.phi_max;
         let outwards = Vec3::new(local.x, local.y, 0.0).normalize_or_zero();
         let inwards = outwards * (self.inner_radius - self.radius);
-        let unchanged = (Vec3::Z, [Vec3::ZERO; 2]);
+        let unchanged = [Vec3::ZERO; 2];
         self.placement
-            .differentials([along, inwards], unchanged, self.orientation)
+            .differentials([along, inwards], Vec3::Z, unchanged, self.orientation)
     }
 
     /// Evenly over the area: azimuth, then the square of the radius.

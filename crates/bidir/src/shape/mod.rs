@@ -172,7 +172,8 @@ impl Shape {
     pub fn differentials(
         &self,
         place: Option<&Place>,
-        (i, uv): (usize, Vec2),
+        i: usize,
+        uv: Vec2,
         surface: &SurfacePoint,
     ) -> Differentials {
         match self {

@@ -150,14 +150,13 @@ impl Sphere {
         let rho = (sqr(n.x) + sqr(n.y)).sqrt();
         let theta = |z: f32| libm::acosf((z / self.radius).clamp(-1.0, 1.0));
         let up = theta(self.z_min) - theta(self.z_max);
-        let tangents = [
+        let changes = [
             Vec3::new(-n.y, n.x, 0.0) * self.phi_max,
             Vec3::new(-n.x * n.z / rho, -n.y * n.z / rho, rho) * up,
         ];
-        let changes = (n, tangents);
-        let tangents = tangents.map(|tangent| tangent * self.radius);
+        let tangents = changes.map(|change| change * self.radius);
         self.placement
-            .differentials(tangents, changes, self.orientation)
+            .differentials(tangents, n, changes, self.orientation)
     }
 
     /// Returns the local point with even local area over the unit square.

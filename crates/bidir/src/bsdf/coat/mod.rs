@@ -66,7 +66,8 @@ impl<const R: usize, const L: usize> Coat<R, L> {
         layer: &Layer,
         ggx: Ggx,
         ratio: Curve<R>,
-        (depth, length): (Spectrum, Curve<L>),
+        depth: Spectrum,
+        length: Curve<L>,
     ) -> Self {
         Self {
             depth,

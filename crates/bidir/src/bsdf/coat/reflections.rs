@@ -200,7 +200,7 @@ impl Surfaces {
             let lengths = Curve::<KNOTS>::through(lengths);
             let length = Curve::through(Curve::<LENGTHS>::cosines().map(|cos| lengths.at(cos)));
             let ratio = Curve::through(ratios);
-            Coat::new(layer, ggx, ratio, (Spectrum::splat(self.depth), length))
+            Coat::new(layer, ggx, ratio, Spectrum::splat(self.depth), length)
         };
         if ggx.is_smooth() {
             return coat([1.0; KNOTS], lengths);

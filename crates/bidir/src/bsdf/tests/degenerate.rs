@@ -82,8 +82,7 @@ fn coated() -> Vec<Bsdf> {
                     k: white,
                     ggx: Ggx::new(0.2, 0.2),
                 };
-                let tables = (&layer, &reflections);
-                let lacquered = CoatedConductor::new(tables, ggx, &filling, metal);
+                let lacquered = CoatedConductor::new(&layer, &reflections, ggx, &filling, metal);
                 all.push(Bsdf::CoatedConductor(lacquered));
             }
         }

@@ -141,8 +141,14 @@ fn lacquer(eta: f32, [alpha, metal]: [f32; 2], index: [f32; 2], filling: &Fillin
         k: Spectrum::splat(index[1]),
         ggx: Ggx::new(metal, metal),
     };
-    let (tables, ggx) = ((&layer, &reflections), Ggx::new(alpha, alpha));
-    Bsdf::CoatedConductor(CoatedConductor::new(tables, ggx, filling, metal))
+    let ggx = Ggx::new(alpha, alpha);
+    Bsdf::CoatedConductor(CoatedConductor::new(
+        &layer,
+        &reflections,
+        ggx,
+        filling,
+        metal,
+    ))
 }
 
 /// Returns the reflectances of the closed form of `stack`, one for each of [`COSINES`]; prints a line of the

@@ -54,7 +54,8 @@ impl Session<'_> {
         job: &Job<'_>,
         places: Range<u64>,
         pass: u64,
-        (batch, size): (&mut Batch, usize),
+        batch: &mut Batch,
+        size: usize,
         mut keep: impl FnMut(&mut Batch),
     ) {
         begin_group(batch);
@@ -88,7 +89,7 @@ impl Session<'_> {
         let group = self.group(place);
         let pixel = self.sample(place, pass).pixel;
         let (mut own, mut own_stats) = (None, Stats::default());
-        self.walk_light(job, group, pass, (batch, 1), |batch| {
+        self.walk_light(job, group, pass, batch, 1, |batch| {
             let stats = std::mem::take(&mut batch.worker.stats);
             if batch.walked.samples[0].pixel == pixel {
                 own = Some((

@@ -43,12 +43,13 @@ pub(super) struct Term {
 }
 
 impl Term {
-    /// Of a contribution of sample number `sample` that landed on a pixel, of which the filter takes a part.
+    /// Makes the term of a contribution of sample number `sample`, of which the filter takes `part` into `pixel`.
     pub(super) fn new(
         job: &Job<'_>,
         sample: u64,
         contribution: &Contribution,
-        (pixel, part): (usize, f32),
+        pixel: usize,
+        part: f32,
         shares: Shares,
     ) -> Self {
         Self {

@@ -95,7 +95,8 @@ impl Survey {
                 Link::LightImage(_, place) => film.pick_pixel(place),
             };
             let shares = batch.shares(job, entry, candidate, &mut densities, &mut parts)?;
-            let mut term = Term::new(job, number, &entry.contribution, landed?, shares);
+            let (pixel, part) = landed?;
+            let mut term = Term::new(job, number, &entry.contribution, pixel, part, shares);
             term.edge = edge;
             term.score = candidate.map_or(0.0, |candidate| candidate.score);
             self.luminance += term.of_mean_pixel(film);

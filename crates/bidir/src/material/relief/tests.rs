@@ -17,7 +17,7 @@ fn frames(shape: &Shape, relief: &Relief, width: f32) -> Vec<(SurfacePoint, Fram
             Shape::Sphere(_) | Shape::Disk(_) | Shape::Cylinder(_) => drawn.uv,
         };
         let surface = shape.surface_point(0, hit, drawn.point);
-        let differentials = shape.differentials(None, (0, hit), &surface);
+        let differentials = shape.differentials(None, 0, hit, &surface);
         let at = TexturePoint::new(&surface).seen(width, &differentials);
         (surface, relief.frame(&surface, &differentials, &at))
     };
@@ -296,7 +296,7 @@ fn check_differentials(shape: &Shape, place: Option<&Place>, point: impl Fn(Vec2
             }
         };
         let here = surface(uv);
-        let d = shape.differentials(place, (0, uv), &here);
+        let d = shape.differentials(place, 0, uv, &here);
         let h = 2e-3;
         for (axis, dp, dn) in [(Vec2::X, d.dp_du, d.dn_du), (Vec2::Y, d.dp_dv, d.dn_dv)] {
             let (after, before) = (surface(uv + axis * h), surface(uv - axis * h));
