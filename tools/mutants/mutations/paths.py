@@ -36,8 +36,8 @@ PATHS = [
     (
         "light subpaths with the lanes of another group",
         "crates/bidir/src/driver/session.rs",
-        "self.walk_light(&job, places.clone(), pass, (batch, BATCH), keep);",
-        "self.walk_light(&self.job(0, job.stop), places.clone(), pass, (batch, BATCH), keep);",
+        "self.walk_light(&job, places.clone(), pass, batch, BATCH, |batch| {",
+        "self.walk_light(&self.job(0, job.stop), places.clone(), pass, batch, BATCH, |batch| {",
         unit("groups_may_have_lanes"),
     ),
     (

@@ -250,8 +250,9 @@ impl<'a> Session<'a> {
             let places = self.group(begin);
             let job = self.job(begin, progress.stop());
             if self.method.shares_light() {
-                let keep = |batch: &mut Batch| self.deposit(&job).take_splats(batch);
-                self.walk_light(&job, places.clone(), pass, batch, BATCH, keep);
+                self.walk_light(&job, places.clone(), pass, batch, BATCH, |batch| {
+                    self.deposit(&job).take_splats(batch);
+                });
             }
             if !self.render_group(&job, places.clone(), pass, batch, progress) {
                 return false;

@@ -42,12 +42,12 @@ impl Session<'_> {
         begin..(begin + size).min(self.view.film().crop.area())
     }
 
-    /// Every k-th of `places`, the range of a group: the samples that bring it a light subpath.
-    fn bringers(&self, places: Range<u64>) -> impl Iterator<Item = u64> {
+    /// Returns every k-th of `places`, the range of a group: the samples that own one of its light subpaths.
+    fn subpath_owners(&self, places: Range<u64>) -> impl Iterator<Item = u64> {
         places.step_by(usize::from(self.settings.lvc.samples_per_subpath.get()))
     }
 
-    /// Walks the light subpaths of the group at `places`, `size` at a time, and calls `keep` after each batch of
+    /// Walks the light subpaths of the group at `places`, `size` at a time, and calls `on_batch` after each batch of
     /// them.
     pub(super) fn walk_light(
         &self,
@@ -56,16 +56,16 @@ impl Session<'_> {
         pass: u64,
         batch: &mut Batch,
         size: usize,
-        mut keep: impl FnMut(&mut Batch),
+        mut on_batch: impl FnMut(&mut Batch),
     ) {
         begin_group(batch);
-        let mut bringers = self.bringers(places).peekable();
-        while bringers.peek().is_some() {
+        let mut owners = self.subpath_owners(places).peekable();
+        while owners.peek().is_some() {
             batch.worker.stopwatch.begin_light();
-            let places = bringers.by_ref().take(size);
+            let places = owners.by_ref().take(size);
             batch.fill(places.map(|place| self.sample(place, pass)));
             walk_group(job, batch);
-            keep(batch);
+            on_batch(batch);
             batch.worker.stopwatch.end(Stage::Film);
         }
         end_group(job, batch);

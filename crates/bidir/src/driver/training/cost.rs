@@ -5,76 +5,11 @@ use super::constants::{
     CANDIDATE, CONNECTED_CAMERA_RAY, CONNECTION_RAY, DIFFUSE_CANDIDATE, LIGHT_IMAGE, LIGHT_POINT,
     LIGHT_RAY,
 };
-use super::counts::{Counts, STARTS, dot, longer};
+use super::counts::{Counts, dot};
 use super::survey::Survey;
-use crate::integrator::{Batch, IntegratorKind};
-use crate::path::{Job, MisHeuristic};
+use crate::integrator::IntegratorKind;
+use crate::path::MisHeuristic;
 use crate::select::ShadowRays;
-use crate::strategy::Strategy;
-use std::ops::AddAssign;
-
-/// Counts of the survey's samples. Walks have a roulette that begins at surface 0, 1 or 2; pairs are of t = 2 and of
-/// t > 2.
-#[derive(Clone, Copy, Default)]
-pub(super) struct Work {
-    /// Rays of camera walks, by the start of the roulette.
-    camera_rays: [f64; STARTS],
-    /// Connections with light points, by the start of the roulette.
-    next_events: [[f64; 2]; STARTS],
-    /// Connections with light walks.
-    connections: [f64; 2],
-    /// Connections with light walks whose two vertices are diffuse, by the balance heuristic.
-    diffuse: [f64; 2],
-    /// Samples that have any connection.
-    connected: f64,
-}
-
-impl Work {
-    /// Adds the one sample of `batch`.
-    pub(super) fn add(&mut self, job: &Job<'_>, batch: &Batch) {
-        let walk = batch.walked.camera.get(0);
-        let rays = walk.vertices.len() - 1 + usize::from(walk.escape.is_some());
-        let albedo = |i: usize| walk.vertices.get(i).map_or(1.0, |vertex| vertex.albedo_fwd);
-        let longer = longer([albedo(1), albedo(2)]);
-        for (start, camera_rays) in self.camera_rays.iter_mut().enumerate() {
-            *camera_rays += (0..rays)
-                .map(|before| longer[before.min(start)])
-                .sum::<f64>();
-        }
-        for candidate in &*batch.candidates.offered {
-            let Strategy { s, t } = candidate.term.strategy;
-            let (s, t) = (usize::from(s), usize::from(t));
-            let deeper = usize::from(t > 2);
-            if s < job.settings.light_point.first_walked() {
-                for (start, next_events) in self.next_events.iter_mut().enumerate() {
-                    next_events[deeper] += longer[(t - 2).min(start)];
-                }
-            } else {
-                self.connections[deeper] += 1.0;
-                self.diffuse[deeper] += f64::from(batch.is_diffuse(candidate));
-            }
-        }
-        self.connected += f64::from(!batch.candidates.offered.is_empty());
-    }
-}
-
-impl AddAssign for Work {
-    fn add_assign(&mut self, more: Self) {
-        let add = |sums: &mut [f64], more: &[f64]| {
-            for (sum, more) in sums.iter_mut().zip(more) {
-                *sum += more;
-            }
-        };
-        add(&mut self.camera_rays, &more.camera_rays);
-        add(
-            self.next_events.as_flattened_mut(),
-            more.next_events.as_flattened(),
-        );
-        add(&mut self.connections, &more.connections);
-        add(&mut self.diffuse, &more.diffuse);
-        self.connected += more.connected;
-    }
-}
 
 impl Survey {
     /// Returns the cost of a sample by `settings`, with `counts` of these. Unit: rays of path tracing's walks.
@@ -114,7 +49,7 @@ mod tests {
     use super::*;
     use crate::bsdf::FacetScattering;
     use crate::driver::training::{
-        Effort, Task,
+        Effort, TrainingInput,
         tests::{WHOLE, grey, room_with, survey_of, view},
     };
     use crate::integrator::CandidateCount;
@@ -128,12 +63,12 @@ mod tests {
         let (scene, view) = (room_with(ball), view(WHOLE));
         let mut settings = Settings::new(IntegratorKind::Lvc);
         settings.path.mis = mis;
-        let task = Task {
+        let input = TrainingInput {
             scene: &scene,
             view: &view,
             settings: &settings.clone(),
         };
-        let survey = survey_of(task, Effort::at_most(1024));
+        let survey = survey_of(input, Effort::at_most(1024));
         let mut cost = |count| {
             settings.lvc.candidates = CandidateCount::new(count, 1);
             let counts = Counts::new(
@@ -180,12 +115,12 @@ mod tests {
     fn rules_bound_the_rays_of_estimators_with_candidates() {
         let (scene, view) = (room_with(grey(0.4)), view(WHOLE));
         let settings = Settings::new(IntegratorKind::Bdpt);
-        let task = Task {
+        let input = TrainingInput {
             scene: &scene,
             view: &view,
             settings: &settings,
         };
-        let survey = survey_of(task, Effort::at_most(1024));
+        let survey = survey_of(input, Effort::at_most(1024));
         let cost = |integrator, shadow_rays| {
             let mut settings = Settings::new(integrator);
             settings.shadow_rays = shadow_rays;

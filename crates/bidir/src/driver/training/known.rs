@@ -4,45 +4,16 @@
 
 use super::counts::Counts;
 use super::learning::Lessons;
-use super::moments::{Judgement, RelativeTerm, Term};
-use super::plan::TYPICAL;
+use super::moments::{Judgement, RelativeTerm};
 use super::survey::Survey;
-use super::{Settings, Task};
+use super::terms::Known;
+use super::{Settings, TrainingInput};
 use crate::film::FilmSettings;
 use crate::guide::Cells;
-use crate::path::Shares;
-
-/// The learned numbers of samples of a term's connections, and their visibility.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Known {
-    /// The shares of its path, with the numbers of samples that are learned.
-    pub(super) shares: Shares,
-    /// Σ n_j² p_j / D of connections with light walks, of t = 2 and of t > 2, where n_j has what is learned alone.
-    pub(super) squares: [f64; 2],
-    /// Σ n_j p_j (e - 1) / D, where a connection has e times the second moment, as light vertices of its cell are few.
-    pub(super) excess: [f64; 2],
-    /// How many times as many samples its own connection has.
-    pub(super) rate: f64,
-    /// √V̂.
-    pub(super) root_visibility: f32,
-}
-
-impl Known {
-    /// Where nothing is learned.
-    pub(super) fn nothing(term: &Term) -> Self {
-        Self {
-            shares: term.shares,
-            squares: term.shares.connections.map(f64::from),
-            excess: [0.0; 2],
-            rate: 1.0,
-            root_visibility: 1.0,
-        }
-    }
-}
 
 /// Judges plans for a survey.
 pub(super) struct Judge<'a> {
-    task: Task<'a>,
+    input: TrainingInput<'a>,
     survey: &'a Survey,
     nothing: Vec<Known>,
     /// What `lvc` learns. None: nothing.
@@ -52,20 +23,24 @@ pub(super) struct Judge<'a> {
 }
 
 impl<'a> Judge<'a> {
-    /// Learns for all plans by a typical one.
-    pub(super) fn new(task: Task<'a>, survey: &'a Survey, cells: &Cells) -> Self {
-        let typical = TYPICAL.keeping(task.settings).apply(task.settings);
-        let lessons = Lessons::of(task, &typical, survey, cells);
+    /// Learns for all plans by one of `typical` settings.
+    pub(super) fn new(
+        input: TrainingInput<'a>,
+        typical: &Settings,
+        survey: &'a Survey,
+        cells: &Cells,
+    ) -> Self {
+        let lessons = Lessons::of(input, typical, survey, cells);
         let mut judge = Self {
-            task,
+            input,
             survey,
             nothing: survey.terms.iter().map(Known::nothing).collect(),
             learned: None,
             light_vertices: survey.light_vertices(),
         };
         if let Some(lessons) = lessons {
-            let counts = judge.counts(&typical);
-            judge.learned = Some(survey.known(task.view.film(), &lessons, &counts));
+            let counts = judge.counts(typical);
+            judge.learned = Some(survey.known(input.view.film(), &lessons, &counts));
             judge.light_vertices = lessons.light_vertices();
         }
         judge
@@ -73,8 +48,8 @@ impl<'a> Judge<'a> {
 
     /// Returns the counts of the estimator of `settings`.
     pub(super) fn counts(&self, settings: &Settings) -> Counts {
-        let surveyed = self.task.settings.path.roulette;
-        let pixels = self.task.view.film().crop.area();
+        let surveyed = self.input.settings.path.roulette;
+        let pixels = self.input.view.film().crop.area();
         Counts::new(settings, surveyed, self.light_vertices, pixels)
     }
 
@@ -103,8 +78,8 @@ impl Survey {
             .as_ref()
             .map_or(0.0, |draws| 1.0 / draws.subpaths);
         let connections = self.connections(film, &lessons.cells, counts);
-        let (traced, possible) = connections.split_at(self.found.traced() as usize);
-        for (possible, connection) in self.possible().zip(possible) {
+        let (traced, possible) = connections.split_at(self.log.traced().len());
+        for (possible, connection) in self.log.possible().iter().zip(possible) {
             let [factor, crowded] = [0.0, one].map(|more| lessons.factor_without(connection, more));
             let of_term = &mut parts[possible.term as usize][usize::from(possible.strategy.t > 2)];
             let part = f64::from(possible.part);

@@ -11,21 +11,24 @@ mod emission;
 mod extent;
 mod known;
 mod learning;
+mod log;
 mod moments;
 mod plan;
 mod quads;
 mod selection;
 mod survey;
+mod terms;
 #[cfg(test)]
 mod tests;
+mod work;
 
 pub use effort::Effort;
 pub use plan::Plan;
 
 use super::Settings;
 use crate::film::FilmSettings;
-use crate::guide::{Guide, LightProposals};
-use crate::integrator::{IntegratorKind, LvcSettings, group_size};
+use crate::guide::{Cells, Guide, LightProposals};
+use crate::integrator::{IntegratorKind, LvcSettings, ProposalKind, group_size};
 use crate::light::LightChoice;
 use crate::path::SampleCounts;
 use crate::scene::Scene;
@@ -33,6 +36,7 @@ use crate::stats::RayCounts;
 use crate::view::View;
 use constants::MOST_CACHED;
 use counts::of_connections;
+use learning::Lessons;
 use survey::Survey;
 
 /// The results of a short render before the first pass: a pure function of scene, settings and its number of
@@ -59,9 +63,9 @@ pub struct Training {
     subpath_rays: f64,
 }
 
-/// The scene and the settings that training is for.
+/// The scene, the view and the settings that training is for.
 #[derive(Clone, Copy)]
-struct Task<'a> {
+struct TrainingInput<'a> {
     scene: &'a Scene,
     view: &'a View,
     settings: &'a Settings,
@@ -79,17 +83,17 @@ pub(super) fn prepare(
     if !is_open && !settings.needs_training() {
         return Some((settings, None));
     }
-    let task = Task {
+    let input = TrainingInput {
         scene,
         view,
         settings: &settings,
     };
-    let survey = Survey::run(task, effort)?;
-    let cells = survey.found.cells();
-    let plan = is_open.then(|| Plan::best(task, &survey, &cells));
+    let survey = Survey::run(input, effort)?;
+    let cells = survey.log.cells();
+    let plan = is_open.then(|| Plan::best(input, &survey, &cells));
     let mut decided = plan.map_or_else(|| settings.clone(), |plan| plan.apply(&settings));
     let mut training = Training::new(&survey);
-    training.learn(task, &decided, &survey, &cells);
+    training.learn(input, &decided, &survey, &cells);
     training.bound_cache(view.film(), &mut decided);
     training.plan = plan.map(|plan| Plan {
         samples_per_subpath: decided.lvc.samples_per_subpath,
@@ -120,6 +124,24 @@ impl Training {
             is_short: survey.is_short,
             subpath_rays: survey.stats.rays.light as f64 / survey.samples(),
         }
+    }
+
+    /// Learns for the estimator of `settings`, where that learns and `survey` has enough samples.
+    fn learn(
+        &mut self,
+        input: TrainingInput<'_>,
+        settings: &Settings,
+        survey: &Survey,
+        cells: &Cells,
+    ) {
+        let Some(lessons) = Lessons::of(input, settings, survey, cells) else {
+            return;
+        };
+        self.light_vertices = lessons.light_vertices();
+        if settings.lvc.proposal == ProposalKind::Learned {
+            self.proposals = Some(LightProposals::new(lessons.cells, &lessons.sums));
+        }
+        self.light_start = lessons.light_start;
     }
 
     /// Raises the number of samples per subpath until the cache of a group has no more than [`MOST_CACHED`]

@@ -11,74 +11,14 @@
 use super::blocks::{BLOCKS, Blocks};
 use super::constants::{DARK, LEAST_VARIANCE};
 use super::counts::{Counts, dot};
-use super::known::Known;
 use super::quads::{Part, Quad, QuadVariance, Reach};
 use super::selection::{self, Expected};
 use super::survey::{QUAD, Survey};
-use crate::contribution::Contribution;
+use super::terms::{Known, SurveyTerm};
 use crate::film::FilmSettings;
-use crate::path::{Job, Shares};
 use crate::select::ShadowRays;
-use crate::strategy::Strategy;
 
-/// A contribution to the image of the survey, or a connection that did not arrive.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Term {
-    /// The number of its sample.
-    pub(super) sample: u32,
-    /// The number of its pixel in the crop.
-    pub(super) pixel: u32,
-    pub(super) strategy: Strategy,
-    /// The light that its path begins on.
-    pub(super) light: u32,
-    /// v; 0 where it did not arrive. Unit: luminance.
-    pub(super) value: f32,
-    /// The score of a candidate, where nothing is learned.
-    pub(super) score: f32,
-    /// True of s = 1 where it draws a light point of its own.
-    pub(super) is_next_event: bool,
-    /// The number of its connection among those traced, if it is one that has places.
-    pub(super) edge: Option<u32>,
-    pub(super) shares: Shares,
-}
-
-impl Term {
-    /// Makes the term of a contribution of sample number `sample`, of which the filter takes `part` into `pixel`.
-    pub(super) fn new(
-        job: &Job<'_>,
-        sample: u64,
-        contribution: &Contribution,
-        pixel: usize,
-        part: f32,
-        shares: Shares,
-    ) -> Self {
-        Self {
-            sample: sample as u32,
-            pixel: pixel as u32,
-            strategy: contribution.term.strategy,
-            light: contribution.term.light,
-            value: job.lanes.luminance(contribution.value()) * part,
-            score: 0.0,
-            edge: None,
-            is_next_event: usize::from(contribution.term.strategy.s)
-                < job.settings.light_point.first_walked(),
-            shares,
-        }
-    }
-
-    pub(super) fn is_light_image(&self) -> bool {
-        self.strategy.t == 1
-    }
-
-    /// Returns its part of the mean of `film`: there is a sample for each pixel, and a light image for the film.
-    pub(super) fn of_mean_pixel(&self, film: &FilmSettings) -> f64 {
-        if self.is_light_image() {
-            f64::from(self.value) / film.light_paths() as f64
-        } else {
-            self.value.into()
-        }
-    }
-
+impl SurveyTerm {
     /// Returns its kind, and how many terms of a plan it stands for, where the walk gets that far.
     fn rate(&self, known: &Known, counts: &Counts) -> (Part, f64) {
         let deeper = usize::from(self.strategy.t > 2);
@@ -100,11 +40,6 @@ impl Term {
             surfaces: counts.surfaces(&known.shares, s),
             longer: counts.longer(&known.shares, s),
         }
-    }
-
-    /// Returns f / D_k: what it is of the value of a pixel of `film` where the numbers of samples are `counts`.
-    pub(super) fn value_by(&self, film: &FilmSettings, counts: &Counts) -> f64 {
-        self.of_mean_pixel(film) / counts.share(&self.shares).all
     }
 }
 
@@ -146,7 +81,7 @@ impl Survey {
             means[block] += f64::from(term.value) * scale;
         }
         let mean = self.luminance / self.samples();
-        let relative = |(term, (block, scale)): (&Term, (usize, f64))| {
+        let relative = |(term, (block, scale)): (&SurveyTerm, (usize, f64))| {
             let norm = (means[block] * means[block] + DARK * mean * mean).sqrt();
             let value = f64::from(term.value) / norm;
             let in_pass = if term.is_light_image() {
@@ -169,7 +104,7 @@ impl Survey {
     fn places(&self, film: &FilmSettings) -> Vec<(usize, f64)> {
         let blocks = Blocks::new(film.crop);
         let samples = blocks.samples(self.stats.samples);
-        let place = |term: &Term| {
+        let place = |term: &SurveyTerm| {
             let block = blocks.of(term.pixel as usize);
             let count = if term.is_light_image() {
                 self.samples() * blocks.size(block)
@@ -190,7 +125,7 @@ impl Survey {
         counts: &Counts,
     ) -> Judgement {
         let mut sums = Sums::default();
-        let quad_of = |term: &Term| u64::from(term.sample) / QUAD;
+        let quad_of = |term: &SurveyTerm| u64::from(term.sample) / QUAD;
         let mut begin = 0;
         for terms in self.terms.chunk_by(|a, b| quad_of(a) == quad_of(b)) {
             let range = begin..begin + terms.len();
@@ -258,7 +193,7 @@ impl Sums {
     fn add<'a>(
         &mut self,
         mut quad: Quad,
-        terms: impl Iterator<Item = (&'a Term, &'a RelativeTerm, &'a Known)>,
+        terms: impl Iterator<Item = (&'a SurveyTerm, &'a RelativeTerm, &'a Known)>,
         counts: &Counts,
     ) {
         let mut scale = 0.0;
@@ -321,8 +256,9 @@ impl Sums {
 mod tests {
     use super::*;
     use crate::driver::training::known::Judge;
+    use crate::driver::training::plan::typical;
     use crate::driver::training::{
-        Effort, Settings, Task,
+        Effort, Settings, TrainingInput,
         tests::{lamp, room, survey_of, view, view_of},
     };
     use crate::film::PixelRect;
@@ -330,7 +266,7 @@ mod tests {
     use crate::path::PathRoulette;
     use crate::view::View;
 
-    impl Term {
+    impl SurveyTerm {
         /// Returns true where connections with light walks can make the path.
         pub(in crate::driver::training) fn has_share_of_connections(&self) -> bool {
             self.shares.connections.iter().sum::<f32>() > 0.0
@@ -338,10 +274,15 @@ mod tests {
     }
 
     /// Returns the variance of the estimator of `settings`, all of whose shadow rays are traced, and its cost.
-    fn judged(task: Task<'_>, settings: &Settings) -> [f64; 2] {
-        let survey = survey_of(task, Effort::WHOLE);
-        let terms = survey.relative_terms(task.view.film()).expect("a lamp");
-        let judge = Judge::new(task, &survey, &survey.found.cells());
+    fn judged(input: TrainingInput<'_>, settings: &Settings) -> [f64; 2] {
+        let survey = survey_of(input, Effort::WHOLE);
+        let terms = survey.relative_terms(input.view.film()).expect("a lamp");
+        let judge = Judge::new(
+            input,
+            &typical(input.settings),
+            &survey,
+            &survey.log.cells(),
+        );
         let variance = judge.judge(settings, &terms).variance(ShadowRays::All);
         [
             variance.pixels,
@@ -369,12 +310,12 @@ mod tests {
         path.path.roulette = roulette;
         let of_seeds = (0..4).map(|seed| {
             settings.seed = seed;
-            let task = Task {
+            let input = TrainingInput {
                 scene: &scene,
                 view: &view,
                 settings: &settings,
             };
-            judged(task, &path)
+            judged(input, &path)
         });
         of_seeds.fold([0.0; 2], |sum, of| [sum[0] + of[0], sum[1] + of[1]])
     }
@@ -406,13 +347,13 @@ mod tests {
             settings.path.max_depth = Some(max_depth);
             let mut variance = |count, seed| {
                 settings.seed = seed;
-                let task = Task {
+                let input = TrainingInput {
                     scene: &scene,
                     view: &view,
                     settings: &settings.clone(),
                 };
                 settings.lvc.next_events = of(count);
-                judged(task, &settings)[0]
+                judged(input, &settings)[0]
             };
             let [one, two, eight] =
                 [1, 2, 8].map(|count| (0..4).map(|seed| variance(count, seed)).sum::<f64>());
@@ -432,15 +373,15 @@ mod tests {
         };
         let (scene, view) = (lamp(), view(of_lamp));
         let settings = Settings::new(IntegratorKind::Bdpt);
-        let task = Task {
+        let input = TrainingInput {
             scene: &scene,
             view: &view,
             settings: &settings,
         };
-        let survey = survey_of(task, Effort::WHOLE);
+        let survey = survey_of(input, Effort::WHOLE);
         let terms = survey.relative_terms(view.film()).expect("a lamp");
         let moment: f64 = terms.iter().map(|term| term.square).sum();
-        let part = judged(task, &settings)[0] / moment;
+        let part = judged(input, &settings)[0] / moment;
         assert!(part < 0.05, "{part}");
     }
 }

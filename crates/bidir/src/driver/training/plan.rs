@@ -4,7 +4,7 @@
 use super::known::Judge;
 use super::moments::Judgement;
 use super::survey::Survey;
-use super::{Settings, Task};
+use super::{Settings, TrainingInput};
 use crate::analysis::{BlindSpot, blind_spots};
 use crate::guide::Cells;
 use crate::integrator::{CandidateCount, IntegratorKind, SamplesPerSubpath};
@@ -71,8 +71,10 @@ pub(super) const fn lvc_of(candidates: u16, light_points: u16, rays: u32) -> Pla
     }
 }
 
-/// What others of its kind learn is much the same.
-pub(super) const TYPICAL: Plan = lvc_of(24, 2, 6);
+/// Returns `settings` by a plan that learns much the same as others of its kind.
+pub(super) fn typical(settings: &Settings) -> Settings {
+    lvc_of(24, 2, 6).keeping(settings).apply(settings)
+}
 
 /// The plans.
 const PLANS: [Plan; 15] = [
@@ -96,13 +98,13 @@ const PLANS: [Plan; 15] = [
 impl Plan {
     /// Returns the plan with the least product of variance and cost. If the survey found no light: `lvc`, which
     /// makes most paths, or `path` if there are no lights.
-    pub(super) fn best(task: Task<'_>, survey: &Survey, cells: &Cells) -> Self {
-        let settings = task.settings;
-        let Some(terms) = survey.relative_terms(task.view.film()) else {
-            let has_lights = !task.scene.lights().is_empty();
+    pub(super) fn best(input: TrainingInput<'_>, survey: &Survey, cells: &Cells) -> Self {
+        let settings = input.settings;
+        let Some(terms) = survey.relative_terms(input.view.film()) else {
+            let has_lights = !input.scene.lights().is_empty();
             return if has_lights { LVC } else { PATH }.keeping(settings);
         };
-        let judge = Judge::new(task, survey, cells);
+        let judge = Judge::new(input, &typical(settings), survey, cells);
         let (mut best, mut least) = (LVC.keeping(settings), f64::INFINITY);
         let mut judged: Option<(Self, Judgement)> = None;
         for plan in PLANS.map(|plan| plan.keeping(settings)) {
@@ -117,7 +119,7 @@ impl Plan {
                 .unwrap_or_else(|| (draws, judge.judge(&applied, &terms)));
             let variance = judgement.variance(plan.shadow_rays).mean();
             let product = variance * survey.cost(&applied, &judge.counts(&applied));
-            if product < least && plan.is_possible(task) {
+            if product < least && plan.is_possible(input) {
                 (best, least) = (plan, product);
             }
             judged = Some((draws, judgement));
@@ -156,10 +158,10 @@ impl Plan {
 
     /// Returns true where it makes all light paths that the settings ask for, and misses none that another
     /// plan finds.
-    fn is_possible(&self, task: Task<'_>) -> bool {
-        let path = &task.settings.path;
+    fn is_possible(&self, input: TrainingInput<'_>) -> bool {
+        let path = &input.settings.path;
         let missing = |integrator| {
-            let spots = blind_spots(task.scene, task.view, integrator).into_iter();
+            let spots = blind_spots(input.scene, input.view, integrator).into_iter();
             spots.filter(|spot: &BlindSpot| spot.is_missing())
         };
         let of_lvc: Vec<_> = missing(IntegratorKind::Lvc).collect();

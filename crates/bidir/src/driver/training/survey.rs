@@ -3,12 +3,12 @@
 
 use super::super::spread;
 use super::constants::{FIRST_SAMPLES, GROUPS};
-use super::cost::Work;
 use super::effort::{Effort, IsLate};
 use super::extent;
-use super::learning::Found;
-use super::moments::Term;
-use super::{Settings, Task};
+use super::log::ConnectionLog;
+use super::terms::SurveyTerm;
+use super::work::WorkCounts;
+use super::{Settings, TrainingInput};
 use crate::integrator::{Batch, Entry, Link, Method, Sample};
 use crate::path::{Job, MisHeuristic, PathDensities};
 use crate::sampler::{Dimension, Domain, Purpose, Sampler};
@@ -29,12 +29,12 @@ pub(super) struct Survey {
     /// The sum of luminances that samples add to the mean pixel.
     pub(super) luminance: f64,
     /// The contributions to the image.
-    pub(super) terms: Vec<Term>,
-    pub(super) work: Work,
+    pub(super) terms: Vec<SurveyTerm>,
+    pub(super) work: WorkCounts,
     /// Of each sample, the random number that chooses the light of its first light point.
     pub(super) light_numbers: Vec<f32>,
     /// Vertices and connections, to learn from.
-    pub(super) found: Found,
+    pub(super) log: ConnectionLog,
     pub(super) stats: Stats,
     /// True where there was no time for all samples.
     pub(super) is_short: bool,
@@ -42,10 +42,10 @@ pub(super) struct Survey {
 
 impl Survey {
     /// Returns the samples of training. None: it was asked to stop.
-    pub(super) fn run(task: Task<'_>, effort: Effort<'_>) -> Option<Self> {
-        let surveyor = Surveyor::new(task, effort.stop);
+    pub(super) fn run(input: TrainingInput<'_>, effort: Effort<'_>) -> Option<Self> {
+        let surveyor = Surveyor::new(input, effort.stop);
         let mut survey = surveyor.round(0..FIRST_SAMPLES, &|| false)?;
-        let pixels = task.view.film().crop.area();
+        let pixels = input.view.film().crop.area();
         let wanted = extent::samples(pixels, extent::work(&survey.stats));
         loop {
             let count = survey.stats.samples;
@@ -65,13 +65,18 @@ impl Survey {
         self.stats.samples as f64
     }
 
+    /// Returns κ: the mean number of vertices of a light subpath that can be connected.
+    pub(super) fn light_vertices(&self) -> f64 {
+        self.log.light_vertex_count() as f64 / self.samples()
+    }
+
     fn add(&mut self, more: Self) {
-        let traced = self.found.traced();
-        let terms = more.terms.iter().map(|term| Term {
+        let traced = self.log.traced().len() as u32;
+        let terms = more.terms.iter().map(|term| SurveyTerm {
             edge: term.edge.map(|edge| edge + traced),
             ..*term
         });
-        self.found.add(more.found, self.terms.len() as u32);
+        self.log.add(more.log, self.terms.len() as u32);
         self.terms.extend(terms);
         self.light_numbers.extend(more.light_numbers);
         self.luminance += more.luminance;
@@ -79,30 +84,30 @@ impl Survey {
         self.stats += &more.stats;
     }
 
-    /// Adds what was made of sample number `number`, the one of `batch`.
-    fn keep(&mut self, job: &Job<'_>, number: u64, batch: &Batch) {
+    /// Records what was made of sample number `number`, the one of `batch`.
+    fn record(&mut self, job: &Job<'_>, number: u64, batch: &Batch) {
         let sample = &batch.walked.samples[0];
         let film = job.view.film();
         let [x, y] = sample.pixel.map(i64::from);
         let own = film.crop.index(x, y).map(|pixel| (pixel, 1.0));
         let (mut densities, mut parts) = (PathDensities::default(), Vec::new());
-        self.found.begin(job, batch);
-        let mut keep = |entry: &Entry, candidate: Option<&Candidate>| {
-            let edge = candidate
-                .and_then(|candidate| self.found.trace(batch, candidate, entry.is_added()));
+        self.log.begin(job, batch);
+        let mut record = |entry: &Entry, candidate: Option<&Candidate>| {
+            let edge =
+                candidate.and_then(|candidate| self.log.trace(batch, candidate, entry.is_added()));
             let landed = match entry.link {
                 Link::Walk | Link::Connection(_) => own,
                 Link::LightImage(_, place) => film.pick_pixel(place),
             };
             let shares = batch.shares(job, entry, candidate, &mut densities, &mut parts)?;
             let (pixel, part) = landed?;
-            let mut term = Term::new(job, number, &entry.contribution, pixel, part, shares);
+            let mut term = SurveyTerm::new(job, number, &entry.contribution, pixel, part, shares);
             term.edge = edge;
             term.score = candidate.map_or(0.0, |candidate| candidate.score);
             self.luminance += term.of_mean_pixel(film);
             if entry.is_added() {
                 let made = &entry.contribution.term;
-                self.found
+                self.log
                     .path(made, candidate, &parts, self.terms.len() as u32);
             }
             self.terms.push(term);
@@ -111,11 +116,11 @@ impl Survey {
         let entries = batch.entries.iter().chain(&batch.splats);
         let certain = |entry: &&Entry| !matches!(entry.link, Link::Connection(_));
         for entry in entries.filter(certain).filter(|entry| entry.is_added()) {
-            keep(entry, None);
+            record(entry, None);
         }
         for (candidate, entry) in batch.connections() {
             if let Some(entry) = entry {
-                keep(entry, Some(candidate));
+                record(entry, Some(candidate));
             }
         }
         self.work.add(job, batch);
@@ -134,14 +139,14 @@ struct Surveyor<'a> {
 }
 
 impl<'a> Surveyor<'a> {
-    fn new(task: Task<'a>, stop: Stop<'a>) -> Self {
-        let mut settings = task.settings.clone();
+    fn new(input: TrainingInput<'a>, stop: Stop<'a>) -> Self {
+        let mut settings = input.settings.clone();
         // Shares of paths are those of these weights.
         settings.path.mis = MisHeuristic::Balance;
         let all = ShadowRays::All.selector(0.0);
         Self {
-            scene: task.scene,
-            view: task.view,
+            scene: input.scene,
+            view: input.view,
             settings,
             method: Method::Bdpt(all),
             stop,
@@ -154,7 +159,7 @@ impl<'a> Surveyor<'a> {
         let count = numbers.end - numbers.start;
         let size = (count / GROUPS).max(QUAD);
         let groups = (0..count / size).into_par_iter();
-        let found = groups.map_init(Batch::default, |batch, group| {
+        let surveys = groups.map_init(Batch::default, |batch, group| {
             if is_late() {
                 return None;
             }
@@ -169,9 +174,9 @@ impl<'a> Surveyor<'a> {
             survey.stats = std::mem::take(&mut batch.worker.stats);
             Some(survey)
         });
-        let found: Vec<Survey> = found.collect::<Option<_>>()?;
+        let of_groups: Vec<Survey> = surveys.collect::<Option<_>>()?;
         let mut all = Survey::default();
-        for group in found {
+        for group in of_groups {
             all.add(group);
         }
         Some(all)
@@ -194,7 +199,7 @@ impl<'a> Surveyor<'a> {
             ..Sample::new(0, pixel, camera, light)
         }]);
         self.method.run(&job, batch);
-        survey.keep(&job, number, batch);
+        survey.record(&job, number, batch);
     }
 }
 
@@ -240,12 +245,12 @@ mod tests {
             },
             ..Settings::default()
         };
-        let task = Task {
+        let input = TrainingInput {
             scene: &scene,
             view: &view,
             settings: &settings,
         };
-        let survey = survey_of(task, Effort::WHOLE);
+        let survey = survey_of(input, Effort::WHOLE);
         let longest = survey.stats.samples * (MAX_VERTICES as u64 - 1);
         assert_eq!(survey.stats.rays.camera, longest);
         // All pairs are half a million.
@@ -275,12 +280,12 @@ mod tests {
                 seed,
                 ..settings.clone()
             };
-            let task = Task {
+            let input = TrainingInput {
                 scene: &scene,
                 view: &view,
                 settings: &settings,
             };
-            let survey = survey_of(task, Effort::WHOLE);
+            let survey = survey_of(input, Effort::WHOLE);
             survey.luminance / survey.samples()
         });
         let trained = trainings.sum::<f64>() as f32 / 16.0;

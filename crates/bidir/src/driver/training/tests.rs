@@ -45,8 +45,8 @@ pub(super) fn view_of(size: u32, crop: PixelRect) -> View {
 
 /// Returns the samples of training that nobody stops.
 #[track_caller]
-pub(super) fn survey_of(task: Task<'_>, effort: Effort<'_>) -> Survey {
-    Survey::run(task, effort).expect("nobody stops it")
+pub(super) fn survey_of(input: TrainingInput<'_>, effort: Effort<'_>) -> Survey {
+    Survey::run(input, effort).expect("nobody stops it")
 }
 
 /// Returns a diffuse surface.
@@ -123,12 +123,12 @@ fn without_lights_and_where_none_is_found_there_is_a_plan() {
 fn long_light_subpaths_are_few() {
     let scene = sphere(3.0, None);
     let settings = Settings::new(IntegratorKind::Lvc);
-    let task = Task {
+    let input = TrainingInput {
         scene: &scene,
         view: &view(WHOLE),
         settings: &settings,
     };
-    let mut training = Training::new(&survey_of(task, Effort::at_most(16)));
+    let mut training = Training::new(&survey_of(input, Effort::at_most(16)));
     let film = FilmSettings::new([1024; 2], Filter::default());
     for (rays, expected) in [(5.0, 2), (128.0, 2), (200.0, 4), (1023.0, 16)] {
         training.subpath_rays = rays;
@@ -244,14 +244,19 @@ fn predicted_variances<const N: usize>(scene: &Scene, view: &View, plans: [Plan;
     for seed in 0..surveys {
         auto.seed = seed;
         let settings = &auto;
-        let task = Task {
+        let input = TrainingInput {
             scene,
             view,
             settings,
         };
-        let survey = survey_of(task, Effort::WHOLE);
+        let survey = survey_of(input, Effort::WHOLE);
         let terms = survey.relative_terms(view.film()).expect("a lamp");
-        let judge = known::Judge::new(task, &survey, &survey.found.cells());
+        let judge = known::Judge::new(
+            input,
+            &plan::typical(settings),
+            &survey,
+            &survey.log.cells(),
+        );
         for (sum, plan) in sums.iter_mut().zip(plans) {
             let judgement = judge.judge(&plan.apply(settings), &terms);
             *sum += judgement.variance(plan.shadow_rays).pixels / surveys as f64;
