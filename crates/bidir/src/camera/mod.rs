@@ -24,7 +24,7 @@ mod tests;
 
 pub use orthographic::{Orthographic, OrthographicSettings};
 pub use perspective::{Perspective, PerspectiveSettings};
-pub use pose::{Pose, Turn};
+pub use pose::{Pose, Rotation};
 pub use spherical::{Spherical, SphericalMapping};
 
 use crate::locus::Locus;

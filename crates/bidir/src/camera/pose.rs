@@ -63,7 +63,7 @@ impl Stretch {
 
 /// A change of the direction in which a camera looks. Unit: radians.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Turn {
+pub struct Rotation {
     /// Towards the picture's right.
     pub right: f32,
     /// Towards the vertical.
@@ -143,7 +143,7 @@ impl Pose {
     /// About its own origin it looks around; about what it looks at it goes around that, the other
     /// way. It never looks along `vertical`.
     #[must_use]
-    pub fn turned(self, pivot: Vec3, vertical: Vec3, turn: Turn) -> Self {
+    pub fn turned(self, pivot: Vec3, vertical: Vec3, turn: Rotation) -> Self {
         // In a mirrored frame rotations go the other way round.
         let hand = self.up.cross(self.forward).dot(self.right).signum();
         let elevation = libm::asinf(self.forward.dot(vertical).clamp(-1.0, 1.0));
@@ -212,7 +212,7 @@ mod tests {
         let tilted = level.turned(
             TARGET,
             Vec3::Y,
-            Turn {
+            Rotation {
                 right: 0.7,
                 up: -1.1,
             },
@@ -240,7 +240,7 @@ mod tests {
             let mut pose = start;
             for step in 0..1000 {
                 let up = if step % 300 < 150 { 0.013 } else { -0.013 };
-                pose = pose.turned(TARGET, start.vertical(), Turn { right: 0.021, up });
+                pose = pose.turned(TARGET, start.vertical(), Rotation { right: 0.021, up });
                 let offset = TARGET - pose.origin;
                 assert!((offset.length() - 3.0).abs() < 1e-3, "{offset}");
                 assert!(offset.normalize().distance(pose.forward) < 1e-3);
@@ -255,7 +255,7 @@ mod tests {
     fn a_full_turn_comes_home() {
         for start in examples() {
             let mut pose = start;
-            let turn = Turn {
+            let turn = Rotation {
                 right: 2.0 * PI / 90.0,
                 up: 0.0,
             };
@@ -269,7 +269,8 @@ mod tests {
     #[test]
     fn looking_right_brings_the_right_side_to_the_middle() {
         for start in examples() {
-            let by = |right, up| start.turned(start.origin, start.vertical(), Turn { right, up });
+            let by =
+                |right, up| start.turned(start.origin, start.vertical(), Rotation { right, up });
             assert!(by(0.2, 0.0).forward.dot(start.right) > 0.05);
             assert!(by(0.0, 0.2).forward.dot(start.up) > 0.05);
             assert_eq!(by(0.3, 0.1).origin, start.origin);
@@ -279,7 +280,7 @@ mod tests {
     #[test]
     fn no_camera_turns_over() {
         let start = examples()[0];
-        let turn = Turn {
+        let turn = Rotation {
             right: 0.0,
             up: 9.0,
         };

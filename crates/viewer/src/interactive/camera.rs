@@ -2,7 +2,7 @@
 
 use crate::command::Walk;
 use crate::status::CameraStatus;
-use bidir::camera::{Camera, Pose, Turn};
+use bidir::camera::{Camera, Pose, Rotation};
 use bidir::film::{FilmSettings, PixelRect};
 use bidir::math::{Vec2, Vec3};
 use bidir::sampler::{Domain, Sampler, SamplerKind};
@@ -125,7 +125,7 @@ impl CameraControl {
         self.check_is_flat("orbit")?;
         let pose = self.camera.pose();
         // A camera that moves right around its target turns left.
-        let turn = Turn {
+        let turn = Rotation {
             right: -yaw,
             up: -pitch,
         };
@@ -168,7 +168,7 @@ impl CameraControl {
     pub(super) fn walk(&mut self, walk: Walk) -> Result<(), Refusal> {
         let (pose, unit) = (self.camera.pose(), self.distance());
         let step = pose.right * walk.right + pose.up * walk.up + pose.forward * walk.forward;
-        let turn = Turn {
+        let turn = Rotation {
             right: walk.yaw,
             up: walk.pitch,
         };
