@@ -11,7 +11,7 @@ use crate::light::{
 use crate::material::Material;
 use crate::math::{DAffine3, Vec3};
 use crate::medium::{Medium, MediumId, MediumSides};
-use crate::shape::{Place, Shape};
+use crate::shape::{Shape, WorldFromObject};
 use crate::spectrum::Rgb;
 use crate::texture::{ColorTexture, FloatTexture, clamped_coverage};
 use thiserror::Error;
@@ -309,7 +309,7 @@ impl SceneBuilder {
     pub fn instance(&mut self, object: ObjectId, world_from_object: DAffine3) -> usize {
         self.objects
             .instances
-            .push((object, Place(world_from_object)));
+            .push((object, WorldFromObject(world_from_object)));
         self.objects.instances.len() - 1
     }
 

@@ -275,10 +275,10 @@ impl Scene {
             .light
             .map(|light| (light, LightPoint::on_surface(&surface, primitive.index)));
         let uv = Vec2::new(hit.u, hit.v);
-        let place = placed.map(|placed| &placed.place);
+        let world_from_object = placed.map(|placed| &placed.world_from_object);
         let differentials = of_shape
             .is_detailed
-            .then(|| self.shapes[number].differentials(place, index, uv, &surface));
+            .then(|| self.shapes[number].differentials(world_from_object, index, uv, &surface));
         SurfaceHit {
             surface,
             differentials,
@@ -309,7 +309,7 @@ impl Scene {
         let point = ray.origin + ray.direction * hit.t;
         match placed {
             None => shape.surface_point(index, uv, point),
-            Some(placed) => shape.surface_point_at(&placed.place, index, uv, point),
+            Some(placed) => shape.surface_point_at(&placed.world_from_object, index, uv, point),
         }
     }
 

@@ -314,8 +314,8 @@ impl Scene {
     ) -> Vec3 {
         match &self.shapes[primitive.shape as usize] {
             Shape::Mesh(mesh) => {
-                let place = placed.map(|placed| &placed.place);
-                mesh.front(place, primitive.index as usize)
+                let world_from_object = placed.map(|placed| &placed.world_from_object);
+                mesh.front(world_from_object, primitive.index as usize)
             }
             Shape::Sphere(_) | Shape::Disk(_) | Shape::Cylinder(_) => self.surface_at(ray, hit).n_g,
         }
@@ -332,7 +332,7 @@ impl Scene {
             size,
             reach,
         } = self.volumes[number as usize];
-        let scale = placed.map_or(1.0, |placed| placed.place.volume_scale());
+        let scale = placed.map_or(1.0, |placed| placed.world_from_object.volume_scale());
         Some(Filling {
             volume,
             size: size * scale,
@@ -422,9 +422,9 @@ pub(super) fn boxes(shapes: &[Shape], surfaces: &[Surface], objects: &Objects) -
     let of_object =
         |shapes: &Vec<usize>| -> Vec<_> { shapes.iter().copied().filter_map(bounds_of).collect() };
     let own: Vec<_> = objects.shapes.iter().map(of_object).collect();
-    for (object, place) in &objects.instances {
+    for (object, world_from_object) in &objects.instances {
         let own = own[object.index()].iter();
-        boxes.extend(own.map(|&(volume, bounds)| (volume, place.bounds(bounds))));
+        boxes.extend(own.map(|&(volume, bounds)| (volume, world_from_object.bounds(bounds))));
     }
     boxes
 }

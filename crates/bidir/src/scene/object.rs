@@ -5,7 +5,7 @@
 
 use super::check::gather_primitives;
 use super::{PrimitiveRef, SceneError, Surface};
-use crate::shape::{Place, Shape};
+use crate::shape::{Shape, WorldFromObject};
 use std::sync::Arc;
 
 /// An object of a [`SceneBuilder`](super::SceneBuilder).
@@ -18,10 +18,10 @@ impl ObjectId {
     }
 }
 
-/// An object in its place.
+/// An instance: an object with its map to the world.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Placed {
-    pub(super) place: Place,
+    pub(super) world_from_object: WorldFromObject,
     /// The index of the object's first primitive among those of the scene.
     pub(super) first_primitive: u32,
 }
@@ -32,7 +32,7 @@ pub(super) struct Objects {
     /// The numbers of the shapes of each object.
     pub(super) shapes: Vec<Vec<usize>>,
     /// Every instance: which object, and where.
-    pub(super) instances: Vec<(ObjectId, Place)>,
+    pub(super) instances: Vec<(ObjectId, WorldFromObject)>,
 }
 
 /// The tree that the intersector asks, and the primitives and instances that its answers refer to.
@@ -95,9 +95,9 @@ impl Objects {
             trees.push(Arc::new(tree.map_err(error)?));
         }
         let instances: Vec<_> = (self.instances.iter())
-            .map(|(object, place)| accel::Instance {
+            .map(|(object, map)| accel::Instance {
                 object: object.0,
-                world_from_object: place.0,
+                world_from_object: map.0,
             })
             .collect();
         let own = Gathered {
@@ -105,8 +105,8 @@ impl Objects {
             primitives: &primitives[..in_world],
         };
         let bvh = accel::Bvh::with_instances(&own, trees, &instances, &options).map_err(error)?;
-        let placed = |&(object, place): &(ObjectId, Place)| Placed {
-            place,
+        let placed = |&(object, world_from_object): &(ObjectId, WorldFromObject)| Placed {
+            world_from_object,
             first_primitive: firsts[object.0 as usize],
         };
         Ok(Geometry {

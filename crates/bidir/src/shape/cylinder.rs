@@ -2,7 +2,7 @@
 //! area, 1 / (φ_max r (z_max - z_min)), divided by the stretch of the map: area measure, 1/m².
 
 use super::{
-    Differentials, Orientation, Place, Placement, ShapeSample, SurfacePoint, azimuth_part,
+    Differentials, Orientation, Placement, ShapeSample, SurfacePoint, WorldFromObject, azimuth_part,
 };
 use crate::math::{Affine3A, PI, Vec2, Vec3, sin_cos};
 
@@ -80,9 +80,9 @@ impl Cylinder {
     /// The same cylinder in the world, for one of an object; its densities are still those of the
     /// object.
     #[inline]
-    pub(super) fn at(&self, place: &Place) -> Self {
+    pub(super) fn at(&self, to_world: &WorldFromObject) -> Self {
         Self {
-            placement: self.placement.at(place),
+            placement: self.placement.at(to_world),
             ..*self
         }
     }

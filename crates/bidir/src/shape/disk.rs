@@ -2,7 +2,7 @@
 //! drawn with the constant density 1/area (1/m²), from wherever they are looked at.
 
 use super::{
-    Differentials, Orientation, Place, Placement, ShapeSample, SurfacePoint, azimuth_part,
+    Differentials, Orientation, Placement, ShapeSample, SurfacePoint, WorldFromObject, azimuth_part,
 };
 use crate::math::{Affine3A, PI, Vec2, Vec3, sin_cos, sqr};
 
@@ -57,9 +57,9 @@ impl Disk {
 
     /// The same disk in the world, for one of an object; its densities are still those of the object.
     #[inline]
-    pub(super) fn at(&self, place: &Place) -> Self {
+    pub(super) fn at(&self, to_world: &WorldFromObject) -> Self {
         Self {
-            placement: self.placement.at(place),
+            placement: self.placement.at(to_world),
             ..*self
         }
     }

@@ -6,7 +6,7 @@
 
 use super::differentials::normal_derivative;
 use super::{
-    Differentials, Normals, Orientation, Place, ShapeSample, SurfacePoint, position_error,
+    Differentials, Normals, Orientation, ShapeSample, SurfacePoint, WorldFromObject, position_error,
 };
 use crate::math::{Frame, Vec2, Vec3, warp};
 
@@ -71,11 +71,11 @@ impl Mesh {
 
     /// Returns the normal of the front of triangle `i` by its winding alone, of any length.
     #[inline]
-    pub(crate) fn front(&self, place: Option<&Place>, i: usize) -> Vec3 {
+    pub(crate) fn front(&self, to_world: Option<&WorldFromObject>, i: usize) -> Vec3 {
         let own = self.corners(i);
-        let corners = match place {
+        let corners = match to_world {
             None => own,
-            Some(place) => own.at(place),
+            Some(to_world) => own.at(to_world),
         };
         let [a, b, c] = corners.positions;
         (b - a).cross(c - a) * corners.winding_sign
@@ -106,22 +106,32 @@ impl Mesh {
         corners.surface_point(b, position_error(corners.magnitude()))
     }
 
-    /// The same for a mesh that belongs to an object at `place`: the point of a mesh of moved vertices,
+    /// The same for a mesh that belongs to an object under `to_world`: the point of a mesh of moved vertices,
     /// with the error of the map added.
     #[inline]
-    pub(super) fn surface_point_at(&self, place: &Place, i: usize, b: Vec2) -> SurfacePoint {
+    pub(super) fn surface_point_at(
+        &self,
+        to_world: &WorldFromObject,
+        i: usize,
+        b: Vec2,
+    ) -> SurfacePoint {
         let corners = self.corners(i);
-        let moved = corners.at(place);
-        let error = position_error(moved.magnitude()) + place.error(corners.magnitude());
+        let moved = corners.at(to_world);
+        let error = position_error(moved.magnitude()) + to_world.error(corners.magnitude());
         moved.surface_point(b, error)
     }
 
     /// Returns the derivatives along the parameters at barycentric coordinates `b`.
-    pub(super) fn differentials(&self, place: Option<&Place>, i: usize, b: Vec2) -> Differentials {
+    pub(super) fn differentials(
+        &self,
+        to_world: Option<&WorldFromObject>,
+        i: usize,
+        b: Vec2,
+    ) -> Differentials {
         let corners = self.corners(i);
-        match place {
+        match to_world {
             None => corners.differentials(b),
-            Some(place) => corners.at(place).differentials(b),
+            Some(to_world) => corners.at(to_world).differentials(b),
         }
     }
 
@@ -171,15 +181,17 @@ impl Corners {
 
     /// Returns the corners in the world. A mirroring map turns the winding, not the front.
     #[inline]
-    fn at(&self, place: &Place) -> Self {
+    fn at(&self, to_world: &WorldFromObject) -> Self {
         Self {
-            positions: self.positions.map(|p| place.point(p)),
-            normals: self.normals.map(|normals| normals.map(|n| place.normal(n))),
+            positions: self.positions.map(|p| to_world.point(p)),
+            normals: self
+                .normals
+                .map(|normals| normals.map(|n| to_world.normal(n))),
             tangents: self
                 .tangents
-                .map(|tangents| tangents.map(|t| place.vector(t))),
+                .map(|tangents| tangents.map(|t| to_world.vector(t))),
             uvs: self.uvs,
-            winding_sign: self.winding_sign * place.sign(),
+            winding_sign: self.winding_sign * to_world.sign(),
         }
     }
 

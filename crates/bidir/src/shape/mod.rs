@@ -1,6 +1,6 @@
 //! Surfaces: where rays meet them, and how points are drawn on them.
 //!
-//! All geometry is in world space, but for shapes of shared objects, which a [`Place`] takes there. A shape gives its primitives to [`accel`], turns a hit into a
+//! All geometry is in world space, but for shapes of shared objects, which a [`WorldFromObject`] takes there. A shape gives its primitives to [`accel`], turns a hit into a
 //! [`SurfacePoint`], and, where it is a light, draws points by area. Densities are **area
 //! measure**, 1/m².
 //!
@@ -14,8 +14,8 @@ mod cylinder;
 mod differentials;
 mod disk;
 mod mesh;
-mod place;
 mod sphere;
+mod world_from_object;
 
 #[cfg(test)]
 mod tests;
@@ -24,8 +24,8 @@ pub use cylinder::Cylinder;
 pub use differentials::Differentials;
 pub use disk::Disk;
 pub use mesh::Mesh;
-pub use place::Place;
 pub use sphere::Sphere;
+pub use world_from_object::WorldFromObject;
 
 use crate::locus::Locus;
 use crate::math::{Affine3A, Frame, PI, Vec2, Vec3};
@@ -147,48 +147,54 @@ impl Shape {
         }
     }
 
-    /// The same geometry of a shape of an object that stands at `place`, in world space; `point` too is in
+    /// The same geometry of a shape of an object under `to_world`, in world space; `point` too is in
     /// world space.
     #[inline]
-    pub fn surface_point_at(&self, place: &Place, i: usize, uv: Vec2, point: Vec3) -> SurfacePoint {
+    pub fn surface_point_at(
+        &self,
+        to_world: &WorldFromObject,
+        i: usize,
+        uv: Vec2,
+        point: Vec3,
+    ) -> SurfacePoint {
         let (mut surface, magnitude) = match self {
-            Self::Mesh(mesh) => return mesh.surface_point_at(place, i, uv),
+            Self::Mesh(mesh) => return mesh.surface_point_at(to_world, i, uv),
             Self::Sphere(sphere) => (
-                sphere.at(place).surface_point(uv, point),
+                sphere.at(to_world).surface_point(uv, point),
                 sphere.magnitude(),
             ),
-            Self::Disk(disk) => (disk.at(place).surface_point(uv, point), disk.magnitude()),
+            Self::Disk(disk) => (disk.at(to_world).surface_point(uv, point), disk.magnitude()),
             Self::Cylinder(cylinder) => (
-                cylinder.at(place).surface_point(uv, point),
+                cylinder.at(to_world).surface_point(uv, point),
                 cylinder.magnitude(),
             ),
         };
-        surface.error += place.error(magnitude);
+        surface.error += to_world.error(magnitude);
         surface
     }
 
-    /// Returns the derivatives along the parameters at such a hit, of a shape of the world or of an object at
-    /// `place`; `surface` is what [`surface_point`](Self::surface_point) gave.
+    /// Returns the derivatives along the parameters at such a hit, of a shape of the world or of an object under
+    /// `to_world`; `surface` is what [`surface_point`](Self::surface_point) gave.
     pub fn differentials(
         &self,
-        place: Option<&Place>,
+        to_world: Option<&WorldFromObject>,
         i: usize,
         uv: Vec2,
         surface: &SurfacePoint,
     ) -> Differentials {
         match self {
-            Self::Mesh(mesh) => mesh.differentials(place, i, uv),
-            Self::Sphere(sphere) => match place {
+            Self::Mesh(mesh) => mesh.differentials(to_world, i, uv),
+            Self::Sphere(sphere) => match to_world {
                 None => sphere.differentials(surface.point),
-                Some(place) => sphere.at(place).differentials(surface.point),
+                Some(to_world) => sphere.at(to_world).differentials(surface.point),
             },
-            Self::Disk(disk) => match place {
+            Self::Disk(disk) => match to_world {
                 None => disk.differentials(surface.point),
-                Some(place) => disk.at(place).differentials(surface.point),
+                Some(to_world) => disk.at(to_world).differentials(surface.point),
             },
-            Self::Cylinder(cylinder) => match place {
+            Self::Cylinder(cylinder) => match to_world {
                 None => cylinder.differentials(surface.point),
-                Some(place) => cylinder.at(place).differentials(surface.point),
+                Some(to_world) => cylinder.at(to_world).differentials(surface.point),
             },
         }
     }
@@ -326,8 +332,8 @@ impl Placement {
 
     /// The same in the world, for a quadric of an object.
     #[inline]
-    fn at(&self, place: &Place) -> Self {
-        Self::new(place.compose(&self.world_from_local))
+    fn at(&self, to_world: &WorldFromObject) -> Self {
+        Self::new(to_world.compose(&self.world_from_local))
     }
 
     /// Returns a bound of the coordinates of points up to `distance` from the local origin.

@@ -5,7 +5,7 @@
 //!   cosθ / (d² 2π (1 - cosθ_max)) [PBRT4, §6.2.4]. All others are drawn by area.
 
 use super::{
-    Differentials, Orientation, Place, Placement, ShapeSample, SurfacePoint, azimuth_part,
+    Differentials, Orientation, Placement, ShapeSample, SurfacePoint, WorldFromObject, azimuth_part,
 };
 use crate::math::{Affine3A, Frame, PI, Vec2, Vec3, safe_sqrt, sin_cos, sqr, warp};
 
@@ -118,9 +118,9 @@ impl Sphere {
 
     /// The same sphere in the world, for one of an object; its densities are still those of the object.
     #[inline]
-    pub(super) fn at(&self, place: &Place) -> Self {
+    pub(super) fn at(&self, to_world: &WorldFromObject) -> Self {
         Self {
-            placement: self.placement.at(place),
+            placement: self.placement.at(to_world),
             ..*self
         }
     }

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::math::{Affine3A, PI, sin_cos};
-use crate::shape::{Cylinder, Disk, Mesh, Orientation, Place, Shape, Sphere};
+use crate::shape::{Cylinder, Disk, Mesh, Orientation, Shape, Sphere, WorldFromObject};
 use crate::texture::{Bilerp, Mapping, Noise, NoiseKind, TextureSpace};
 
 /// Returns the points of the first primitive with their frames under a relief, where a pixel is `width` wide.
@@ -247,7 +247,7 @@ fn relief_stays_in_front() {
 fn differentials_are_those_of_the_surface() {
     let map = Affine3A::from_rotation_y(0.4) * Affine3A::from_scale(Vec3::new(1.0, -2.0, 0.7));
     let limits = Vec3::new(-0.6, 0.9, 5.0);
-    let place = Place(glam::DAffine3::from_scale(glam::DVec3::new(1.0, 3.0, -0.5)));
+    let place = WorldFromObject(glam::DAffine3::from_scale(glam::DVec3::new(1.0, 3.0, -0.5)));
     for place in [None, Some(&place)] {
         for shape in [
             Shape::Sphere(Sphere::partial(map, 1.0, limits, Orientation::Natural)),
@@ -278,7 +278,11 @@ fn local_point(shape: &Shape, map: Affine3A, uv: Vec2) -> Vec3 {
 }
 
 #[track_caller]
-fn check_differentials(shape: &Shape, place: Option<&Place>, point: impl Fn(Vec2) -> Vec3) {
+fn check_differentials(
+    shape: &Shape,
+    place: Option<&WorldFromObject>,
+    point: impl Fn(Vec2) -> Vec3,
+) {
     let world = |p: Vec3| match place {
         None => p,
         Some(place) => place.0.transform_point3(p.as_dvec3()).as_vec3(),

@@ -4,7 +4,7 @@ use crate::material::Material;
 use crate::math::{DAffine3, DVec3, ONE_MINUS_EPSILON, PI, Vec2, Vec3, warp};
 use crate::sampler::{Dimension, Purpose};
 use crate::scene::{Scene, SceneBuilder};
-use crate::shape::{Disk, Mesh, Orientation, Place, Shape, Sphere, SurfacePoint};
+use crate::shape::{Disk, Mesh, Orientation, Shape, Sphere, SurfacePoint, WorldFromObject};
 use crate::testing::samples;
 use crate::texture::ColorTexture;
 
@@ -187,7 +187,7 @@ fn a_mesh_has_the_tangents_of_its_vertices() {
         ..along_u.clone()
     };
     let at = Vec2::new(0.5, 0.2);
-    let tangent = |mesh: &Mesh, place: Option<&Place>| {
+    let tangent = |mesh: &Mesh, place: Option<&WorldFromObject>| {
         let shape = Shape::Mesh(mesh.clone());
         let point = a * 0.3 + b * 0.5 + c * 0.2;
         let surface = match place {
@@ -204,7 +204,7 @@ fn a_mesh_has_the_tangents_of_its_vertices() {
     let expected = first * 0.3 + second * 0.5;
     assert!(tangent(&mesh, None).distance(expected.normalize()) < 1e-6);
     let stretched = DVec3::new(1.0, -3.0, 0.5);
-    let place = Place(DAffine3::from_scale(stretched));
+    let place = WorldFromObject(DAffine3::from_scale(stretched));
     let moved = (expected.as_dvec3() * stretched).as_vec3().normalize();
     let flat = Mesh {
         tangents: vec![first, second, Vec3::ZERO],
@@ -266,7 +266,7 @@ fn no_surface_shadows_itself_from_afar() {
                 let u = sample.get_2d(Dimension::at(0, Purpose::LightPosition));
                 let own = example.shape.sample(0, u).surface;
                 let at = place.map_or(own, |place| {
-                    let place = Place(place);
+                    let place = WorldFromObject(place);
                     let uv = match example.shape {
                         Shape::Mesh(_) => warp::triangle(u),
                         _ => own.uv,

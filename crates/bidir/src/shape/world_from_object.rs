@@ -1,4 +1,4 @@
-//! The place of a shared object: an affine map from its space to the world.
+//! The affine map of an instance, from the space of its object to the world.
 //!
 //! Points and tangents go by the map, normals by its inverse transpose, in `f64`. Neither asks whether the map
 //! mirrors: the front of a surface stays the front.
@@ -8,11 +8,11 @@ use crate::math::{Affine3A, DAffine3, Vec3};
 use accel::Aabb;
 use glam::{DMat3, DVec3};
 
-/// The place of an object, under any invertible affine map.
+/// The map of an instance to the world: any invertible affine map.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Place(pub DAffine3);
+pub struct WorldFromObject(pub DAffine3);
 
-impl Place {
+impl WorldFromObject {
     /// Returns a point of the object in the world.
     #[inline]
     pub(super) fn point(&self, p: Vec3) -> Vec3 {
