@@ -109,7 +109,7 @@ MEDIA = [
     ),
     (
         "holes that lead into no medium",
-        "crates/bidir/src/scene/coverage.rs",
+        "crates/bidir/src/scene/alpha.rs",
         "cross(hit);\n                if alpha > 0.0 {",
         "if alpha <= 0.0 { cross(hit); }\n                if alpha > 0.0 {",
         media("light_that_passes_a_hole"),

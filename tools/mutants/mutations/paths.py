@@ -265,8 +265,8 @@ PATHS = [
     (
         "several light points, each of which counts as the only one",
         "crates/bidir/src/integrator/stages/light_ends.rs",
-        "drawn.coverage / (drawn.pdf * f32::from(count))",
-        "drawn.coverage / drawn.pdf",
+        "drawn.alpha / (drawn.pdf * f32::from(count))",
+        "drawn.alpha / drawn.pdf",
         analytic("a_closed_sphere"),
     ),
     (
@@ -350,27 +350,27 @@ PATHS = [
     (
         "a cut-out lamp that next-event estimation takes for whole",
         "crates/bidir/src/integrator/stages/light_ends.rs",
-        "Spectrum::splat(drawn.coverage / (drawn.pdf * f32::from(count)))",
+        "Spectrum::splat(drawn.alpha / (drawn.pdf * f32::from(count)))",
         "Spectrum::splat(1.0 / (drawn.pdf * f32::from(count)))",
         coverage("lamps_cut_out"),
     ),
     (
         "a cut-out lamp that the path tracer takes for whole",
         "crates/bidir/src/integrator/stages/direct.rs",
-        "segment.geometry_term * x0.coverage / x0.pdf",
+        "segment.geometry_term * x0.alpha / x0.pdf",
         "segment.geometry_term / x0.pdf",
         coverage("lamps_cut_out"),
     ),
     (
         "a cut-out lamp that light subpaths take for whole",
         "crates/bidir/src/path/walk.rs",
-        "emitted * (emission.from.coverage / (start",
+        "emitted * (emission.from.alpha / (start",
         "emitted * (1.0 / (start",
         coverage("lamps_cut_out"),
     ),
     (
         "one decision for all that a ray passes",
-        "crates/bidir/src/scene/coverage.rs",
+        "crates/bidir/src/scene/alpha.rs",
         "self.stream.get_for(self.dimension, surface ^ distance)",
         "self.stream.get_for(self.dimension, 0 * (surface ^ distance))",
         coverage("transmittances_of_walls"),

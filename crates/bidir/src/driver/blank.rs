@@ -5,7 +5,7 @@ use crate::film::{FilmSettings, Picture};
 use crate::light::Light;
 use crate::math::Vec2;
 use crate::sampler::{Domain, Sampler, SamplerKind};
-use crate::scene::{Chances, Scene};
+use crate::scene::{RayDraws, Scene};
 use crate::settings::Settings;
 use crate::strategy::Strategies;
 use crate::view::View;
@@ -36,7 +36,7 @@ impl Sight {
                 .camera()
                 .sample_ray(corner + at * size, || Vec2::splat(0.5));
             let stream = sampler.stream(Domain::Camera, 0, i.into());
-            let hit = scene.intersect(ray.origin, ray.direction, Chances::new(&stream, 1));
+            let hit = scene.intersect(ray.origin, ray.direction, RayDraws::new(&stream, 1));
             if let Some(hit) = hit {
                 sight.hits += 1;
                 sight.backs += usize::from(hit.surface.n_g.dot(ray.direction) > 0.0);

@@ -9,7 +9,7 @@ use crate::integrator::{Batch, camera_ray};
 use crate::math::Vec3;
 use crate::path::{Job, Vertex};
 use crate::sampler::{Dimension, Purpose};
-use crate::scene::Chances;
+use crate::scene::RayDraws;
 use crate::spectrum::Spectrum;
 
 /// The cost of a sample so far in its thread: read before and after it.
@@ -98,8 +98,8 @@ impl FirstSurface {
         }
         let (ray, _) = camera_ray(job, sample);
         batch.worker.stats.rays.camera += 1;
-        let chances = Chances::new(&sample.camera, 1).until(job.stop);
-        let hit = job.scene.intersect(ray.origin, ray.direction, chances)?;
+        let draws = RayDraws::new(&sample.camera, 1).until(job.stop);
+        let hit = job.scene.intersect(ray.origin, ray.direction, draws)?;
         let u_mix = || sample.camera.get_1d(Dimension::at(1, Purpose::Mix));
         let (wo, beta) = (-ray.direction, Spectrum::ONE);
         let surface = Vertex::surface(job, &hit, wo, beta, u_mix);

@@ -8,7 +8,7 @@ use super::{Cone, EmissionSample, EmitterBounds, LightContext, LightPoint, Light
 use crate::math::{Distribution1d, Frame, PI, Vec2, Vec3, warp};
 use crate::shape::{Normals, Shape, ShapeSample, SurfacePoint};
 use crate::spectrum::{Rgb, luminance};
-use crate::texture::clamped_coverage;
+use crate::texture::clamped_alpha;
 use crate::texture::{ColorTexture, FloatTexture, TexturePoint};
 
 /// A mesh of more primitives is many emitters for a tree of lights: a quadrilateral is one.
@@ -42,7 +42,7 @@ pub struct AreaLight {
     /// One over the area; 0 where there is none. Unit: 1/m².
     inverse_area: f32,
     /// How much of the surface is there. None: all of it.
-    coverage: Option<FloatTexture>,
+    alpha: Option<FloatTexture>,
     /// True where no ray meets the surface.
     is_hidden: bool,
 }
@@ -62,7 +62,7 @@ impl AreaLight {
             mean: luminance(radiance),
             sides,
             primitives,
-            coverage: None,
+            alpha: None,
             is_hidden: false,
         }
     }
@@ -122,8 +122,8 @@ impl AreaLight {
     }
 
     /// Lets only a part of the surface be there, and emit.
-    pub(crate) fn set_coverage(&mut self, coverage: FloatTexture) {
-        self.coverage = Some(coverage);
+    pub(crate) fn set_alpha(&mut self, alpha: FloatTexture) {
+        self.alpha = Some(alpha);
     }
 
     /// False where all its primitives are degenerate.
@@ -208,12 +208,12 @@ impl AreaLight {
     /// Returns a point drawn on a primitive, with its density among the points of that primitive.
     #[inline]
     fn light_sample(&self, primitive: u32, drawn: &ShapeSample) -> LightSample {
-        let coverage = self.coverage.as_ref();
+        let alpha = self.alpha.as_ref();
         LightSample {
             at: LightPoint::on_surface(&drawn.surface, primitive),
             pdf: drawn.pdf,
-            coverage: coverage.map_or(1.0, |alpha| {
-                clamped_coverage(alpha.eval(&TexturePoint::new(&drawn.surface)))
+            alpha: alpha.map_or(1.0, |alpha| {
+                clamped_alpha(alpha.eval(&TexturePoint::new(&drawn.surface)))
             }),
         }
     }

@@ -93,7 +93,7 @@ pub struct LightSample {
     /// Its density, in the measure of the module's table.
     pub pdf: f32,
     /// How much of the surface is there, in `[0, 1]`: a factor of what leaves it, in no density.
-    pub coverage: f32,
+    pub alpha: f32,
 }
 
 impl LightSample {
@@ -102,7 +102,7 @@ impl LightSample {
         Self {
             at,
             pdf,
-            coverage: 1.0,
+            alpha: 1.0,
         }
     }
 }

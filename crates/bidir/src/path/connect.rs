@@ -143,7 +143,7 @@ pub fn sample_next_event(
     let of_light = scene.light(light);
     let mut sample = of_light.sample_next_event(&lights, part, x1.locus.point, u, u_depth)?;
     sample.pdf *= prob;
-    let is_there = sample.coverage > 0.0 && sample.pdf > 0.0 && scene.is_lit(of_light, &sample.at);
+    let is_there = sample.alpha > 0.0 && sample.pdf > 0.0 && scene.is_lit(of_light, &sample.at);
     is_there.then_some((light, sample))
 }
 

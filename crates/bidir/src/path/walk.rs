@@ -12,7 +12,7 @@ use crate::light::EmissionSample;
 use crate::locus::Locus;
 use crate::math::Vec3;
 use crate::sampler::{Dimension, Purpose, SampleStream};
-use crate::scene::{Advance, Chances, Edge, Interaction, SurfaceHit, Transmittance};
+use crate::scene::{Advance, Edge, Interaction, RayDraws, SurfaceHit, Transmittance};
 use crate::spectrum::Spectrum;
 use crate::stats::Stats;
 
@@ -82,7 +82,7 @@ pub fn light_subpath(
     let step = Step {
         origin: start_of_ray.ray_origin(emission.direction),
         direction: emission.direction,
-        beta: emitted * (emission.from.coverage / (start.pdf_fwd * emission.pdf_direction)),
+        beta: emitted * (emission.from.alpha / (start.pdf_fwd * emission.pdf_direction)),
         pdf_w: emission.pdf_direction,
     };
     let walker = Walker {
@@ -116,8 +116,8 @@ fn draw_emission(job: &Job<'_>, stream: &SampleStream) -> Option<(Vertex, Emissi
     if start.locus.is_infinite() && !scene.is_open() {
         return None;
     }
-    start.beta = Spectrum::splat(from.coverage / start.pdf_fwd);
-    (from.coverage > 0.0).then_some((start, emission))
+    start.beta = Spectrum::splat(from.alpha / start.pdf_fwd);
+    (from.alpha > 0.0).then_some((start, emission))
 }
 
 impl Walker<'_> {
@@ -157,7 +157,7 @@ impl Walker<'_> {
         if scene.has_media() {
             return self.advance_in_media(vertices, step, index);
         }
-        let chances = Chances::new(self.stream, index).until(self.job.stop);
+        let chances = RayDraws::new(self.stream, index).until(self.job.stop);
         let Some(hit) = scene.intersect(step.origin, step.direction, chances) else {
             let from = vertices[vertices.len() - 1].locus;
             return Some(End(self.escape(&from, step, None)));
@@ -175,7 +175,7 @@ impl Walker<'_> {
         index: usize,
     ) -> Option<End> {
         let from = vertices[vertices.len() - 1].locus;
-        let chances = Chances::new(self.stream, index).until(self.job.stop);
+        let chances = RayDraws::new(self.stream, index).until(self.job.stop);
         let (scene, lanes) = (self.job.scene, self.job.lanes);
         let ray = accel::Ray::new(step.origin, step.direction);
         let medium = from.medium_toward(step.direction);

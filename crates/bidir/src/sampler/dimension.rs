@@ -33,7 +33,7 @@ pub enum Purpose {
     /// The draw of shadow-ray selection; the vertex counts the groups.
     Select,
     /// The passage of a walk through surfaces with partial coverage, on its way to the vertex.
-    Coverage,
+    Alpha,
     /// Which of mixed materials a surface point is made of.
     Mix,
     /// Which vertices of the light vertex cache a camera vertex is connected with.

@@ -285,7 +285,7 @@ mod tests {
                 let stream = sampler.stream(Domain::Camera, 9, index);
                 stream.get_for(dimension, key)
             };
-            let other = Dimension::at(4, Purpose::Coverage);
+            let other = Dimension::at(4, Purpose::Alpha);
             check_moments(|i| (get(i, DIMENSION, 1), get(i, DIMENSION, 2)));
             check_moments(|i| (get(7, DIMENSION, i), get(8, DIMENSION, i)));
             check_moments(|i| (get(i, DIMENSION, 5), get(i, other, 5)));

@@ -3,7 +3,7 @@
 use super::edge::{Depth, Transmittance};
 use super::nesting::Interface;
 use super::passage::{Crossings, Passage};
-use super::{Chances, Scene, SurfaceHit};
+use super::{RayDraws, Scene, SurfaceHit};
 use crate::locus::Locus;
 use crate::medium::{Drawn, MediumId, MediumScattering, MediumSides};
 use crate::spectrum::Lanes;
@@ -31,7 +31,7 @@ pub struct Advance {
 }
 
 /// Draws the lane and the optical depth at which a walk stops.
-fn draw(chances: Chances<'_>, lanes: Lanes) -> Drawn {
+fn draw(chances: RayDraws<'_>, lanes: Lanes) -> Drawn {
     let [u_lane, u_depth] = chances.flight();
     Drawn {
         lane: lanes.pick_lane(u_lane),
@@ -46,7 +46,7 @@ impl Scene {
         &self,
         ray: &Ray,
         medium: MediumId,
-        chances: Chances<'_>,
+        chances: RayDraws<'_>,
         lanes: Lanes,
     ) -> Advance {
         let mut crossings = Crossings::new();
@@ -94,7 +94,7 @@ impl Scene {
     fn first(
         &self,
         ray: &Ray,
-        chances: Chances<'_>,
+        chances: RayDraws<'_>,
         crossings: &mut Crossings,
     ) -> (Option<Hit>, Option<Interface>) {
         if self.nests() {

@@ -4,7 +4,7 @@
 use super::check::check_shape;
 use super::nesting::{self, Enclosed, Volume};
 use super::object::{Geometry, ObjectId, Objects};
-use super::{Presence, RenderSpace, Scene, Surface, glow};
+use super::{Opacity, RenderSpace, Scene, Surface, glow};
 use crate::light::{
     AreaLight, EmissionSides, Light, LightChoice, LightContext, LightTree, VolumeLight,
 };
@@ -13,7 +13,7 @@ use crate::math::{DAffine3, Vec3};
 use crate::medium::{Medium, MediumId, MediumSides};
 use crate::shape::{Shape, WorldFromObject};
 use crate::spectrum::Rgb;
-use crate::texture::{ColorTexture, FloatTexture, clamped_coverage};
+use crate::texture::{ColorTexture, FloatTexture, clamped_alpha};
 use thiserror::Error;
 
 /// A material added to a [`SceneBuilder`].
@@ -107,7 +107,7 @@ pub struct SceneBuilder {
     shapes: Vec<Shape>,
     surfaces: Vec<Surface>,
     objects: Objects,
-    coverages: Vec<FloatTexture>,
+    alphas: Vec<FloatTexture>,
     media: Vec<Medium>,
     volumes: Vec<Volume>,
     /// A point, and the medium there.
@@ -173,7 +173,7 @@ impl SceneBuilder {
         self.surfaces.push(Surface {
             material: material.0,
             light,
-            presence: Presence::Whole,
+            opacity: Opacity::Opaque,
             sides: None,
             volume: None,
             is_detailed: self.materials[material.0 as usize].needs().footprint,
@@ -264,26 +264,26 @@ impl SceneBuilder {
     ///
     /// If `alpha` is 0 all over, no ray meets the shape, but it emits all the same: an invisible
     /// light, as in pbrt-v4.
-    pub fn coverage(&mut self, shape: usize, alpha: FloatTexture) -> &mut Self {
+    pub fn alpha(&mut self, shape: usize, alpha: FloatTexture) -> &mut Self {
         let surface = &mut self.surfaces[shape];
         let light = (surface.light).and_then(|light| match &mut self.lights[light as usize] {
             Light::Area(light) => Some(light),
             _ => None,
         });
-        surface.presence = match alpha {
-            FloatTexture::Constant(alpha) if clamped_coverage(alpha) >= 1.0 => return self,
+        surface.opacity = match alpha {
+            FloatTexture::Constant(alpha) if clamped_alpha(alpha) >= 1.0 => return self,
             FloatTexture::Constant(alpha) if alpha <= 0.0 => {
                 if let Some(light) = light {
                     light.hide();
                 }
-                Presence::Absent
+                Opacity::Invisible
             }
             texture => {
                 if let Some(light) = light {
-                    light.set_coverage(texture.clone());
+                    light.set_alpha(texture.clone());
                 }
-                self.coverages.push(texture);
-                Presence::Part(self.coverages.len() as u32 - 1)
+                self.alphas.push(texture);
+                Opacity::Texture(self.alphas.len() as u32 - 1)
             }
         };
         self
@@ -382,10 +382,9 @@ impl SceneBuilder {
         let environment = (0..self.lights.len())
             .filter(|&i| is_environment(&self.lights[i]))
             .map(|i| i as u32);
-        let is_boundary = |surface: &Surface| surface.presence == Presence::Boundary;
-        let is_opaque = self.coverages.is_empty()
-            && volumes.is_empty()
-            && !self.surfaces.iter().any(is_boundary);
+        let is_boundary = |surface: &Surface| surface.opacity == Opacity::Boundary;
+        let is_opaque =
+            self.alphas.is_empty() && volumes.is_empty() && !self.surfaces.iter().any(is_boundary);
         let mut scene = Scene {
             is_opaque,
             foresees_media: is_opaque && self.media.iter().all(Medium::is_even),
@@ -402,7 +401,7 @@ impl SceneBuilder {
             surfaces: self.surfaces,
             primitives,
             instances,
-            coverages: self.coverages,
+            alphas: self.alphas,
             materials: self.materials,
             lights: self.lights,
             light_choice,
@@ -457,7 +456,7 @@ fn media_of(scene: &Scene, light: &Light) -> MediumSides {
         Light::Area(light) => {
             let surface = scene.surfaces[light.shape_index()];
             match surface.sides {
-                Some(sides) if surface.presence != Presence::Absent => {
+                Some(sides) if surface.opacity != Opacity::Invisible => {
                     let point = scene.point_on(light.shape_index());
                     return scene
                         .sides_of_nested(surface.volume, point)

@@ -1,6 +1,6 @@
 //! The conditions on the parts of a scene before rays are traced in it.
 
-use super::{Presence, PrimitiveRef, SceneError, Surface};
+use super::{Opacity, PrimitiveRef, SceneError, Surface};
 use crate::shape::{Mesh, Shape};
 
 /// Checks the shapes of these `numbers`, and appends their primitives.
@@ -13,7 +13,7 @@ pub(super) fn gather_primitives(
     for &number in numbers {
         let shape = &shapes[number];
         check_shape(number, shape)?;
-        if surfaces[number].presence == Presence::Absent {
+        if surfaces[number].opacity == Opacity::Invisible {
             continue;
         }
         primitives.extend((0..shape.primitive_count()).map(|index| PrimitiveRef {

@@ -4,9 +4,9 @@
 //! in a built scene are valid.
 
 mod advance;
+mod alpha;
 mod builder;
 mod check;
-mod coverage;
 mod edge;
 mod glow;
 mod nesting;
@@ -17,10 +17,10 @@ mod visibility;
 
 pub use accel::Isa;
 pub use advance::{Advance, Interaction};
+pub use alpha::RayDraws;
 pub use builder::{
     DEFAULT_GROUP, ENVIRONMENT_GROUP, Emission, MaterialId, SceneBuilder, SceneError,
 };
-pub use coverage::Chances;
 pub use edge::{Edge, Transmittance};
 pub use nesting::Volume;
 pub use object::ObjectId;
@@ -51,7 +51,7 @@ struct PrimitiveRef {
 struct Surface {
     material: u32,
     light: Option<u32>,
-    presence: Presence,
+    opacity: Opacity,
     /// The media that it parts. None: the same is on both sides.
     sides: Option<MediumSides>,
     /// The volume that it bounds, by index, if others touch that.
@@ -67,7 +67,7 @@ impl Surface {
         Self {
             material: 0,
             light: None,
-            presence: sides.map_or(Presence::Absent, |_| Presence::Boundary),
+            opacity: sides.map_or(Opacity::Invisible, |_| Opacity::Boundary),
             sides,
             volume: None,
             is_detailed: false,
@@ -77,15 +77,15 @@ impl Surface {
 
 /// How much of a surface is there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Presence {
+enum Opacity {
     /// All of it.
-    Whole,
+    Opaque,
     /// The part given by a texture of the scene, by index.
-    Part(u32),
+    Texture(u32),
     /// Nothing but a boundary of media.
     Boundary,
     /// Nothing: no ray meets it.
-    Absent,
+    Invisible,
 }
 
 /// The point where a ray meets a surface.
@@ -113,7 +113,7 @@ pub struct Scene {
     primitives: Vec<PrimitiveRef>,
     instances: Vec<Placed>,
     /// The textures of surfaces that are not all there.
-    coverages: Vec<FloatTexture>,
+    alphas: Vec<FloatTexture>,
     /// True where rays pass no surface, and need not ask.
     is_opaque: bool,
     media: Vec<Medium>,
@@ -210,7 +210,7 @@ impl Scene {
     /// Returns the materials of surfaces that rays can meet, once for each surface.
     pub fn materials_of_surfaces(&self) -> impl Iterator<Item = &Material> {
         let met =
-            |surface: &&Surface| !matches!(surface.presence, Presence::Absent | Presence::Boundary);
+            |surface: &&Surface| !matches!(surface.opacity, Opacity::Invisible | Opacity::Boundary);
         let surfaces = self.surfaces.iter().filter(met);
         surfaces.map(|surface| self.material(surface.material))
     }
@@ -251,16 +251,16 @@ impl Scene {
         &self.bvh
     }
 
-    /// Returns the nearest surface along a ray of a walk, which passes some by `chances`. None: it escapes.
+    /// Returns the nearest surface along a ray of a walk, which passes some by `draws`. None: it escapes.
     #[inline]
     pub fn intersect(
         &self,
         origin: Vec3,
         direction: Vec3,
-        chances: Chances<'_>,
+        draws: RayDraws<'_>,
     ) -> Option<SurfaceHit> {
         let ray = accel::Ray::new(origin, direction);
-        let hit = self.closest(&ray, chances, |_| ())?;
+        let hit = self.closest(&ray, draws, |_| ())?;
         Some(self.surface_hit(&ray, &hit))
     }
 

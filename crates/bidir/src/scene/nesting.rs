@@ -13,7 +13,7 @@
 
 use super::object::{Objects, Placed};
 use super::passage::{Crossing, Crossings};
-use super::{Chances, PrimitiveRef, Scene, Surface};
+use super::{PrimitiveRef, RayDraws, Scene, Surface};
 use crate::math::Vec3;
 use crate::medium::{MediumId, MediumSides};
 use crate::shape::{Shape, position_error};
@@ -164,17 +164,17 @@ impl Scene {
     pub(super) fn closest_of_nested(
         &self,
         ray: &Ray,
-        chances: Chances<'_>,
+        draws: RayDraws<'_>,
         crossings: &mut Crossings,
     ) -> (Option<Hit>, Option<Interface>) {
         let is_near = std::cell::Cell::new(false);
         let passed = std::cell::RefCell::new(Crossings::new());
-        let hit = self.bvh.until(chances.stop).closest(ray, |hit| {
+        let hit = self.bvh.until(draws.stop).closest(ray, |hit| {
             if self.filling(hit).is_some() {
                 is_near.set(true);
                 return false;
             }
-            let stops = self.stops(ray, hit, chances);
+            let stops = self.stops(ray, hit, draws);
             if !stops {
                 passed.borrow_mut().extend(self.crossing(ray, hit));
             }
@@ -185,8 +185,8 @@ impl Scene {
         if !is_near.get() {
             return (hit, None);
         }
-        let stops = |hit: &Hit| self.stops(ray, hit, chances);
-        let interface = self.settle(ray, chances.stop, end, crossings, stops);
+        let stops = |hit: &Hit| self.stops(ray, hit, draws);
+        let interface = self.settle(ray, draws.stop, end, crossings, stops);
         (
             interface.map_or(hit, |interface| Some(interface.hit)),
             interface,
@@ -202,7 +202,7 @@ impl Scene {
     ) -> f32 {
         let mut visible = 1.0;
         let interface = self.settle(ray, stop, ray.t_max, crossings, |hit| {
-            let alpha = self.coverage(ray, hit);
+            let alpha = self.alpha(ray, hit);
             visible *= 1.0 - alpha;
             alpha >= 1.0
         });

@@ -1,9 +1,9 @@
 //! Boundaries of media along rays.
 //!
 //! A ray begins in the medium of its origin, and the last boundary that it crossed decides. Surfaces that are nothing
-//! but boundaries (`Presence::Boundary`) stop no ray; surfaces with holes let some rays through.
+//! but boundaries (`Opacity::Boundary`) stop no ray; surfaces with holes let some rays through.
 
-use super::{Presence, Scene};
+use super::{Opacity, Scene};
 use crate::math::Vec3;
 use crate::medium::{Medium, MediumId, MediumSides, Stretch};
 use accel::{Hit, Ray, Stop};
@@ -183,7 +183,7 @@ impl Scene {
         let surface = &self.surfaces[primitive.shape as usize];
         surface
             .sides
-            .filter(|_| surface.presence != Presence::Absent)
+            .filter(|_| surface.opacity != Opacity::Invisible)
     }
 
     /// Returns a point on shape number `shape`, one of the world, or near it where rays do not meet it.

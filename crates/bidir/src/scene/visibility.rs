@@ -1,5 +1,5 @@
 //! v(a, b): how much of a shadow ray gets from one end to the other. Surfaces are as opaque to it as
-//! they are there (`coverage`), glass too: light through a smooth interface is found by walks.
+//! they are there (`alpha`), glass too: light through a smooth interface is found by walks.
 //!
 //! Both ends are pushed off their surface by the error of their point, the far one by that of the ray, too, so that none
 //! shadows itself.

@@ -21,7 +21,7 @@ mod range;
 
 /// Returns a texture's number as α.
 #[inline]
-pub(crate) fn clamped_coverage(alpha: f32) -> f32 {
+pub(crate) fn clamped_alpha(alpha: f32) -> f32 {
     if alpha < 1.0 { alpha.max(0.0) } else { 1.0 }
 }
 

@@ -240,7 +240,7 @@ fn light_that_passes_a_hole_in_a_boundary_is_in_the_medium_behind_it() {
     let front = quad(Vec3::new(-5.0, -5.0, 0.0), Vec3::Y * 10.0, Vec3::X * 10.0);
     let front = builder.shape(Shape::Mesh(front), wall, None);
     builder.sides(front, MediumSides { outside, inside });
-    builder.coverage(front, FloatTexture::Constant(0.5));
+    builder.alpha(front, FloatTexture::Constant(0.5));
     let back = quad(Vec3::new(-5.0, -5.0, 1.0), Vec3::X * 10.0, Vec3::Y * 10.0);
     builder.boundary(Shape::Mesh(back), MediumSides { outside, inside });
     let scene = finish(builder).scene;

@@ -18,7 +18,7 @@ use bidir::material::{
 use bidir::math::{Affine3A, PI, Vec2, Vec3};
 use bidir::path::{Job, PathSettings, Scattering, Vertex};
 use bidir::sampler::{Domain, Sampler, SamplerKind};
-use bidir::scene::{Chances, SceneBuilder};
+use bidir::scene::{RayDraws, SceneBuilder};
 use bidir::shape::Shape;
 use bidir::spectrum::Spectrum;
 use bidir::texture::{
@@ -167,7 +167,7 @@ fn relief_changes_the_picture() {
 fn vertex(job: &Job<'_>, origin: Vec3, target: Vec3) -> Vertex {
     let stream = Sampler::new(SamplerKind::Independent, 1).stream(Domain::Camera, 0, 0);
     let direction = (target - origin).normalize();
-    let chances = Chances::new(&stream, 1);
+    let chances = RayDraws::new(&stream, 1);
     let hit = job.scene.intersect(origin, direction, chances);
     let hit = hit.expect("the floor is there");
     Vertex::surface(job, &hit, -direction, Spectrum::ONE, || 0.9)

@@ -16,7 +16,7 @@ use bidir::light::Light;
 use bidir::locus::Locus;
 use bidir::math::{Affine3A, Vec2, Vec3};
 use bidir::sampler::{Domain, SampleStream, Sampler, SamplerKind};
-use bidir::scene::{Chances, Scene};
+use bidir::scene::{RayDraws, Scene};
 use bidir::spectrum::luminance;
 use bidir::view::View;
 use glam::{DAffine3, DVec3};
@@ -134,7 +134,7 @@ impl<'a> Rays<'a> {
     }
 
     fn hit(&self, origin: Vec3, direction: Vec3) -> Option<Seen> {
-        let chances = Chances::new(&self.stream, 1);
+        let chances = RayDraws::new(&self.stream, 1);
         let hit = self.scene.intersect(origin, direction, chances)?;
         let is_front = hit.surface.n_g.dot(direction) < 0.0;
         Some(Seen {

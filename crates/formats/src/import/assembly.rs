@@ -180,7 +180,7 @@ impl<P: Clone> Assembly<P> {
                 self.volumes.add(number, user, (family, space));
             }
             if let Some(coverage) = skin.coverage {
-                self.builder.coverage(number, coverage.clone());
+                self.builder.alpha(number, coverage.clone());
             }
         }
     }

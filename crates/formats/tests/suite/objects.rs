@@ -6,7 +6,7 @@ use bidir::integrator::IntegratorKind;
 use bidir::math::Vec3;
 use bidir::path::PathSettings;
 use bidir::sampler::{Domain, Sampler, SamplerKind};
-use bidir::scene::{Chances, Scene, SurfaceHit};
+use bidir::scene::{RayDraws, Scene, SurfaceHit};
 use bidir_formats::pbrt::{LoadOptions, Loaded, build, parse_text};
 
 const HEAD: &str = r#"
@@ -108,7 +108,7 @@ fn rays() -> impl Iterator<Item = (Vec3, Vec3)> {
 
 fn hit(scene: &Scene, (origin, direction): (Vec3, Vec3)) -> Option<SurfaceHit> {
     let stream = Sampler::new(SamplerKind::Independent, 0).stream(Domain::Camera, 0, 0);
-    scene.intersect(origin, direction, Chances::new(&stream, 1))
+    scene.intersect(origin, direction, RayDraws::new(&stream, 1))
 }
 
 #[test]

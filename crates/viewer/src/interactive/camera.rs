@@ -6,7 +6,7 @@ use bidir::camera::{Camera, Pose, Rotation};
 use bidir::film::{FilmSettings, PixelRect};
 use bidir::math::{Vec2, Vec3};
 use bidir::sampler::{Domain, Sampler, SamplerKind};
-use bidir::scene::{Chances, RenderSpace, Scene};
+use bidir::scene::{RayDraws, RenderSpace, Scene};
 use bidir::view::{EmptyCrop, View};
 use std::time::{Duration, Instant};
 
@@ -221,7 +221,7 @@ fn target(scene: &Scene, view: &View) -> Vec3 {
         }
     };
     let numbers = Sampler::new(SamplerKind::default(), 0).stream(Domain::Camera, 0, 0);
-    let hit = scene.intersect(origin, direction, Chances::new(&numbers, 0));
+    let hit = scene.intersect(origin, direction, RayDraws::new(&numbers, 0));
     let whole = scene.light_context();
     let far = origin.distance(whole.centre).max(REACH[0] * whole.radius);
     let point = hit.map_or(origin + direction * far, |hit| hit.surface.point);

@@ -168,7 +168,7 @@ fn scene(add_media: impl Fn(&mut SceneBuilder)) -> Scene {
         reflectance: colour([0.6, 0.7, 0.4]),
     });
     let room = builder.shape(ball(Vec3::ZERO, 8.0), wall, None);
-    builder.coverage(room, FloatTexture::Constant(0.8));
+    builder.alpha(room, FloatTexture::Constant(0.8));
     builder.light(Light::Infinite(InfiniteLight::constant([0.4, 0.8, 1.6])));
     let lamp = Emission {
         radiance: [9.0, 5.0, 2.0],

@@ -135,7 +135,7 @@ fn arriving(
     x0: &LightSample,
     segment: &Segment,
 ) -> Spectrum {
-    let factor = segment.geometry_term * x0.coverage / x0.pdf;
+    let factor = segment.geometry_term * x0.alpha / x0.pdf;
     if factor == 0.0 {
         return Spectrum::ZERO;
     }

@@ -63,7 +63,7 @@ fn add_point(
     let point = kronecker_point(u, k);
     let (number, drawn) = sample_next_event(job, y, u_light, point, u_depth)?;
     let mut x0 = Vertex::light(job, number, &drawn.at);
-    x0.beta = Spectrum::splat(drawn.coverage / (drawn.pdf * f32::from(count)));
+    x0.beta = Spectrum::splat(drawn.alpha / (drawn.pdf * f32::from(count)));
     let z = light.add_point(&x0);
     Some(NextEvent::new(z, number, drawn.pdf))
 }

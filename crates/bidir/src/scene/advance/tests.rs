@@ -62,7 +62,7 @@ fn smoke() -> Scene {
 /// Returns the place of a collision as a part of `REACH`. None: there is none up to there.
 fn collision(scene: &Scene, stream: &SampleStream) -> Option<Vec3> {
     let ray = Ray::new(START, Vec3::Z);
-    let chances = Chances::new(stream, 1);
+    let chances = RayDraws::new(stream, 1);
     let medium = scene.medium_at(START);
     let Interaction::Medium(locus, _) =
         scene.advance(&ray, medium, chances, Lanes::Rgb).interaction

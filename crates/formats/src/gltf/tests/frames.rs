@@ -7,7 +7,7 @@ use bidir::bsdf::TransportMode;
 use bidir::math::{Vec2, Vec3};
 use bidir::path::{Job, PathSettings, Vertex};
 use bidir::sampler::{Domain, Sampler, SamplerKind};
-use bidir::scene::Chances;
+use bidir::scene::RayDraws;
 use bidir::spectrum::Spectrum;
 use serde_json::{Value, json};
 
@@ -69,7 +69,7 @@ fn scattered(loaded: &Loaded, wo: Vec3, wi: Vec3) -> f32 {
     let space = job.scene.space().from_world();
     let centre = space.transform_point3(glam::DVec3::new(0.1, 0.05, 0.0));
     let origin = centre.as_vec3() + wo * 0.01;
-    let hit = job.scene.intersect(origin, -wo, Chances::new(&stream, 1));
+    let hit = job.scene.intersect(origin, -wo, RayDraws::new(&stream, 1));
     let hit = hit.expect("the plate is there");
     let vertex = Vertex::surface(&job, &hit, wo, Spectrum::ONE, || 0.5);
     let turn = vertex.turn(wo, wi, TransportMode::Radiance);

@@ -3,7 +3,7 @@ use crate::pbrt::Loaded;
 use bidir::light::Light;
 use bidir::math::{DVec3, Vec2, Vec3};
 use bidir::sampler::{Domain, Sampler, SamplerKind};
-use bidir::scene::Chances;
+use bidir::scene::RayDraws;
 use serde_json::json;
 
 /// Five corners of a fan or a zigzag.
@@ -139,7 +139,7 @@ fn mirrored_nodes_turn_the_winding() {
         let loaded = draft.load().unwrap();
         let origin = Vec3::new(0.2 * scale[0] as f32, 0.2 * scale[1] as f32, 5.0);
         let stream = Sampler::new(SamplerKind::Independent, 0).stream(Domain::Camera, 0, 0);
-        let chances = Chances::new(&stream, 1);
+        let chances = RayDraws::new(&stream, 1);
         let hit = loaded.scene.intersect(origin, -Vec3::Z, chances).unwrap();
         assert!(hit.surface.n_g.distance(normal) < 1e-6, "{scale:?}");
     }

@@ -8,7 +8,7 @@ use super::view::View;
 use crate::markup::{Element, element};
 use bidir::math::{Vec2, Vec3};
 use bidir::sampler::{Domain, Sampler, SamplerKind};
-use bidir::scene::Chances;
+use bidir::scene::RayDraws;
 
 /// The distance between rays. Unit: pixels of the page.
 const CELL: f32 = 3.0;
@@ -43,7 +43,7 @@ impl View<'_> {
     fn look(&self, at: Vec2) -> Sight {
         // The chances of surfaces that are there only in part are the same for all rays.
         let stream = Sampler::new(SamplerKind::Independent, 0).stream(Domain::Camera, 0, 0);
-        let (origin, chances) = (self.near_point(at), Chances::new(&stream, 1));
+        let (origin, chances) = (self.near_point(at), RayDraws::new(&stream, 1));
         let hit = self.scene.intersect(origin, self.away(), chances);
         let hit = hit.map(|hit| [hit.surface.point, hit.surface.n_g]);
         Sight { at, hit }

@@ -3,7 +3,7 @@ use bidir::bsdf::{Bsdf, TransportMode};
 use bidir::material::Material;
 use bidir::math::{Vec2, Vec3};
 use bidir::sampler::{Domain, Sampler, SamplerKind};
-use bidir::scene::{Chances, Scene};
+use bidir::scene::{RayDraws, Scene};
 use bidir::spectrum::Lanes;
 use bidir::texture::TexturePoint;
 
@@ -153,7 +153,7 @@ fn covered(materials: &str) -> (f64, Scene) {
     let rays = 4096;
     let meets = |i: &u64| {
         let stream = sampler.stream(Domain::Camera, 0, *i);
-        let chances = Chances::new(&stream, 1);
+        let chances = RayDraws::new(&stream, 1);
         scene.intersect(Vec3::ZERO, Vec3::Z, chances).is_some()
     };
     let met = (0..rays).filter(meets).count();

@@ -7,32 +7,32 @@
 //! does not decide: it returns the transmittance Π (1 - α), exactly.
 //!
 //! Light that a light sample draws on such a surface carries α as a factor
-//! ([`LightSample::coverage`](crate::light::LightSample::coverage)); where a walk hits the light, it
+//! ([`LightSample::alpha`](crate::light::LightSample::alpha)); where a walk hits the light, it
 //! has decided by then. Textures of α are never averaged over pixels: they are the same for all rays.
 
-use super::{Presence, Scene};
+use super::{Opacity, Scene};
 use crate::math::Vec2;
 use crate::sampler::{Dimension, Purpose, SampleStream};
-use crate::texture::{TexturePoint, clamped_coverage};
+use crate::texture::{TexturePoint, clamped_alpha};
 use accel::{Hit, Stop};
 use smallvec::SmallVec;
 use std::ops::ControlFlow;
 
 /// The random numbers by which a ray of a walk passes surfaces that are not all there.
 #[derive(Clone, Copy)]
-pub struct Chances<'a> {
+pub struct RayDraws<'a> {
     stream: &'a SampleStream,
     dimension: Dimension,
     pub(super) stop: Stop<'a>,
 }
 
-impl<'a> Chances<'a> {
-    /// Returns the chances of the ray that looks for vertex number `vertex` of a subpath.
+impl<'a> RayDraws<'a> {
+    /// Returns the draws of the ray that looks for vertex number `vertex` of a subpath.
     #[inline]
     pub fn new(stream: &'a SampleStream, vertex: usize) -> Self {
         Self {
             stream,
-            dimension: Dimension::at(vertex, Purpose::Coverage),
+            dimension: Dimension::at(vertex, Purpose::Alpha),
             stop: Stop::NEVER,
         }
     }
@@ -63,13 +63,13 @@ impl<'a> Chances<'a> {
 impl Scene {
     /// Returns α where a surface is hit: 1 where it is opaque, or where a texture is no number.
     #[inline]
-    pub(super) fn coverage(&self, ray: &accel::Ray, hit: &Hit) -> f32 {
+    pub(super) fn alpha(&self, ray: &accel::Ray, hit: &Hit) -> f32 {
         let (_, primitive) = self.resolve(hit);
         let (number, index) = (primitive.shape as usize, primitive.index as usize);
-        let texture = match self.surfaces[number].presence {
-            Presence::Whole => return 1.0,
-            Presence::Part(texture) => &self.coverages[texture as usize],
-            Presence::Boundary | Presence::Absent => return 0.0,
+        let texture = match self.surfaces[number].opacity {
+            Opacity::Opaque => return 1.0,
+            Opacity::Texture(texture) => &self.alphas[texture as usize],
+            Opacity::Boundary | Opacity::Invisible => return 0.0,
         };
         let (shape, uv) = (&self.shapes[number], Vec2::new(hit.u, hit.v));
         // Almost always the parameters are enough, and nothing else has to be known of the surface.
@@ -78,7 +78,7 @@ impl Scene {
         } else {
             TexturePoint::of_parameters(shape.uv(index, uv))
         };
-        clamped_coverage(texture.eval(&at))
+        clamped_alpha(texture.eval(&at))
     }
 
     /// Returns the nearest surface that a ray of a walk does not pass. Calls `cross` for those that it passes, some
@@ -87,10 +87,10 @@ impl Scene {
     pub(super) fn closest(
         &self,
         ray: &accel::Ray,
-        chances: Chances<'_>,
+        draws: RayDraws<'_>,
         cross: impl Fn(&Hit),
     ) -> Option<Hit> {
-        let (bvh, stop) = (self.bvh.until(chances.stop), chances.stop);
+        let (bvh, stop) = (self.bvh.until(draws.stop), draws.stop);
         if self.is_opaque {
             return bvh.closest(ray, accel::accept_all);
         }
@@ -98,7 +98,7 @@ impl Scene {
             if stop.is_asked() {
                 return true;
             }
-            let stops = self.stops(ray, hit, chances);
+            let stops = self.stops(ray, hit, draws);
             if !stops {
                 cross(hit);
             }
@@ -108,9 +108,9 @@ impl Scene {
 
     /// Returns true where a surface is there for a ray of a walk.
     #[inline]
-    pub(super) fn stops(&self, ray: &accel::Ray, hit: &Hit, chances: Chances<'_>) -> bool {
-        let alpha = self.coverage(ray, hit);
-        alpha >= 1.0 || alpha > 0.0 && chances.draw(hit) < alpha
+    pub(super) fn stops(&self, ray: &accel::Ray, hit: &Hit, draws: RayDraws<'_>) -> bool {
+        let alpha = self.alpha(ray, hit);
+        alpha >= 1.0 || alpha > 0.0 && draws.draw(hit) < alpha
     }
 
     /// Returns Π (1 - α) over everything that a shadow ray meets, but for volumes within each other. Calls `cross` for
@@ -128,7 +128,7 @@ impl Scene {
             return f32::from(!bvh.is_blocked(ray));
         }
         let mut factors = Factors::default();
-        let flow = bvh.each_hit(ray, |hit| match self.coverage(ray, hit) {
+        let flow = bvh.each_hit(ray, |hit| match self.alpha(ray, hit) {
             _ if stop.is_asked() => ControlFlow::Break(()),
             _ if self.is_of_nested(hit) => ControlFlow::Continue(()),
             alpha if alpha >= 1.0 => ControlFlow::Break(()),
@@ -206,7 +206,7 @@ mod tests {
         for _ in 0..100 {
             let sphere = Sphere::new(Affine3A::IDENTITY, 1.0, Orientation::Natural);
             let veil = builder.shape(Shape::Sphere(sphere), material, None);
-            builder.coverage(veil, FloatTexture::Constant(1e-3));
+            builder.alpha(veil, FloatTexture::Constant(1e-3));
         }
         let scene = builder.build().expect("the scene is valid");
         let ray = accel::Ray::new(Vec3::ZERO, Vec3::Z);
@@ -219,8 +219,8 @@ mod tests {
                 flags[i].store(stops, Ordering::Relaxed);
             };
             scene.visible_part(&ray, Stop::when(&flags[0]), |_| cross(0));
-            let chances = Chances::new(&stream, 1).until(Stop::when(&flags[1]));
-            scene.closest(&ray, chances, |_| cross(1));
+            let draws = RayDraws::new(&stream, 1).until(Stop::when(&flags[1]));
+            scene.closest(&ray, draws, |_| cross(1));
             assert_eq!(seen[0].load(Ordering::Relaxed), expected);
             let walked = seen[1].load(Ordering::Relaxed);
             assert!(if stops { walked == 1 } else { walked > 80 }, "{walked}");
@@ -231,7 +231,7 @@ mod tests {
     fn what_is_no_number_is_opaque() {
         let expected = [(f32::NAN, 1.0), (-1.0, 0.0), (0.25, 0.25), (7.0, 1.0)];
         for (alpha, clear) in expected {
-            assert!((clamped_coverage(alpha) - clear).abs() <= 0.0, "{alpha}");
+            assert!((clamped_alpha(alpha) - clear).abs() <= 0.0, "{alpha}");
         }
     }
 }
