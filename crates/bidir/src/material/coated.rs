@@ -8,7 +8,7 @@ use crate::bsdf::coat::{Filled, Layer, Reflections, Slab};
 use crate::bsdf::{Bsdf, CoatedConductor, CoatedDiffuse, CoatedMetal, Filling};
 use crate::math::{Vec2, sqr};
 use crate::spectrum::Lanes;
-use crate::texture::{ColorTexture, FloatTexture, Needs, TexturePoint};
+use crate::texture::{ColorTexture, FloatTexture, RequiredInputs, TexturePoint};
 use rayon::prelude::*;
 use std::sync::Arc;
 
@@ -28,7 +28,7 @@ pub struct CoatSettings {
 }
 
 impl CoatSettings {
-    fn needs(&self) -> Needs {
+    fn needs(&self) -> RequiredInputs {
         let filling = self.thickness.needs().and(self.g.needs());
         filling.and(self.albedo.needs()).and(self.roughness.needs())
     }
@@ -227,7 +227,7 @@ impl CoatedDiffuseMaterial {
         }
     }
 
-    pub(super) fn needs(&self) -> Needs {
+    pub(super) fn needs(&self) -> RequiredInputs {
         self.coat.needs().and(self.reflectance.needs())
     }
 
@@ -291,7 +291,7 @@ impl CoatedConductorMaterial {
         row(low).lerp(&row(high), t)
     }
 
-    pub(super) fn needs(&self) -> Needs {
+    pub(super) fn needs(&self) -> RequiredInputs {
         let metal = self.index.needs().and(self.roughness.needs());
         self.coat.needs().and(metal)
     }

@@ -12,7 +12,7 @@ mod specular;
 
 pub use coated::{CLEAR, CoatSettings, CoatedConductorMaterial, CoatedDiffuseMaterial};
 pub use principled::{Anisotropy, PrincipledMaterial, ScaledColor, ScaledFloat};
-pub use relief::{Bitangent, Embossed, NormalMap, Relief};
+pub use relief::{Bitangent, NormalMap, Perturbed, Relief};
 
 use crate::bsdf::microfacet::Ggx;
 use crate::bsdf::{
@@ -21,7 +21,7 @@ use crate::bsdf::{
 use crate::math::{ONE_MINUS_EPSILON, Vec3};
 use crate::shape::SurfacePoint;
 use crate::spectrum::{Lanes, Rgb, Spectrum};
-use crate::texture::{ColorTexture, FloatTexture, Needs, TexturePoint};
+use crate::texture::{ColorTexture, FloatTexture, RequiredInputs, TexturePoint};
 use std::sync::Arc;
 
 /// How a described roughness becomes a slope α.
@@ -52,7 +52,7 @@ impl Roughness {
         mapping: RoughnessMapping::Identity,
     };
 
-    fn needs(&self) -> Needs {
+    fn needs(&self) -> RequiredInputs {
         self.u.needs().and(self.v.needs())
     }
 
@@ -84,7 +84,7 @@ pub enum ConductorIndex {
 }
 
 impl ConductorIndex {
-    fn needs(&self) -> Needs {
+    fn needs(&self) -> RequiredInputs {
         match self {
             Self::Complex { eta, k } => eta.needs().and(k.needs()),
             Self::Reflectance(reflectance) => reflectance.needs(),
@@ -164,7 +164,7 @@ pub enum Material {
     /// One of two materials at each point.
     Mix(Arc<Mixture>),
     /// A material whose shading frame turns.
-    Embossed(Arc<Embossed>),
+    Perturbed(Arc<Perturbed>),
 }
 
 impl Material {
@@ -180,7 +180,7 @@ impl Material {
             Self::CoatedConductor(_) => "coatedconductor",
             Self::Principled(_) => "principled",
             Self::Mix(_) => "mix",
-            Self::Embossed(embossed) => embossed.material.kind(),
+            Self::Perturbed(perturbed) => perturbed.material.kind(),
         }
     }
 
@@ -188,7 +188,7 @@ impl Material {
     #[inline]
     pub fn relief(&self) -> Option<&Relief> {
         match self {
-            Self::Embossed(embossed) => Some(&embossed.relief),
+            Self::Perturbed(perturbed) => Some(&perturbed.relief),
             _ => None,
         }
     }
@@ -198,7 +198,7 @@ impl Material {
     pub fn coat_normal(&self, surface: &SurfacePoint, at: &TexturePoint) -> Option<Vec3> {
         match self {
             Self::Principled(material) => material.coat_normal(surface, at),
-            Self::Embossed(embossed) => embossed.material.coat_normal(surface, at),
+            Self::Perturbed(perturbed) => perturbed.material.coat_normal(surface, at),
             _ => None,
         }
     }
@@ -213,14 +213,14 @@ impl Material {
     }
 
     /// Returns the dependences of its textures and its relief, beside the parameters.
-    pub fn needs(&self) -> Needs {
+    pub fn needs(&self) -> RequiredInputs {
         match self {
             Self::Diffuse { reflectance } => reflectance.needs(),
             Self::Conductor {
                 index, roughness, ..
             } => index.needs().and(roughness.needs()),
             Self::Dielectric { roughness, .. } => roughness.needs(),
-            Self::ThinDielectric { .. } => Needs::NOTHING,
+            Self::ThinDielectric { .. } => RequiredInputs::NOTHING,
             Self::DiffuseTransmission {
                 reflectance,
                 transmittance,
@@ -235,7 +235,7 @@ impl Material {
                 parts.and(mixture.amount.needs())
             }
             // Tangents, and the width of a pixel between heights that are compared.
-            Self::Embossed(_) => Needs::ALL,
+            Self::Perturbed(_) => RequiredInputs::ALL,
         }
     }
 
@@ -279,7 +279,7 @@ impl Material {
             Self::CoatedConductor(material) => material.bsdf(at, lanes),
             Self::Principled(material) => material.bsdf(at, lanes),
             Self::Mix(mixture) => mixture.materials[0].bsdf(at, lanes),
-            Self::Embossed(embossed) => embossed.material.bsdf(at, lanes),
+            Self::Perturbed(perturbed) => perturbed.material.bsdf(at, lanes),
         }
     }
 }

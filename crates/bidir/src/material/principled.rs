@@ -6,7 +6,7 @@ use crate::bsdf::{Bsdf, Principled, PrincipledCoat, PrincipledParameters, Wall};
 use crate::math::{Vec2, Vec3, sqr};
 use crate::shape::SurfacePoint;
 use crate::spectrum::{Lanes, Rgb};
-use crate::texture::{ColorTexture, FloatTexture, Needs, TexturePoint};
+use crate::texture::{ColorTexture, FloatTexture, RequiredInputs, TexturePoint};
 
 /// A colour times a texture.
 #[derive(Clone, Debug)]
@@ -39,10 +39,10 @@ impl ScaledColor {
         self.texture.is_none() && self.factor.iter().all(is_one)
     }
 
-    fn needs(&self) -> Needs {
+    fn needs(&self) -> RequiredInputs {
         self.texture
             .as_ref()
-            .map_or(Needs::NOTHING, ColorTexture::needs)
+            .map_or(RequiredInputs::NOTHING, ColorTexture::needs)
     }
 
     /// Returns the product at a point.
@@ -86,10 +86,10 @@ impl ScaledFloat {
         self.factor * texel
     }
 
-    fn needs(&self) -> Needs {
+    fn needs(&self) -> RequiredInputs {
         self.texture
             .as_ref()
-            .map_or(Needs::NOTHING, FloatTexture::needs)
+            .map_or(RequiredInputs::NOTHING, FloatTexture::needs)
     }
 
     /// Returns the product between 0 and 1; where the number is 0 nothing is looked up.
@@ -228,7 +228,7 @@ impl PrincipledMaterial {
         PrincipledCoat { cover, alpha }
     }
 
-    pub(super) fn needs(&self) -> Needs {
+    pub(super) fn needs(&self) -> RequiredInputs {
         let colors = [
             &self.color,
             &self.specular_color,
@@ -247,15 +247,15 @@ impl PrincipledMaterial {
         ];
         let has_sides = self.coat_normal.is_some() || self.anisotropy.strength > 0.0;
         let sides = if has_sides {
-            Needs::ALL
+            RequiredInputs::ALL
         } else {
-            Needs::NOTHING
+            RequiredInputs::NOTHING
         };
         let grain = self.anisotropy.texture.as_ref();
         (colors.into_iter().map(ScaledColor::needs))
             .chain(numbers.into_iter().map(ScaledFloat::needs))
             .chain(grain.map(ColorTexture::needs))
-            .fold(sides, Needs::and)
+            .fold(sides, RequiredInputs::and)
     }
 
     /// Returns the scattering at a point. Parts that the material lacks are not looked up.

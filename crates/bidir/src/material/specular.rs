@@ -26,7 +26,7 @@ impl Material {
             Self::CoatedConductor(material) => material.may_be_specular(),
             Self::Principled(material) => material.may_be_specular(),
             Self::Mix(mixture) => mixture.may_be_specular(),
-            Self::Embossed(embossed) => embossed.material.may_be_specular(),
+            Self::Perturbed(perturbed) => perturbed.material.may_be_specular(),
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Images laid over a surface: the texel at the point, or four around it interpolated, in linear
 //! values; or as much of it as a pixel covers, from a smaller copy.
 
-use super::{Image, Mapping, Needs, TexturePoint};
+use super::{Image, Mapping, RequiredInputs, TexturePoint};
 use crate::math::{Vec2, Vec3, sqr};
 use std::sync::Arc;
 
@@ -72,10 +72,10 @@ pub struct ImageMap<const N: usize> {
 }
 
 impl<const N: usize> ImageMap<N> {
-    pub(super) fn needs(&self) -> Needs {
+    pub(super) fn needs(&self) -> RequiredInputs {
         let own = match self.filter {
-            ImageFilter::Point | ImageFilter::Bilinear => Needs::NOTHING,
-            ImageFilter::Trilinear => Needs {
+            ImageFilter::Point | ImageFilter::Bilinear => RequiredInputs::NOTHING,
+            ImageFilter::Trilinear => RequiredInputs {
                 surface: false,
                 footprint: true,
             },

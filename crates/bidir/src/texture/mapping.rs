@@ -3,7 +3,7 @@
 //! Texture space is that of the `Texture` directive in a scene file; here is the map to it from
 //! the world. Points of shared objects are mapped where they stand in the world.
 
-use super::{Footprint, Needs, TexturePoint};
+use super::{Footprint, RequiredInputs, TexturePoint};
 use crate::math::{Affine2, Affine3A, PI, Vec2, Vec3, sqr};
 
 /// The space of a texture.
@@ -95,10 +95,12 @@ impl Mapping {
         }
     }
 
-    pub(super) fn needs(&self) -> Needs {
+    pub(super) fn needs(&self) -> RequiredInputs {
         match self {
-            Self::Parameters { .. } | Self::Affine(_) => Needs::NOTHING,
-            Self::Spherical(_) | Self::Cylindrical(_) | Self::Planar { .. } => Needs::SURFACE,
+            Self::Parameters { .. } | Self::Affine(_) => RequiredInputs::NOTHING,
+            Self::Spherical(_) | Self::Cylindrical(_) | Self::Planar { .. } => {
+                RequiredInputs::SURFACE
+            }
         }
     }
 

@@ -58,7 +58,7 @@ pub trait Value: Copy + Debug {
     fn look_up(map: &Self::Map, at: &TexturePoint) -> Self;
 
     /// Returns the dependences of a look-up.
-    fn needs(map: &Self::Map) -> Needs;
+    fn needs(map: &Self::Map) -> RequiredInputs;
 
     /// Returns the colour as such a value: a number is the mean of its channels.
     fn of_color(color: Rgb) -> Self;
@@ -82,7 +82,7 @@ impl Value for f32 {
         map.eval(at)[0]
     }
 
-    fn needs(map: &ImageMap<1>) -> Needs {
+    fn needs(map: &ImageMap<1>) -> RequiredInputs {
         map.needs()
     }
 
@@ -110,7 +110,7 @@ impl Value for Rgb {
         map.eval(at)
     }
 
-    fn needs(map: &ImageMap<3>) -> Needs {
+    fn needs(map: &ImageMap<3>) -> RequiredInputs {
         map.needs()
     }
 
@@ -205,18 +205,18 @@ impl<T: Value> Texture<T> {
     }
 
     /// Returns the dependences of its values beside the parameters (u, v).
-    pub fn needs(&self) -> Needs {
+    pub fn needs(&self) -> RequiredInputs {
         let own = match self {
             Self::Image(map) => T::needs(map),
             Self::Bilerp(bilerp) => bilerp.mapping.needs(),
             Self::Checkerboard(board) => board.cells.needs(),
             Self::Dots(dots) => dots.mapping.needs(),
-            Self::DirectionMix(_) => Needs::SURFACE,
-            Self::Noise(_) | Self::Marble(_) => Needs::ALL,
-            Self::Constant(_) | Self::Scale(_) | Self::Mix(_) => Needs::NOTHING,
+            Self::DirectionMix(_) => RequiredInputs::SURFACE,
+            Self::Noise(_) | Self::Marble(_) => RequiredInputs::ALL,
+            Self::Constant(_) | Self::Scale(_) | Self::Mix(_) => RequiredInputs::NOTHING,
         };
         let parts = self.parts().iter().map(Self::needs);
-        let all = parts.fold(own, Needs::and);
+        let all = parts.fold(own, RequiredInputs::and);
         self.number().map_or(all, |number| all.and(number.needs()))
     }
 
@@ -277,14 +277,14 @@ impl<T: Value> DirectionMix<T> {
 
 /// The dependences of a texture beside the parameters (u, v).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Needs {
+pub struct RequiredInputs {
     /// True where the point or the normal matters.
     pub surface: bool,
     /// True where it matters how wide a pixel is, or where parameters lead.
     pub footprint: bool,
 }
 
-impl Needs {
+impl RequiredInputs {
     /// The parameters alone.
     pub const NOTHING: Self = Self {
         surface: false,

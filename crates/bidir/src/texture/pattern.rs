@@ -3,7 +3,7 @@
 //! Edges are sharp: a pixel's samples average them.
 
 use super::noise::noise;
-use super::{Mapping, Needs, Texture, TexturePoint, TextureSpace, Value};
+use super::{Mapping, RequiredInputs, Texture, TexturePoint, TextureSpace, Value};
 use crate::math::{Vec2, Vec3};
 
 /// Values at the corners of the unit square of (s, t), and between them.
@@ -42,10 +42,10 @@ pub struct Checkerboard<T: Value> {
 }
 
 impl Cells {
-    pub(super) fn needs(&self) -> Needs {
+    pub(super) fn needs(&self) -> RequiredInputs {
         match self {
             Self::Plane(mapping) => mapping.needs(),
-            Self::Space(_) => Needs::SURFACE,
+            Self::Space(_) => RequiredInputs::SURFACE,
         }
     }
 

@@ -279,7 +279,7 @@ pub(crate) fn slant(x: f32, y: f32) -> NormalMap {
 
 /// The material under a map of normals, 45° steep.
 pub(crate) fn slanted(material: Material) -> Material {
-    material.embossed(Relief::NormalMap(slant(0.9, -0.45)))
+    material.with_relief(Relief::NormalMap(slant(0.9, -0.45)))
 }
 
 /// The parallelogram at `corner` with edges `a` and `b`; the front is the side of a × b.

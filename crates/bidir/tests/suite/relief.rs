@@ -89,7 +89,7 @@ fn floor() -> Material {
             cells,
         })),
     };
-    Material::Mix(Arc::new(mixture)).embossed(bumps())
+    Material::Mix(Arc::new(mixture)).with_relief(bumps())
 }
 
 fn add_floor(builder: &mut SceneBuilder, material: Material) {
@@ -106,7 +106,7 @@ fn room() -> Shot {
     let light = quad(Vec3::new(-0.7, 1.9, -0.5), Vec3::X * 1.4, Vec3::Z);
     builder.shape(Shape::Mesh(light), wall, emission([6.0, 5.0, 4.0]));
     add_floor(&mut builder, floor());
-    let ball = builder.material(metal(0.4).embossed(normals()));
+    let ball = builder.material(metal(0.4).with_relief(normals()));
     builder.shape(sphere(Vec3::new(-0.5, -0.6, 0.9), 0.6), ball, None);
     builder.build().expect("the room is valid")
 }
@@ -157,7 +157,7 @@ fn relief_changes_the_picture() {
     };
     let smooth = mean(&|material| material);
     for relief in [bumps(), normals(), slant()] {
-        let rough = mean(&|material| material.embossed(relief.clone()));
+        let rough = mean(&|material| material.with_relief(relief.clone()));
         let name = format!("{smooth} and {rough}: {relief:.30?}");
         assert!((smooth - rough).abs() > 0.01 * smooth, "{name:.60}");
     }
@@ -238,10 +238,14 @@ fn densities_of_light_walks_under_a_slant_integrate_to_one() {
     let wo = Vec3::new(0.3, 0.9, -0.2).normalize();
     for (x, y) in [(0.0, 0.0), (0.4, 0.4), (0.0, -0.6), (-0.9, 0.45)] {
         let relief = Relief::NormalMap(common::slant(x, y));
-        let drawn = above(diffuse([0.5; 3]).embossed(relief), wo, |seen, job, wi| {
-            let event = seen.event(seen.wo, wi, TransportMode::Importance);
-            event.pdf(job)
-        });
+        let drawn = above(
+            diffuse([0.5; 3]).with_relief(relief),
+            wo,
+            |seen, job, wi| {
+                let event = seen.event(seen.wo, wi, TransportMode::Importance);
+                event.pdf(job)
+            },
+        );
         assert!((drawn - 1.0).abs() < 2e-3, "{x}, {y}: {drawn}");
     }
 }
@@ -257,7 +261,7 @@ fn relief_is_not_black_at_grazing_angles() {
             let wo = Vec3::new(x * sin, cos, y * sin);
             for (x, y) in slants {
                 let relief = Relief::NormalMap(common::slant(x, y));
-                let kept = furnace(diffuse([1.0; 3]).embossed(relief), wo);
+                let kept = furnace(diffuse([1.0; 3]).with_relief(relief), wo);
                 // A slope s that faces the viewer loses the light below its horizon.
                 let slope = libm::hypotf(x, y);
                 let least = (1.0 + 1.0 / libm::hypotf(slope, 1.0)) / 2.0 - 5e-3;
@@ -316,7 +320,7 @@ fn plastic_keeps_its_light_under_relief() {
             let flat = shown(&material, degrees);
             for away in [0.35, 0.9] {
                 let relief = Relief::NormalMap(common::slant(away, 0.1));
-                let kept = shown(&material.clone().embossed(relief), degrees) / flat;
+                let kept = shown(&material.clone().with_relief(relief), degrees) / flat;
                 // Slopes that face the viewer lose the light below their horizons: at 40°, 0.13 of it.
                 assert!(
                     kept > 0.8 && kept * flat < 1.02,

@@ -122,7 +122,7 @@ fn materials() -> [Material; 8] {
         bitangent: Bitangent::AlongV,
     };
     [
-        metal.embossed(Relief::NormalMap(slant)),
+        metal.with_relief(Relief::NormalMap(slant)),
         glass(0.0),
         glass(0.3),
         Material::Mix(Arc::new(mixed)),

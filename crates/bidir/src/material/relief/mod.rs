@@ -58,7 +58,7 @@ fn fronted(surface: &SurfacePoint, normal: Vec3, tangent: Vec3) -> Frame {
 
 /// A material under a relief.
 #[derive(Clone, Debug)]
-pub struct Embossed {
+pub struct Perturbed {
     pub(super) material: Material,
     pub(super) relief: Relief,
 }
@@ -72,9 +72,9 @@ impl Material {
                 wall: Wall::Thin,
                 ..(*material).clone()
             })),
-            Self::Embossed(embossed) => {
-                let material = embossed.material.clone().into_thin();
-                material.embossed(embossed.relief.clone())
+            Self::Perturbed(perturbed) => {
+                let material = perturbed.material.clone().into_thin();
+                material.with_relief(perturbed.relief.clone())
             }
             material => material,
         }
@@ -82,17 +82,17 @@ impl Material {
 
     /// Returns the material under `relief`; of a mixture every part that has none of its own.
     #[must_use]
-    pub fn embossed(self, relief: Relief) -> Self {
+    pub fn with_relief(self, relief: Relief) -> Self {
         match self {
-            Self::Embossed(_) => self,
+            Self::Perturbed(_) => self,
             Self::Mix(mixture) => {
-                let emboss = |material: &Self| material.clone().embossed(relief.clone());
+                let perturb = |material: &Self| material.clone().with_relief(relief.clone());
                 Self::Mix(Arc::new(Mixture {
-                    materials: mixture.materials.each_ref().map(emboss),
+                    materials: mixture.materials.each_ref().map(perturb),
                     amount: mixture.amount.clone(),
                 }))
             }
-            material => Self::Embossed(Arc::new(Embossed { material, relief })),
+            material => Self::Perturbed(Arc::new(Perturbed { material, relief })),
         }
     }
 }

@@ -80,7 +80,7 @@ impl Reader<'_, '_> {
         let Some(info) = &self.described.normal_texture else {
             return Ok(material);
         };
-        Ok(material.embossed(Relief::NormalMap(self.normal_map(info)?)))
+        Ok(material.with_relief(Relief::NormalMap(self.normal_map(info)?)))
     }
 
     fn normal_map(&mut self, info: &TextureInfo) -> Result<NormalMap, GltfFault> {

@@ -130,7 +130,7 @@ impl<'a> Materials<'a> {
         let relief = parameters.relief()?;
         parameters.reader.finish()?;
         let material = match relief {
-            Some(relief) => material.embossed(relief),
+            Some(relief) => material.with_relief(relief),
             None => material,
         };
         Ok(Some(material.into()))
