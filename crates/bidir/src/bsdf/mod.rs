@@ -49,7 +49,7 @@ pub use dielectric::Dielectric;
 pub use diffuse::Diffuse;
 pub use diffuse_transmission::DiffuseTransmission;
 pub use multiple::FacetScattering;
-pub use principled::{Layer, Principled, PrincipledCoat, PrincipledParameters, Wall};
+pub use principled::{Layer, Principled, PrincipledCoat, PrincipledParameters, Thickness};
 pub use thin_dielectric::ThinDielectric;
 
 use crate::math::{Vec2, Vec3};

@@ -2,7 +2,7 @@
 
 use super::{NormalMap, unit};
 use crate::bsdf::microfacet::Ggx;
-use crate::bsdf::{Bsdf, Principled, PrincipledCoat, PrincipledParameters, Wall};
+use crate::bsdf::{Bsdf, Principled, PrincipledCoat, PrincipledParameters, Thickness};
 use crate::math::{Vec2, Vec3, sqr};
 use crate::shape::SurfacePoint;
 use crate::spectrum::{Lanes, Rgb};
@@ -153,7 +153,7 @@ pub struct PrincipledMaterial {
     /// The share of it that is transparent.
     pub transmission: ScaledFloat,
     /// The medium behind the transparent part.
-    pub wall: Wall,
+    pub thickness: Thickness,
     /// The share of the rest that lets light through diffusely.
     pub diffuse_transmission: ScaledFloat,
     /// The colour of that.
@@ -188,7 +188,7 @@ impl Default for PrincipledMaterial {
             specular: one,
             specular_color: white.clone(),
             transmission: zero.clone(),
-            wall: Wall::Thin,
+            thickness: Thickness::ThinWalled,
             diffuse_transmission: zero.clone(),
             diffuse_transmission_color: white,
             coat: zero.clone(),
@@ -268,7 +268,7 @@ impl PrincipledMaterial {
             ior: self.ior,
             specular: self.specular.share(at),
             transmission: self.transmission.share(at),
-            wall: self.wall,
+            thickness: self.thickness,
             diffuse_transmission: self.diffuse_transmission.share(at),
             coat: self.coat(at),
             ..PrincipledParameters::plain(albedo(&self.color), ggx)

@@ -4,7 +4,7 @@
 pub(crate) mod statistics;
 pub(crate) mod walks;
 
-use bidir::bsdf::{FacetScattering, Wall};
+use bidir::bsdf::{FacetScattering, Thickness};
 use bidir::camera::{Camera, Perspective, PerspectiveSettings};
 use bidir::driver::Settings;
 use bidir::film::{FilmSettings, Filter};
@@ -225,7 +225,7 @@ pub(crate) fn principled_rough() -> Material {
             texture: None,
         },
         transmission: ScaledFloat::constant(0.4),
-        wall: Wall::Solid,
+        thickness: Thickness::Solid,
         diffuse_transmission: ScaledFloat::constant(0.3),
         coat: ScaledFloat::constant(0.7),
         coat_roughness: ScaledFloat::constant(0.5),
@@ -262,7 +262,7 @@ pub(crate) fn principled_smooth() -> Material {
         metallic: ScaledFloat::constant(0.1),
         roughness: ScaledFloat::constant(0.0),
         transmission: ScaledFloat::constant(0.5),
-        wall: Wall::Solid,
+        thickness: Thickness::Solid,
         coat: ScaledFloat::constant(0.8),
         ..PrincipledMaterial::default()
     }))

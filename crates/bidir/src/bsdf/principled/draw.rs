@@ -1,7 +1,7 @@
 //! Drawing directions: a lobe by about what it scatters, then a direction from it. The density is the
 //! sum over all lobes.
 
-use super::{Lobe, Principled, Probs, Wall, coat_fresnel, mirrored_below};
+use super::{Lobe, Principled, Probs, Thickness, coat_fresnel, mirrored_below};
 use crate::bsdf::dielectric::refract;
 use crate::bsdf::multiple::Spread;
 use crate::bsdf::{BsdfSample, TransportMode, same_hemisphere};
@@ -91,13 +91,13 @@ impl Principled {
         if rest < self.reflection_prob(cos)? {
             return same_hemisphere(wo, reflected).then_some(reflected);
         }
-        let wi = match self.wall {
+        let wi = match self.thickness {
             // The mirrored direction has to leave on the side of `wo` to be mirrored below.
-            Wall::Thin => {
+            Thickness::ThinWalled => {
                 let stays = same_hemisphere(wo, reflected);
                 stays.then(|| mirrored_below(reflected))?
             }
-            Wall::Solid => refract(wo, m, self.interface().eta_across(wo))?,
+            Thickness::Solid => refract(wo, m, self.interface().eta_across(wo))?,
         };
         (wi.z != 0.0 && !same_hemisphere(wo, wi)).then_some(wi)
     }
@@ -138,9 +138,9 @@ impl Principled {
         if rest < self.reflection_prob(wo.z)? {
             return Some(self.mirror(wo));
         }
-        let (wi, scale, [index_o, index_i]) = match self.wall {
-            Wall::Thin => (-wo, 1.0, [1.0; 2]),
-            Wall::Solid => {
+        let (wi, scale, [index_o, index_i]) = match self.thickness {
+            Thickness::ThinWalled => (-wo, 1.0, [1.0; 2]),
+            Thickness::Solid => {
                 let interface = self.interface();
                 let wi = refract(wo, Vec3::Z, interface.eta_across(wo))?;
                 let indices = [wo, wi].map(|w| interface.eta_at(w));

@@ -25,7 +25,7 @@ mod under;
 mod value;
 
 pub use layers::Layer;
-pub use parameters::{Coat as PrincipledCoat, PrincipledParameters, Wall};
+pub use parameters::{Coat as PrincipledCoat, PrincipledParameters, Thickness};
 
 use super::dielectric::{Dielectric, Lobe as Side};
 use super::fresnel;
@@ -75,7 +75,7 @@ pub struct Principled {
     lost: f32,
     /// k̄ of a transparent solid's facets, likewise.
     lost_through: Sides,
-    wall: Wall,
+    thickness: Thickness,
     /// The normal of the coat, in the frame of the base. Unit: 1/[`i16::MAX`].
     coat_normal: [i16; 3],
 }
@@ -131,7 +131,7 @@ impl Principled {
     /// Returns true where no coat and no sheen lies on the side of `w`: within a solid.
     #[inline]
     fn is_bare(&self, w: Vec3) -> bool {
-        self.wall == Wall::Solid && w.z < 0.0
+        self.thickness == Thickness::Solid && w.z < 0.0
     }
 
     /// Returns Ẽ of the coat, times how much it covers.
@@ -179,7 +179,7 @@ impl Principled {
     /// Returns the part of light that facets of the transparent part reflect; `cos` is positive outside.
     #[inline]
     fn clear_reflectance(&self, cos: f32) -> f32 {
-        let cos = if self.wall == Wall::Solid {
+        let cos = if self.thickness == Thickness::Solid {
             cos
         } else {
             cos.abs()
@@ -321,7 +321,7 @@ impl Principled {
 #[cfg(test)]
 impl Principled {
     pub(super) fn is_solid(&self) -> bool {
-        self.wall == Wall::Solid
+        self.thickness == Thickness::Solid
     }
 
     pub(super) fn index_inside(&self) -> f32 {

@@ -3,7 +3,7 @@
 //! mirrors either way, in proportion to Fresnel's mean reflectance. What crosses takes the base colour once.
 
 use super::value::LobeValue;
-use super::{Principled, Wall};
+use super::{Principled, Thickness};
 use crate::bsdf::multiple::{self, Spread};
 use crate::bsdf::{TransportMode, same_hemisphere};
 use crate::math::{INV_PI, Vec3};
@@ -61,7 +61,7 @@ impl Principled {
     /// Returns the part of the surface that is a transparent thin wall.
     #[inline]
     fn pane(&self) -> f32 {
-        if self.wall == Wall::Thin {
+        if self.thickness == Thickness::ThinWalled {
             self.glass
         } else {
             0.0

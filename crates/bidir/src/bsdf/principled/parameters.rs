@@ -10,9 +10,9 @@ use crate::spectrum::Spectrum;
 
 /// The medium behind a transparent surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Wall {
+pub enum Thickness {
     /// The same as before it: light goes on without being bent.
-    Thin,
+    ThinWalled,
     /// The inside of a solid.
     Solid,
 }
@@ -46,7 +46,7 @@ pub struct PrincipledParameters {
     /// The share of the dielectric that is transparent.
     pub transmission: f32,
     /// The medium behind the surface.
-    pub wall: Wall,
+    pub thickness: Thickness,
     /// The share of the rest that lets light through diffusely.
     pub diffuse_transmission: f32,
     /// The colour of that.
@@ -71,7 +71,7 @@ impl PrincipledParameters {
             specular: 1.0,
             specular_color: Spectrum::ONE,
             transmission: 0.0,
-            wall: Wall::Thin,
+            thickness: Thickness::ThinWalled,
             diffuse_transmission: 0.0,
             diffuse_transmission_color: Spectrum::ONE,
             coat: Coat {
@@ -84,13 +84,13 @@ impl PrincipledParameters {
     }
 }
 
-/// Returns the wall that a surface of this relative index is. Indices closer to 1 bend nothing that could be seen.
-fn wall(described: Wall, eta: f32) -> Wall {
+/// Returns the thickness of a surface of this relative index. Indices closer to 1 bend nothing that could be seen.
+fn thickness(described: Thickness, eta: f32) -> Thickness {
     const LEAST_BEND: f32 = 1e-3;
     if (eta - 1.0).abs() > LEAST_BEND && eta > 0.0 {
         described
     } else {
-        Wall::Thin
+        Thickness::ThinWalled
     }
 }
 
@@ -122,8 +122,8 @@ impl Principled {
         } else {
             0.0
         };
-        let wall = wall(p.wall, p.ior);
-        let is_pane = glass > 0.0 && wall == Wall::Thin;
+        let thickness = thickness(p.thickness, p.ior);
+        let is_pane = glass > 0.0 && thickness == Thickness::ThinWalled;
         let f0 = f0 * opaque;
         let mirrors = p.metallic > 0.0 || f0.max_lane() > LEAST_REFLECTANCE || is_pane;
         let lost = (mirrors && !p.ggx.is_smooth()).then(|| multiple::mean_of_mirrors(p.ggx));
@@ -146,7 +146,7 @@ impl Principled {
             sheen_alpha: p.sheen_alpha.clamp(SHEEN_ALPHA, 1.0),
             lost: lost.unwrap_or(0.0),
             lost_through: Sides::NONE,
-            wall,
+            thickness,
             coat_normal: super::layers::UPRIGHT,
         }
         .with_lost_through()
@@ -157,7 +157,7 @@ impl Principled {
         let eta = self.eta / index;
         Self {
             eta,
-            wall: wall(Wall::Solid, eta),
+            thickness: thickness(Thickness::Solid, eta),
             ..self
         }
         .with_lost_through()
@@ -165,7 +165,8 @@ impl Principled {
 
     /// The same with what the facets of its transparent part lose by its index.
     fn with_lost_through(self) -> Self {
-        let is_solid = self.glass > 0.0 && self.wall == Wall::Solid && !self.ggx.is_smooth();
+        let is_solid =
+            self.glass > 0.0 && self.thickness == Thickness::Solid && !self.ggx.is_smooth();
         Self {
             lost_through: if is_solid {
                 Sides::new(self.ggx, self.eta)
@@ -179,9 +180,9 @@ impl Principled {
     pub(in crate::bsdf) fn examples() -> impl Iterator<Item = (&'static str, Self)> {
         let color = Spectrum([0.8, 0.5, 0.1, 0.9]);
         let plain = |x, y| PrincipledParameters::plain(color, Ggx::new(x, y));
-        let glass = |alpha, wall| PrincipledParameters {
+        let glass = |alpha, thickness| PrincipledParameters {
             transmission: 1.0,
-            wall,
+            thickness,
             ..plain(alpha, alpha)
         };
         let coated = |alpha: f32, coat: f32| PrincipledParameters {
@@ -216,7 +217,7 @@ impl Principled {
             metallic: 0.2,
             specular: 0.7,
             ior: 1.8,
-            ..glass(0.4, Wall::Solid)
+            ..glass(0.4, Thickness::Solid)
         };
         let lacquered = PrincipledParameters {
             metallic: 1.0,
@@ -224,7 +225,7 @@ impl Principled {
         };
         let mixed = PrincipledParameters {
             transmission: 0.6,
-            wall: Wall::Solid,
+            thickness: Thickness::Solid,
             ..coated(0.0, 0.0)
         };
         [
@@ -236,10 +237,10 @@ impl Principled {
             ("principled metal, smooth under smooth coat", lacquered),
             ("principled cloth", cloth),
             ("principled leaf", leaf),
-            ("principled pane, rough", glass(0.3, Wall::Thin)),
-            ("principled pane", glass(0.0, Wall::Thin)),
-            ("principled glass, rough", glass(0.3, Wall::Solid)),
-            ("principled glass", glass(0.0, Wall::Solid)),
+            ("principled pane, rough", glass(0.3, Thickness::ThinWalled)),
+            ("principled pane", glass(0.0, Thickness::ThinWalled)),
+            ("principled glass, rough", glass(0.3, Thickness::Solid)),
+            ("principled glass", glass(0.0, Thickness::Solid)),
             ("principled, half of glass", half),
             (
                 "principled, smooth and part of glass under smooth coat",

@@ -1,4 +1,4 @@
-use super::{Principled, PrincipledCoat, PrincipledParameters, Wall, sheen, under};
+use super::{Principled, PrincipledCoat, PrincipledParameters, Thickness, sheen, under};
 use crate::bsdf::microfacet::Ggx;
 use crate::bsdf::tests::numbers;
 use crate::bsdf::{Bsdf, CoatedConductor, TransportMode, fresnel};
@@ -153,10 +153,10 @@ fn white_surfaces_gain_nothing_in_a_furnace() {
                 0.85,
             );
         }
-        for wall in [Wall::Thin, Wall::Solid] {
+        for thickness in [Thickness::ThinWalled, Thickness::Solid] {
             let clear = PrincipledParameters {
                 transmission: 1.0,
-                wall,
+                thickness,
                 ..plain
             };
             check_furnace(&clear, 0.95);
@@ -211,8 +211,8 @@ fn white_facets_vanish_in_a_furnace() {
                 ..plain
             };
             check_furnace(&glass, 0.975);
-            let wall = Wall::Solid;
-            check_furnace(&PrincipledParameters { wall, ..glass }, least);
+            let thickness = Thickness::Solid;
+            check_furnace(&PrincipledParameters { thickness, ..glass }, least);
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Value and densities of the scattering: sums over all lobes that are not Dirac distributions.
 
-use super::{EVEN, Layers, Principled, Side, Wall, coat_fresnel, mirrored_below, sheen};
+use super::{EVEN, Layers, Principled, Side, Thickness, coat_fresnel, mirrored_below, sheen};
 use crate::bsdf::{BsdfValue, TransportMode, same_hemisphere};
 use crate::math::{Vec3, warp};
 use crate::spectrum::Spectrum;
@@ -138,7 +138,7 @@ impl Principled {
             return LobeValue::NONE;
         }
         let crossing_prob = |cos| 1.0 - self.reflection_prob(cos).unwrap_or(1.0);
-        if self.wall == Wall::Thin {
+        if self.thickness == Thickness::ThinWalled {
             let mirror = self.ggx.mirror(wo, mirrored_below(wi));
             let prob = crossing_prob(mirror.cos);
             return LobeValue {

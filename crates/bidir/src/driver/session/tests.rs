@@ -1,7 +1,7 @@
 //! The meaning of lanes belongs to groups of samples, and only the edges of light transport know their order.
 
 use super::*;
-use crate::bsdf::{FacetScattering, Wall};
+use crate::bsdf::{FacetScattering, Thickness};
 use crate::film::{Aov, FilmSettings, Filter, Layers};
 use crate::light::{EmissionSides, InfiniteLight, Light};
 use crate::material::{
@@ -66,7 +66,7 @@ fn principled() -> Material {
         roughness: ScaledFloat::constant(0.5),
         specular_color: ScaledColor::constant([0.3, 0.9, 1.4]),
         transmission: ScaledFloat::constant(0.4),
-        wall: Wall::Solid,
+        thickness: Thickness::Solid,
         diffuse_transmission: ScaledFloat::constant(0.3),
         diffuse_transmission_color: ScaledColor::constant([0.2, 0.9, 0.4]),
         coat: ScaledFloat::constant(0.7),

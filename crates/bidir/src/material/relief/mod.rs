@@ -6,7 +6,7 @@
 //! ([`ScatteringEvent::scatter`](crate::path::ScatteringEvent::scatter)).
 
 use super::{Material, Mixture, PrincipledMaterial};
-use crate::bsdf::Wall;
+use crate::bsdf::Thickness;
 use crate::math::{Frame, Vec2, Vec3};
 use crate::shape::{Differentials, SurfacePoint};
 use crate::texture::{ColorTexture, FloatTexture, TexturePoint};
@@ -64,12 +64,12 @@ pub struct Perturbed {
 }
 
 impl Material {
-    /// Returns the wall of a principled material without what is behind it; other materials as they are.
+    /// Makes a principled material thin-walled; other materials as they are.
     #[must_use]
     pub fn into_thin(self) -> Self {
         match self {
             Self::Principled(material) => Self::Principled(Arc::new(PrincipledMaterial {
-                wall: Wall::Thin,
+                thickness: Thickness::ThinWalled,
                 ..(*material).clone()
             })),
             Self::Perturbed(perturbed) => {

@@ -1,7 +1,7 @@
 //! The test of materials for Dirac distributions, against known answers and against draws.
 
 use super::*;
-use crate::bsdf::{FacetScattering, TransportMode, Wall};
+use crate::bsdf::{FacetScattering, Thickness, TransportMode};
 use crate::material::{Anisotropy, ConductorIndex};
 use crate::math::{ONE_MINUS_EPSILON, Vec2, Vec3};
 use crate::spectrum::Lanes;
@@ -205,7 +205,7 @@ fn principled_materials_are_specular_where_a_layer_is() {
         principled(|material| {
             (material.metallic, material.specular, material.roughness) = (zero(), zero(), zero());
             material.transmission = ScaledFloat::constant(transmission);
-            material.wall = Wall::Solid;
+            material.thickness = Thickness::Solid;
         })
     };
     check(true, [cloth(0.1)]);

@@ -7,7 +7,7 @@ use crate::gltf::place::{GltfFault, Place};
 use crate::gltf::texture::{Change, Lookup, Part, Textures};
 use crate::image::Encoding;
 use crate::text::number;
-use bidir::bsdf::Wall;
+use bidir::bsdf::Thickness;
 use bidir::light::EmissionSides;
 use bidir::material::{
     Anisotropy, Bitangent, Material, NormalMap, PrincipledMaterial, Relief, ScaledColor,
@@ -168,7 +168,7 @@ impl Reader<'_, '_> {
             material.diffuse_transmission_color = self.color(color, texture)?;
         }
         if self.volume().is_some() {
-            material.wall = Wall::Solid;
+            material.thickness = Thickness::Solid;
         }
         Ok(())
     }
