@@ -18,7 +18,7 @@ use super::coat::{
     Coat, Curve, Layer, METAL_SHAPES, MetalCoat, Reflections, Seen, all_orders, seen_through,
 };
 use super::microfacet::Ggx;
-use super::{BsdfSample, BsdfValue, Filling, fresnel, same_hemisphere};
+use super::{BsdfSample, BsdfValue, InterlayerMedium, fresnel, same_hemisphere};
 use crate::math::{INV_PI, Vec2, Vec3, sqr, warp};
 use crate::spectrum::Spectrum;
 
@@ -84,10 +84,10 @@ impl CoatedConductor {
         layer: &Layer,
         reflections: &Reflections,
         ggx: Ggx,
-        filling: &Filling,
+        medium: &InterlayerMedium,
         metal: CoatedMetal,
     ) -> Self {
-        let absorption = filling.absorption();
+        let absorption = medium.absorption();
         let coat = Coat::new(
             layer,
             ggx,
@@ -298,7 +298,7 @@ impl CoatedConductor {
             let (ggx, facets) = (Ggx::new(coat, coat), Ggx::new(metal[0], metal[1]));
             let (layer, alpha) = (Layer::new(eta, coat), facets.mean_alpha());
             let reflections = Reflections::new(&layer, alpha, thickness);
-            let filling = Filling {
+            let medium = InterlayerMedium {
                 thickness,
                 albedo: Spectrum::splat(0.0),
                 g: 0.0,
@@ -308,7 +308,7 @@ impl CoatedConductor {
                 k: Spectrum([2.4, 1.7, 1.6, 1.6]),
                 ggx: facets,
             };
-            Self::new(&layer, &reflections, ggx, &filling, metal)
+            Self::new(&layer, &reflections, ggx, &medium, metal)
         };
         [
             ("coated conductor smooth", coated(1.5, 0.0, [0.0; 2], 0.01)),

@@ -1,7 +1,7 @@
 //! f = F D G₂ / (4 |cosθ_o cosθ_i|) + T(wo) T(wi) (A(wo) A(wi) ρ Σ_k (ρ R)^k / (π η²) + M(wo, wi)),
 //! 1/sr: varnish, plastic, polished wood.
 //!
-//! The base is Lambertian, so light that interface and filling throw back comes to it as any diffuse
+//! The base is Lambertian, so light that interface and medium throw back comes to it as any diffuse
 //! light does: each round trip leaves the part ρ R of it ([`Filled`]). The sum over all k is
 //! 1 / (1 - ρ R): pbrt-v4's random walk in closed form [PBRT4, §14.3], without its limit of events.
 //!
@@ -31,7 +31,7 @@ pub struct CoatedDiffuse {
 
 /// The medium that fills a layer.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Filling {
+pub struct InterlayerMedium {
     /// The optical depth of the layer, scattering and absorption together.
     pub thickness: f32,
     /// The part of it that scatters.
@@ -40,7 +40,7 @@ pub struct Filling {
     pub g: f32,
 }
 
-impl Filling {
+impl InterlayerMedium {
     /// Returns the optical depth of absorption.
     #[inline]
     pub(crate) fn absorption(&self) -> Spectrum {

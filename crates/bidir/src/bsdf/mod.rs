@@ -43,7 +43,7 @@ mod tests;
 mod thin_dielectric;
 
 pub use coated_conductor::{CoatedConductor, CoatedMetal};
-pub use coated_diffuse::{CoatedDiffuse, Filling};
+pub use coated_diffuse::{CoatedDiffuse, InterlayerMedium};
 pub use conductor::Conductor;
 pub use dielectric::Dielectric;
 pub use diffuse::Diffuse;

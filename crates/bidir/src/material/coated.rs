@@ -5,7 +5,7 @@
 
 use super::{Roughness, unit};
 use crate::bsdf::coat::{Filled, Layer, Reflections, Slab};
-use crate::bsdf::{Bsdf, CoatedConductor, CoatedDiffuse, CoatedMetal, Filling};
+use crate::bsdf::{Bsdf, CoatedConductor, CoatedDiffuse, CoatedMetal, InterlayerMedium};
 use crate::math::{Vec2, sqr};
 use crate::spectrum::Lanes;
 use crate::texture::{ColorTexture, FloatTexture, RequiredInputs, TexturePoint};
@@ -29,12 +29,12 @@ pub struct CoatSettings {
 
 impl CoatSettings {
     fn needs(&self) -> RequiredInputs {
-        let filling = self.thickness.needs().and(self.g.needs());
-        filling.and(self.albedo.needs()).and(self.roughness.needs())
+        let medium = self.thickness.needs().and(self.g.needs());
+        medium.and(self.albedo.needs()).and(self.roughness.needs())
     }
 
-    fn filling(&self, at: &TexturePoint, lanes: Lanes) -> Filling {
-        Filling {
+    fn medium(&self, at: &TexturePoint, lanes: Lanes) -> InterlayerMedium {
+        InterlayerMedium {
             thickness: self.thickness.eval(at).max(0.0),
             // The empty lane repeats another, so that grey layers have one table.
             albedo: lanes.unbounded(unit(self.albedo.eval(at))),
@@ -126,14 +126,14 @@ impl Layers {
 
 /// Filled layers, by slope, optical depth, mean cosine and albedo of scattering.
 #[derive(Clone, Debug)]
-struct Fillings {
+struct InterlayerTables {
     depths: Axis,
     cosines: Axis,
     albedos: Axis,
     tables: Arc<[Filled]>,
 }
 
-impl Fillings {
+impl InterlayerTables {
     fn new(coat: &CoatSettings, layers: &Layers) -> Self {
         let nodes = (0..=8).map(|i| 4.0 * sqr(i as f32 / 8.0));
         let mut depths = Axis::of_texture(&coat.thickness, nodes);
@@ -164,16 +164,16 @@ impl Fillings {
     }
 
     /// Returns the tables of each lane, for the slope between two of the layers.
-    fn at(&self, slope: Position, filling: &Filling) -> [Filled; 4] {
+    fn at(&self, slope: Position, medium: &InterlayerMedium) -> [Filled; 4] {
         if let [only] = *self.tables {
             return [only; 4];
         }
-        let depth = self.depths.locate(filling.thickness);
-        let cosine = self.cosines.locate(filling.g);
+        let depth = self.depths.locate(medium.thickness);
+        let cosine = self.cosines.locate(medium.g);
         let at = |albedo| self.mixed([slope, depth, cosine, self.albedos.locate(albedo)]);
-        let first = at(filling.albedo[0]);
-        filling.albedo.0.map(|albedo| {
-            if albedo.to_bits() == filling.albedo[0].to_bits() {
+        let first = at(medium.albedo[0]);
+        medium.albedo.0.map(|albedo| {
+            if albedo.to_bits() == medium.albedo[0].to_bits() {
                 first
             } else {
                 at(albedo)
@@ -212,7 +212,7 @@ pub struct CoatedDiffuseMaterial {
     pub(super) coat: CoatSettings,
     reflectance: ColorTexture,
     layers: Layers,
-    fillings: Fillings,
+    tables: InterlayerTables,
 }
 
 impl CoatedDiffuseMaterial {
@@ -220,7 +220,7 @@ impl CoatedDiffuseMaterial {
     pub fn new(coat: CoatSettings, reflectance: ColorTexture) -> Self {
         let layers = Layers::new(&coat);
         Self {
-            fillings: Fillings::new(&coat, &layers),
+            tables: InterlayerTables::new(&coat, &layers),
             layers,
             coat,
             reflectance,
@@ -233,11 +233,11 @@ impl CoatedDiffuseMaterial {
 
     pub(super) fn bsdf(&self, at: &TexturePoint, lanes: Lanes) -> Bsdf {
         let ggx = self.coat.roughness.ggx(at);
-        let filling = self.coat.filling(at, lanes);
+        let medium = self.coat.medium(at, lanes);
         let reflectance = lanes.albedo(unit(self.reflectance.eval(at)));
         let alpha = ggx.mean_alpha();
         let layer = self.layers.at(alpha);
-        let filled = self.fillings.at(self.layers.axis.locate(alpha), &filling);
+        let filled = self.tables.at(self.layers.axis.locate(alpha), &medium);
         let mean = Filled::mean(lanes.carrying().map(|lane| filled[lane]));
         Bsdf::CoatedDiffuse(CoatedDiffuse::new(&layer, ggx, &filled, &mean, reflectance))
     }
@@ -298,7 +298,7 @@ impl CoatedConductorMaterial {
 
     pub(super) fn bsdf(&self, at: &TexturePoint, lanes: Lanes) -> Bsdf {
         let (ggx, facets) = (self.coat.roughness.ggx(at), self.roughness.ggx(at));
-        let filling = self.coat.filling(at, lanes);
+        let medium = self.coat.medium(at, lanes);
         let (eta, k) = self.index.eval(at, lanes);
         let metal = CoatedMetal {
             eta: eta / self.coat.eta,
@@ -312,7 +312,7 @@ impl CoatedConductorMaterial {
             &layer,
             &reflections,
             ggx,
-            &filling,
+            &medium,
             metal,
         ))
     }

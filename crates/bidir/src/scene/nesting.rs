@@ -44,9 +44,9 @@ pub(super) struct Enclosed {
     pub(super) reach: f32,
 }
 
-/// A volume in its place, as one of those around a point. Of two the greater fills the point.
+/// The volume of an instance, ordered by priority: of two around a point the greater fills it.
 #[derive(Clone, Copy, Debug)]
-struct Filling {
+struct PlacedVolume {
     volume: Volume,
     size: f64,
     /// The greatest coordinate of its boxes.
@@ -59,13 +59,13 @@ struct Filling {
 
 /// The volumes around a point of a ray, each with its winding number.
 #[derive(Debug, Default)]
-struct Around(BTreeMap<Filling, i32>);
+struct Around(BTreeMap<PlacedVolume, i32>);
 
 /// A crossing, and the hit and the volume that it is of. None: it is a boundary between media alone.
 #[derive(Clone, Copy, Debug)]
 struct Event {
     crossing: Crossing,
-    of: Option<(Hit, Filling)>,
+    of: Option<(Hit, PlacedVolume)>,
 }
 
 /// The surface of a volume that stops a ray.
@@ -78,21 +78,21 @@ pub(super) struct Interface {
     pub(super) around: f32,
 }
 
-impl PartialEq for Filling {
+impl PartialEq for PlacedVolume {
     fn eq(&self, other: &Self) -> bool {
         self.cmp(other) == Ordering::Equal
     }
 }
 
-impl Eq for Filling {}
+impl Eq for PlacedVolume {}
 
-impl PartialOrd for Filling {
+impl PartialOrd for PlacedVolume {
     fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
         Some(self.cmp(other))
     }
 }
 
-impl Ord for Filling {
+impl Ord for PlacedVolume {
     fn cmp(&self, other: &Self) -> Ordering {
         let by_priority = self.volume.priority.cmp(&other.volume.priority);
         let by_size = other.size.total_cmp(&self.size);
@@ -107,25 +107,25 @@ impl Around {
     fn start(events: &[Event]) -> Self {
         let mut around = Self::default();
         for event in events {
-            if let Some((_, filling)) = event.of {
-                around.add(filling, -step(&event.crossing));
+            if let Some((_, volume)) = event.of {
+                around.add(volume, -step(&event.crossing));
             }
         }
         around
     }
 
-    fn add(&mut self, filling: Filling, step: i32) {
-        let count = self.0.entry(filling).or_default();
+    fn add(&mut self, volume: PlacedVolume, step: i32) {
+        let count = self.0.entry(volume).or_default();
         *count += step;
         if *count == 0 {
-            self.0.remove(&filling);
+            self.0.remove(&volume);
         }
     }
 
     /// Returns the volume that fills the point.
-    fn filling(&self) -> Option<Filling> {
+    fn dominant(&self) -> Option<PlacedVolume> {
         let mut around = self.0.iter().rev();
-        around.find_map(|(filling, &count)| (count > 0).then_some(*filling))
+        around.find_map(|(volume, &count)| (count > 0).then_some(*volume))
     }
 }
 
@@ -135,8 +135,8 @@ fn step(crossing: &Crossing) -> i32 {
 }
 
 /// Returns true where no surface parts what fills two sides.
-fn are_one(a: Option<Filling>, b: Option<Filling>) -> bool {
-    let substance = |of: Filling| (of.material, of.volume.medium, of.volume.index.to_bits());
+fn are_one(a: Option<PlacedVolume>, b: Option<PlacedVolume>) -> bool {
+    let substance = |of: PlacedVolume| (of.material, of.volume.medium, of.volume.index.to_bits());
     a == b || a.map(substance) == b.map(substance)
 }
 
@@ -170,7 +170,7 @@ impl Scene {
         let is_near = std::cell::Cell::new(false);
         let passed = std::cell::RefCell::new(Crossings::new());
         let hit = self.bvh.until(draws.stop).closest(ray, |hit| {
-            if self.filling(hit).is_some() {
+            if self.volume_of(hit).is_some() {
                 is_near.set(true);
                 return false;
             }
@@ -225,19 +225,19 @@ impl Scene {
             if crossing.t >= end {
                 break;
             }
-            let before = around.filling();
-            let Some((hit, filling)) = of else {
+            let before = around.dominant();
+            let Some((hit, volume)) = of else {
                 if before.is_none() {
                     crossings.push(crossing);
                 }
                 continue;
             };
-            around.add(filling, step(&crossing));
-            let behind = around.filling();
+            around.add(volume, step(&crossing));
+            let behind = around.dominant();
             if are_one(before, behind) {
                 continue;
             }
-            let medium = |of: Option<Filling>| of.map_or(crossing.from, |of| of.volume.medium);
+            let medium = |of: Option<PlacedVolume>| of.map_or(crossing.from, |of| of.volume.medium);
             let media = [medium(before), medium(behind)];
             if stops(&hit) {
                 let other = if crossing.leaves { behind } else { before };
@@ -285,7 +285,7 @@ impl Scene {
 
     /// Returns the crossing of a volume's surface. Its media are those around the volume where nothing else is.
     fn event(&self, ray: &Ray, hit: &Hit) -> Option<Event> {
-        let filling = self.filling(hit)?;
+        let volume = self.volume_of(hit)?;
         let (placed, primitive) = self.resolve(hit);
         let surface = &self.surfaces[primitive.shape as usize];
         let outside = surface
@@ -300,7 +300,7 @@ impl Scene {
         };
         Some(Event {
             crossing,
-            of: Some((*hit, filling)),
+            of: Some((*hit, volume)),
         })
     }
 
@@ -323,7 +323,7 @@ impl Scene {
 
     /// Returns the volume whose surface is hit. None: it is of none, or of one that touches no other.
     #[inline]
-    fn filling(&self, hit: &Hit) -> Option<Filling> {
+    fn volume_of(&self, hit: &Hit) -> Option<PlacedVolume> {
         let (placed, primitive) = self.resolve(hit);
         let surface = &self.surfaces[primitive.shape as usize];
         let number = surface.volume?;
@@ -333,7 +333,7 @@ impl Scene {
             reach,
         } = self.volumes[number as usize];
         let scale = placed.map_or(1.0, |placed| placed.world_from_object.volume_scale());
-        Some(Filling {
+        Some(PlacedVolume {
             volume,
             size: size * scale,
             reach,
@@ -345,7 +345,7 @@ impl Scene {
     /// Returns true where the surface of such a volume is hit.
     #[inline]
     pub(super) fn is_of_nested(&self, hit: &Hit) -> bool {
-        self.nests() && self.filling(hit).is_some()
+        self.nests() && self.volume_of(hit).is_some()
     }
 
     /// Returns true where volumes lie within each other, or may.
@@ -358,7 +358,7 @@ impl Scene {
     pub(super) fn boundaries(&self, ray: &Ray) -> Crossings {
         let mut crossings = Crossings::new();
         let _ = self.bvh.each_hit(ray, |hit| {
-            if self.filling(hit).is_none() {
+            if self.volume_of(hit).is_none() {
                 crossings.extend(self.crossing(ray, hit));
             }
             ControlFlow::Continue(())

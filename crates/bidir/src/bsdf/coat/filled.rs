@@ -1,4 +1,4 @@
-//! A layer with its filling: the light that it throws back and lets through to a black base, and diffuse light from below.
+//! A layer with the medium in it: the light that it throws back and lets through to a black base, and diffuse light from below.
 //!
 //! - B(μ) is the part of light from outside that reaches the base;
 //! - E(μ) the part that scatters within the layer and leaves without having reached the base;

@@ -3,7 +3,7 @@ use crate::bsdf::coat::{Layer, Reflections, Slab};
 use crate::bsdf::microfacet::Ggx;
 use crate::bsdf::{
     Bsdf, BsdfValue, CoatedConductor, CoatedDiffuse, CoatedMetal, Conductor, Dielectric, Diffuse,
-    DiffuseTransmission, FacetScattering, Filling, ThinDielectric,
+    DiffuseTransmission, FacetScattering, InterlayerMedium, ThinDielectric,
 };
 use crate::math::{ONE_MINUS_EPSILON, Vec2, Vec3};
 use crate::spectrum::Spectrum;
@@ -67,7 +67,7 @@ fn coated() -> Vec<Bsdf> {
             let is_hazy = (eta, alpha) == (1.5, 0.0) || (eta, alpha) == (0.7, 0.3);
             let hazes = if is_hazy { 3 } else { 1 };
             for &(thickness, albedo) in &[(0.0, 0.0), (1e4, 1.0), (2.0, 0.5)][..hazes] {
-                let filling = Filling {
+                let filling = InterlayerMedium {
                     thickness,
                     albedo: Spectrum::splat(albedo),
                     g: -1.0,

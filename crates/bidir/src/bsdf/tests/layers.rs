@@ -6,7 +6,9 @@ use super::simulation::{Base, Leaving, Stack};
 use super::{direction, numbers};
 use crate::bsdf::coat::{Layer, Reflections, Slab};
 use crate::bsdf::microfacet::Ggx;
-use crate::bsdf::{Bsdf, CoatedConductor, CoatedDiffuse, CoatedMetal, Filling, TransportMode};
+use crate::bsdf::{
+    Bsdf, CoatedConductor, CoatedDiffuse, CoatedMetal, InterlayerMedium, TransportMode,
+};
 use crate::math::Vec3;
 use crate::sampler::{Domain, Sampler, SamplerKind};
 use crate::spectrum::Spectrum;
@@ -36,8 +38,8 @@ pub(super) const VARNISH: Stack = Stack {
 };
 
 impl Stack {
-    fn filling(&self) -> Filling {
-        Filling {
+    fn filling(&self) -> InterlayerMedium {
+        InterlayerMedium {
             thickness: self.thickness as f32,
             albedo: Spectrum::splat(self.albedo as f32),
             g: self.g as f32,
@@ -116,15 +118,15 @@ pub(super) fn average(bsdf: &Bsdf) -> f64 {
     albedos.sum::<f64>() / f64::from(n)
 }
 
-fn filling(thickness: f32, albedo: f32, g: f32) -> Filling {
-    Filling {
+fn filling(thickness: f32, albedo: f32, g: f32) -> InterlayerMedium {
+    InterlayerMedium {
         thickness,
         albedo: Spectrum::splat(albedo),
         g,
     }
 }
 
-fn varnish([eta, alpha]: [f32; 2], rho: f32, filling: &Filling) -> Bsdf {
+fn varnish([eta, alpha]: [f32; 2], rho: f32, filling: &InterlayerMedium) -> Bsdf {
     let (layer, ggx) = (Layer::new(eta, alpha), Ggx::new(alpha, alpha));
     let slab = Slab::new(&layer, filling.thickness, filling.g);
     let filled = slab.tables(&layer, &[filling.albedo[0]])[0];
@@ -133,7 +135,12 @@ fn varnish([eta, alpha]: [f32; 2], rho: f32, filling: &Filling) -> Bsdf {
 }
 
 /// Returns a metal of `index`, relative to the layer.
-fn lacquer(eta: f32, [alpha, metal]: [f32; 2], index: [f32; 2], filling: &Filling) -> Bsdf {
+fn lacquer(
+    eta: f32,
+    [alpha, metal]: [f32; 2],
+    index: [f32; 2],
+    filling: &InterlayerMedium,
+) -> Bsdf {
     let layer = Layer::new(eta, alpha);
     let reflections = Reflections::new(&layer, metal, filling.thickness);
     let metal = CoatedMetal {

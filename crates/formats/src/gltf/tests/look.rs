@@ -9,7 +9,7 @@ use super::{Draft, F32, floats, load_bytes, mesh};
 use crate::error::ErrorKind;
 use crate::image::encode_png;
 use crate::pbrt::{Crop, LoadOptions, Loaded};
-use bidir::bsdf::{TransportMode, Thickness};
+use bidir::bsdf::{Thickness, TransportMode};
 use bidir::light::{Light, LightPoint};
 use bidir::locus::Locus;
 use bidir::material::{Bitangent, Material, PrincipledMaterial, Relief};
@@ -252,7 +252,10 @@ fn extensions_of_materials_are_read() {
     assert!(material.anisotropy.direction.distance(direction) < 1e-6);
     let volume = &mut draft.json["materials"][0]["extensions"]["KHR_materials_volume"];
     *volume = json!({ "thicknessFactor": 0.0 });
-    assert_eq!(principled(&draft.load().unwrap()).thickness, Thickness::ThinWalled);
+    assert_eq!(
+        principled(&draft.load().unwrap()).thickness,
+        Thickness::ThinWalled
+    );
 }
 
 /// The visible part of the triangle.
