@@ -1,10 +1,10 @@
 //! The reference of the command line, docs/reference/cli.md, from the same tables as the help text.
 
-use crate::args::{View, command};
+use crate::args::command;
 use crate::exit::Exit;
+use clap::builder::StyledStr;
 use clap::{Arg, Command};
 use std::collections::BTreeMap;
-use std::fmt::Write;
 
 const HEAD: &str = "\
 <!-- Written by `bidir man --markdown`; `just docs` writes it again. -->
@@ -14,62 +14,45 @@ const HEAD: &str = "\
 `bidir COMMAND -h` prints the common flags of a command, `bidir COMMAND --help` all of them.
 Results go to stdout, messages and progress to stderr; control characters in names and texts of files are printed as escapes, such as `\\u{1b}`.
 A setting comes from the first of these that has it: the flag, the environment variable, the scene file, the default.
+
+| Command | |
+|---|---|
 ";
 
 /// Variables without a flag, and their effects.
-const VARIABLES: [(&str, &str); 6] = [
-    (
-        "BIDIR_EMBREE",
-        "The libraries of Embree that `just bench-rays` compares with, divided as in `PATH`.",
-    ),
-    (
-        "BIDIR_OIDN",
-        "The library of Open Image Denoise 2 or its folder, for `render --denoise` and `denoise`; by default the system's.",
-    ),
-    (
-        "BIDIR_PYTHON",
-        "The interpreter that `experiment --ray` starts; by default `python3`.",
-    ),
-    (
-        "BIDIR_SCENES",
-        "The folder with `pbrt-v4/`, the scenes made by others, for `experiment beyond` and for tests.",
-    ),
-    (
-        "FORCE_COLOR",
-        "Turns the colour of messages on where stderr is no terminal.",
-    ),
-    (
-        "NO_COLOR",
-        "Turns the colour of messages off, as `--no-color` and `TERM=dumb` do.",
-    ),
-];
+const VARIABLES: &str = "\
+BIDIR_EMBREE The libraries of Embree that `just bench-rays` compares with, divided as in `PATH`.
+BIDIR_OIDN The library of Open Image Denoise 2 or its folder, for `render --denoise` and `denoise`; by default the system's.
+BIDIR_PYTHON The interpreter that `experiment --ray` starts; by default `python3`.
+BIDIR_SCENES The folder with `pbrt-v4/`, the scenes made by others, for `experiment beyond` and for tests.
+FORCE_COLOR Turns the colour of messages on where stderr is no terminal.
+NO_COLOR Turns the colour of messages off, as `--no-color` and `TERM=dumb` do.";
 
 /// Returns the whole page.
 pub(crate) fn page() -> String {
-    let mut root = command(View::Long);
+    let mut root = command();
     root.build();
+    let commands = all(&root);
     let mut page = HEAD.to_owned();
-    page.push_str("\n| Command | |\n|---|---|\n");
-    for (path, command) in all(&root) {
+    for (path, command) in &commands {
         let about = command.get_about().map(ToString::to_string);
-        row(
-            &mut page,
-            &[&link(&path), &cell(&about.unwrap_or_default())],
-        );
+        page += &row(&[&link(path), &about.unwrap_or_default()]);
     }
-    page.push_str("\n## Flags of every command\n\n| Flag | Meaning |\n|---|---|\n");
-    let shared = root.get_arguments().filter(|arg| arg.get_long().is_some());
-    for arg in shared {
-        row(&mut page, &[&name(arg), &meaning(arg).0]);
+    page += "\n## Flags of every command\n\n| Flag | Meaning |\n|---|---|\n";
+    for arg in root.get_arguments().filter(|arg| arg.get_long().is_some()) {
+        page += &row(&[&name(arg), &meaning(arg).0]);
     }
-    let mut tables = Tables::new();
-    for (path, command) in all(&root) {
-        section(&mut page, &path, command, &mut tables);
+    let mut tables = BTreeMap::new();
+    for (path, command) in &commands {
+        page += &section(path, command, &mut tables);
     }
-    environment(&mut page, &root);
-    page.push_str("\n## Exit codes\n\n| Code | Meaning |\n|---:|---|\n");
+    page += "\n## Environment variables\n\n| Variable | Meaning |\n|---|---|\n";
+    for (name, meaning) in variables(&commands) {
+        page += &row(&[&code(&name), &ended(&meaning)]);
+    }
+    page += "\n## Exit codes\n\n| Code | Meaning |\n|---:|---|\n";
     for (code, meaning) in Exit::codes() {
-        row(&mut page, &[&code.to_string(), meaning]);
+        page += &row(&[&code.to_string(), meaning]);
     }
     page
 }
@@ -78,7 +61,7 @@ pub(crate) fn page() -> String {
 fn all(command: &Command) -> Vec<(String, &Command)> {
     let visible = command
         .get_subcommands()
-        .filter(|command| command.get_name() != "help" && !command.is_hide_set());
+        .filter(|command| command.get_name() != "help");
     let with_its_own = visible.flat_map(|command| {
         let name = command.get_name();
         let below = all(command).into_iter();
@@ -88,161 +71,140 @@ fn all(command: &Command) -> Vec<(String, &Command)> {
     with_its_own.collect()
 }
 
-/// The written tables by heading and rows, with the command that has them.
-type Tables = BTreeMap<(String, String), String>;
-
-/// Writes the section of a command. A table that another command has becomes a link to it.
-fn section(page: &mut String, path: &str, command: &Command, tables: &mut Tables) {
+/// Returns the section of a command. A table that another command has becomes a link to it; `tables` has the
+/// written ones by heading and rows.
+fn section<'a>(
+    path: &'a str,
+    command: &Command,
+    tables: &mut BTreeMap<(String, String), &'a str>,
+) -> String {
+    let mut text = format!("\n## bidir {path}\n");
     let long = command.get_long_about().or(command.get_about());
     let long = long.map(ToString::to_string).unwrap_or_default();
-    let usage = command.clone().render_usage().to_string();
-    // Writing to a string cannot fail.
-    let _ = write!(page, "\n## bidir {path}\n");
     for paragraph in long.split("\n\n") {
-        let text = match paragraph.strip_prefix("For example: ") {
-            Some(example) => format!("For example: {}", code(example.trim_end_matches('.'))),
-            None => ended(&paragraph.replace('\n', " ")),
+        let paragraph = match paragraph.strip_prefix("For example: ") {
+            Some(example) => format!("For example: {}", code(example)),
+            None => ended(paragraph),
         };
-        let _ = write!(page, "\n{text}\n");
+        text += &format!("\n{paragraph}\n");
     }
-    let lines = usage.lines().map(|line| line.trim_start_matches("Usage:"));
-    let usages: Vec<_> = lines.map(|line| code(line.trim())).collect();
-    let _ = write!(page, "\nUsage: {}\n", usages.join(" or "));
+    let usage = command.clone().render_usage().to_string();
+    let usages = usage
+        .lines()
+        .map(|line| code(line.trim_start_matches("Usage:").trim()));
+    text += &format!("\nUsage: {}\n", usages.collect::<Vec<_>>().join(" or "));
     for (heading, args) in by_heading(command) {
-        let mut rows = String::new();
-        for arg in &args {
+        let rows = args.iter().map(|arg| {
             let (meaning, default) = meaning(arg);
             let variable = arg.get_env().map(|name| code(&name.to_string_lossy()));
-            let variable = variable.unwrap_or_default();
-            row(&mut rows, &[&name(arg), &default, &variable, &meaning]);
-        }
-        let key = (heading.to_owned(), rows);
-        match tables.get(&key) {
-            Some(other) if args.len() > 1 => {
-                let link = link(other);
-                let _ = write!(page, "\n{heading}: as for {link}\n");
-            }
-            _ => {
-                let head = "Default | Environment | Meaning |\n|---|---|---|---|";
-                let _ = write!(page, "\n| {heading} | {head}\n{}", key.1);
-                tables.insert(key, path.to_owned());
-            }
-        }
+            row(&[
+                &name(arg),
+                &default,
+                &variable.unwrap_or_default(),
+                &meaning,
+            ])
+        });
+        let rows: String = rows.collect();
+        let head = "Default | Environment | Meaning |\n|---|---|---|---|";
+        let table = format!("\n| {heading} | {head}\n{rows}");
+        text += &match tables.get(&(heading.to_owned(), rows.clone())) {
+            Some(other) if args.len() > 1 => format!("\n{heading}: as for {}\n", link(other)),
+            _ => table,
+        };
+        tables.entry((heading.to_owned(), rows)).or_insert(path);
     }
-    let examples = command.get_after_long_help().or(command.get_after_help());
-    if let Some(examples) = examples {
-        let examples = examples.to_string();
-        let _ = write!(page, "\n```text\n{}\n```\n", examples.trim_end());
+    if let Some(examples) = command.get_after_long_help().or(command.get_after_help()) {
+        text += &format!("\n```text\n{}\n```\n", examples.to_string().trim_end());
     }
+    text
 }
 
-/// Returns the arguments of a command under their headings, those without a heading first.
+/// Returns the arguments of a command under their headings, those without a heading first. Flags of every command
+/// and hidden ones are left out.
 fn by_heading(command: &Command) -> Vec<(&str, Vec<&Arg>)> {
-    let own = || command.get_arguments().filter(|arg| is_own(arg));
-    let is_plain = |arg: &&Arg| !arg.is_positional() && arg.get_help_heading().is_none();
-    let without_topic = match (
-        own().any(Arg::is_positional),
-        own().any(|arg| is_plain(&arg)),
-    ) {
-        (true, true) => "Arguments and options",
-        (true, false) => "Arguments",
-        (false, _) => "Options",
-    };
-    let mut headings: Vec<(&str, Vec<&Arg>)> = Vec::new();
-    for arg in own() {
-        let heading = arg.get_help_heading().unwrap_or(without_topic);
+    let is_shared = |arg: &Arg| ["help", "version"].contains(&arg.get_id().as_str());
+    let is_own = |arg: &&Arg| !(is_shared(arg) || arg.is_global_set() || arg.is_hide_set());
+    let mut headings: Vec<(&str, Vec<&Arg>)> = vec![("Arguments", Vec::new())];
+    for arg in command.get_arguments().filter(is_own) {
+        let heading = arg.get_help_heading().unwrap_or(headings[0].0);
         match headings.iter_mut().find(|(known, _)| *known == heading) {
             Some((_, args)) => args.push(arg),
             None => headings.push((heading, vec![arg])),
         }
     }
-    headings.sort_by_key(|(heading, _)| *heading != without_topic);
+    headings.retain(|(_, args)| !args.is_empty());
     headings
 }
 
 /// Returns a link to the section of a command.
 fn link(path: &str) -> String {
-    let anchor = format!("bidir {path}").replace(' ', "-");
-    format!("[`{path}`](#{anchor})")
+    format!("[`{path}`](#bidir-{})", path.replace(' ', "-"))
 }
 
-/// Returns false for the flags of every command, and for hidden flags.
-fn is_own(arg: &Arg) -> bool {
-    let is_shared = ["help", "version"].contains(&arg.get_id().as_str());
-    !is_shared && !arg.is_global_set() && !arg.is_hide_set()
-}
-
-/// Writes the section of environment variables: those of flags, and the others.
-fn environment(page: &mut String, root: &Command) {
-    let mut variables: BTreeMap<String, String> = VARIABLES
-        .map(|(name, effect)| (name.to_owned(), effect.to_owned()))
-        .into();
-    for (path, command) in all(root) {
+/// Returns all environment variables with their meanings.
+fn variables(commands: &[(String, &Command)]) -> BTreeMap<String, String> {
+    let alone = VARIABLES.lines().filter_map(|line| line.split_once(' '));
+    let alone = alone.map(|(name, effect)| (name.to_owned(), effect.to_owned()));
+    let mut variables: BTreeMap<String, String> = alone.collect();
+    for (path, command) in commands {
         for arg in command.get_arguments() {
-            let (Some(variable), Some(flag)) = (arg.get_env(), arg.get_long()) else {
-                continue;
-            };
-            let text = variables
-                .entry(variable.to_string_lossy().into_owned())
-                .or_insert_with(|| format!("`--{flag}` of"));
-            let comma = if text.ends_with(" of") { "" } else { "," };
-            let _ = write!(text, "{comma} `{path}`");
+            if let (Some(variable), Some(flag)) = (arg.get_env(), arg.get_long()) {
+                variables
+                    .entry(variable.to_string_lossy().into_owned())
+                    .and_modify(|text| *text += &format!(", `{path}`"))
+                    .or_insert_with(|| format!("`--{flag}` of `{path}`"));
+            }
         }
     }
-    page.push_str("\n## Environment variables\n\n| Variable | Meaning |\n|---|---|\n");
-    for (name, meaning) in variables {
-        row(page, &[&code(&name), &ended(&meaning)]);
-    }
+    variables
 }
 
 /// Returns the name of an argument in a table: `-o`, `--output <FILE>`.
 fn name(arg: &Arg) -> String {
     let names = arg.get_value_names().unwrap_or_default();
-    let takes_value = arg.get_action().takes_values();
-    let value = names.iter().map(|name| format!(" <{name}>"));
-    let value: String = value.filter(|_| takes_value).collect();
-    let Some(long) = arg.get_long() else {
-        return code(value.trim());
-    };
+    let names = names.iter().filter(|_| arg.get_action().takes_values());
+    let value: String = names.map(|name| format!(" <{name}>")).collect();
+    let long = arg.get_long().map(|long| format!("--{long}"));
+    let name = code((long.unwrap_or_default() + &value).trim());
     let short = arg.get_short().map(|short| format!("`-{short}`, "));
-    let short = short.unwrap_or_default();
-    format!("{short}{}", code(&format!("--{long}{value}")))
+    short.unwrap_or_default() + &name
 }
 
 /// Returns the meaning of an argument, and its default, which the help text has in brackets.
 fn meaning(arg: &Arg) -> (String, String) {
-    const BRACKET: &str = "[default: ";
-    let text = arg.get_long_help().or(arg.get_help());
-    let text = text.map(ToString::to_string).unwrap_or_default();
-    let paragraphs = text
-        .split("\n\n")
-        .map(|part| ended(&part.replace('\n', " ")));
-    let text = paragraphs.collect::<Vec<_>>().join(" ");
-    let bracket = text.split_once(BRACKET);
-    let bracket = bracket.and_then(|(before, rest)| {
+    let text = one_line(arg.get_long_help().or(arg.get_help()));
+    let bracket = text.split_once(" [default: ").and_then(|(before, rest)| {
         let (default, after) = rest.split_once(']')?;
-        Some((format!("{}{after}", before.trim_end()), default.to_owned()))
+        Some((format!("{before}{after}"), default.to_owned()))
     });
-    let (mut text, mut default) = bracket.unwrap_or((text, String::new()));
-    text = ended(&text);
-    if default.is_empty() && !arg.is_hide_default_value_set() && arg.get_action().takes_values() {
-        let values = arg.get_default_values().iter();
+    let takes_values = arg.get_action().takes_values();
+    let (meaning, default) = bracket.unwrap_or_else(|| {
+        let is_shown = takes_values && !arg.is_hide_default_value_set();
+        let values = arg.get_default_values().iter().filter(|_| is_shown);
         let values: Vec<_> = values.map(|value| code(&value.to_string_lossy())).collect();
-        default = values.join(", ");
-    }
+        (text, values.join(", "))
+    });
     let values = arg.get_possible_values();
-    if !values.is_empty() && arg.get_action().takes_values() {
-        let values: Vec<_> = values.iter().map(|value| code(value.get_name())).collect();
-        // Writing to a string cannot fail.
-        let _ = write!(text, " Values: {}.", values.join(", "));
+    let values = values.iter().filter(|_| takes_values);
+    let values: Vec<_> = values.map(|value| code(value.get_name())).collect();
+    let meaning = ended(&meaning);
+    if values.is_empty() {
+        return (meaning, default);
     }
-    (cell(&text), cell(&default))
+    (format!("{meaning} Values: {}.", values.join(", ")), default)
 }
 
-/// Returns a text with a full stop.
-fn ended(text: &str) -> String {
-    let text = text.trim_end();
-    let stop = if text.is_empty() || text.ends_with(['.', ':', '!', '?']) {
+/// Returns paragraphs in one line.
+fn one_line(text: Option<&StyledStr>) -> String {
+    let text = text.map(ToString::to_string).unwrap_or_default();
+    let paragraphs = text.split("\n\n").map(ended);
+    paragraphs.collect::<Vec<_>>().join(" ")
+}
+
+/// Returns a paragraph in one line, with a full stop.
+fn ended(paragraph: &str) -> String {
+    let text = paragraph.trim_end().replace('\n', " ");
+    let stop = if text.ends_with(['.', ':', '!', '?']) {
         ""
     } else {
         "."
@@ -254,12 +216,8 @@ fn code(text: &str) -> String {
     format!("`{text}`")
 }
 
-/// Escapes the character that ends a cell.
-fn cell(text: &str) -> String {
-    text.replace('|', "\\|")
-}
-
-fn row(page: &mut String, cells: &[&str]) {
-    // Writing to a string cannot fail.
-    let _ = writeln!(page, "| {} |", cells.join(" | "));
+/// Returns a row of a table, whose character between cells is escaped in them.
+fn row(cells: &[&str]) -> String {
+    let cells = cells.iter().map(|cell| cell.replace('|', "\\|"));
+    format!("| {} |\n", cells.collect::<Vec<_>>().join(" | "))
 }

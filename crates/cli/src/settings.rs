@@ -16,13 +16,17 @@ pub(crate) fn warn_unused(args: &RenderArgs, settings: &Settings, console: Conso
     let integrator = format!("on the integrator `{}`", settings.integrator);
     let spp = args.budget.spp.filter(|_| args.long.passes.is_some());
     let ignored = args.estimator.ignored(settings).into_iter();
-    let ignored = ignored.map(|name| (format!("--{name}"), &*integrator));
-    let spp = spp.map(|_| ("--spp".to_owned(), "where --passes is given"));
+    let ignored = ignored.map(|name| (name, &*integrator));
     ignored
-        .chain(spp)
-        .map(|(flag, on)| {
-            let name = args.sources.name(&flag);
-            console.warning(format_args!("{name} has no effect {on}"));
+        .chain(spp.map(|_| ("spp".to_owned(), "where --passes is given")))
+        .map(|(name, on)| {
+            let is_variable = args.of_variables.contains(&name);
+            let source = if is_variable {
+                format!("BIDIR_{}", name.replace('-', "_").to_uppercase())
+            } else {
+                format!("--{name}")
+            };
+            console.warning(format_args!("{source} has no effect {on}"));
         })
         .count()
 }

@@ -1,6 +1,6 @@
 //! Completions and manual pages, generated from the same definitions as the help text.
 
-use crate::args::{CompletionsArgs, ManArgs, View, command};
+use crate::args::{CompletionsArgs, ManArgs, command};
 use crate::console::print;
 use crate::exit::{Exit, Failure};
 use crate::markdown;
@@ -8,7 +8,7 @@ use crate::markdown;
 /// Prints a completion script.
 pub(crate) fn completions(args: &CompletionsArgs) -> Result<Exit, Failure> {
     let mut script = Vec::new();
-    clap_complete::generate(args.shell, &mut command(View::Long), "bidir", &mut script);
+    clap_complete::generate(args.shell, &mut command(), "bidir", &mut script);
     print(&String::from_utf8_lossy(&script))
 }
 
@@ -17,7 +17,7 @@ pub(crate) fn man(args: &ManArgs) -> Result<Exit, Failure> {
     if args.markdown {
         return print(&markdown::page());
     }
-    let mut cli = command(View::Long);
+    let mut cli = command();
     cli.build();
     let mut command = &cli;
     for name in &args.command {

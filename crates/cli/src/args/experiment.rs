@@ -160,10 +160,10 @@ pub(crate) struct ExtentArgs {
     #[arg(long, value_name = "N", value_parser = positive_number)]
     rays: Option<f64>,
     /// Number of seeds; intervals need 2 or more.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=100_000))]
+    #[arg(long, value_name = "N", value_parser = count::<u64>(1..=100_000))]
     seeds: Option<u64>,
     /// Samples per pixel of each integrator of a rendered reference.
-    #[arg(long, value_name = "N", value_parser = count(1..=1 << 32))]
+    #[arg(long, value_name = "N", value_parser = count::<u64>(1..=1 << 32))]
     reference_spp: Option<u64>,
 }
 

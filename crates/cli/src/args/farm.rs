@@ -23,10 +23,10 @@ pub(crate) struct FarmArgs {
     #[arg(value_hint = ValueHint::FilePath)]
     pub(crate) scene: String,
     /// Number of parts.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=100_000))]
+    #[arg(long, value_name = "N", value_parser = count::<u64>(1..=100_000))]
     pub(crate) parts: u64,
     /// Samples per pixel of the whole render [default: the scene's].
-    #[arg(long, value_name = "N", value_parser = count(1..=u64::MAX))]
+    #[arg(long, value_name = "N", value_parser = count::<u64>(1..=u64::MAX))]
     pub(crate) spp: Option<u64>,
     /// Output image; its name without .exr also names the film files [default: the scene's name].
     #[arg(short, long, value_name = "FILE.exr", value_hint = ValueHint::FilePath)]

@@ -59,11 +59,11 @@ pub(crate) struct MissingArgs {
     pub(crate) files: Vec<PathBuf>,
     /// Number of passes of the whole render.
     #[arg(long, value_name = "N")]
-    #[arg(value_parser = count(1..=u64::MAX))]
+    #[arg(value_parser = count::<u64>(1..=u64::MAX))]
     pub(crate) spp: u64,
     /// Number of parts that the passes are rendered in.
     #[arg(long, value_name = "N")]
-    #[arg(value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
+    #[arg(value_parser = count::<u64>(1..=1_000_000))]
     pub(crate) parts: Option<u64>,
     /// Print JSON with the keys passes and parts.
     #[arg(long)]

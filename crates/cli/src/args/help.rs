@@ -1,123 +1,59 @@
-//! The two views of the help text: common flags under `-h`, all flags by topic under `--help`.
+//! The views of the help text, common flags under `-h` and all under `--help`, and other spellings of flags.
 
 use super::Cli;
-use clap::builder::Resettable;
-use clap::{Arg, Command, CommandFactory};
-use std::ffi::OsString;
+use clap::{Command, CommandFactory, ValueHint};
 
-/// The flags that `-h` shows for a command, in order; it shows all flags of commands without an entry.
-const COMMON: [(&str, &[&str]); 4] = [
-    (
-        "render",
-        &[
-            "output",
-            "integrator",
-            "spp",
-            "time",
-            "noise",
-            "size",
-            "seed",
-            "denoise",
-            "aov",
-            "checkpoint",
-            "resume",
-            "serve",
-            "threads",
-            "lenient",
-        ],
-    ),
-    (
-        "view",
-        &[
-            "port",
-            "bind",
-            "integrator",
-            "spp",
-            "size",
-            "seed",
-            "threads",
-            "lenient",
-        ],
-    ),
-    (
-        "reference",
-        &[
-            "output",
-            "spp",
-            "extend",
-            "estimator",
-            "against",
-            "size",
-            "threads",
-            "quiet",
-        ],
-    ),
-    (
-        "experiment",
-        &["output", "quick", "restart", "ray", "threads", "quiet"],
-    ),
+/// Commands, and the flags that `-h` shows for them; it shows all flags of other commands.
+const COMMON: [&str; 4] = [
+    "render output integrator spp time noise size seed denoise aov checkpoint resume serve threads lenient",
+    "view port bind integrator spp size seed threads lenient",
+    "reference output spp extend estimator against size threads quiet",
+    "experiment output quick restart ray threads quiet",
 ];
 
-/// The help text that a command prints.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum View {
-    /// The help text of `-h`.
-    Short,
-    /// The help text of `--help`, of manual pages and of the reference.
-    Long,
+/// Flags, and their names in other renderers, which are accepted.
+const ALIASES: [&str; 6] = [
+    "integrator method algorithm renderer",
+    "max-depth bounces max-bounces maxdepth",
+    "output out outfile",
+    "size resolution res film-size",
+    "spp samples samples-per-pixel sample-count pixelsamples nsamples",
+    "threads nthreads jobs cores",
+];
+
+/// Returns the command line.
+pub(crate) fn command() -> Command {
+    shown(Cli::command())
 }
 
-impl View {
-    /// Returns the view that a command line requests, if it requests help.
-    pub(super) fn requested(arguments: &[OsString]) -> Self {
-        let has_flag = arguments.iter().any(|argument| argument == "--help");
-        if has_flag || arguments.get(1).is_some_and(|name| name == "help") {
-            Self::Long
-        } else {
-            Self::Short
-        }
-    }
-}
-
-/// Returns the command line with the help text of `view`.
-pub(crate) fn command(view: View) -> Command {
-    shown(Cli::command(), view)
-}
-
-/// Returns `command` and its subcommands with the help text of `view`.
-fn shown(command: Command, view: View) -> Command {
-    let names = command.get_subcommands().map(Command::get_name);
-    let names: Vec<_> = names.map(str::to_owned).collect();
-    let name = command.get_name();
-    let common = COMMON.iter().find(|(known, _)| *known == name);
-    let common = common.map(|(_, flags)| *flags);
-    let command = command.mut_args(|arg| match view {
-        View::Short => short(arg, common),
+/// Returns `command` and its subcommands with both views and with other spellings.
+fn shown(command: Command) -> Command {
+    let common = words_of(&COMMON, command.get_name());
+    let command = command.mut_args(|arg| {
+        let flag = arg.get_long().unwrap_or_default().to_owned();
+        let names = words_of(&ALIASES, &flag).unwrap_or_default();
+        let is_hidden = match &common {
+            Some(common) => !flag.is_empty() && !common.contains(&&*flag),
+            None => arg.is_global_set(),
+        };
+        // A negative number is a value, so that its error names what is expected. A file begins with no hyphen.
+        let has_value = arg.get_action().takes_values() && !arg.is_positional();
+        let takes_hyphens = arg.is_allow_hyphen_values_set()
+            || has_value && arg.get_value_hint() == ValueHint::Unknown;
         // The values of variables on this machine do not belong into documentation.
-        View::Long => arg.hide_env_values(true),
+        arg.aliases(names)
+            .allow_hyphen_values(takes_hyphens)
+            .hide_env_values(true)
+            .hide_short_help(is_hidden)
     });
-    names.into_iter().fold(command, |all, name| {
-        all.mut_subcommand(name, |c| shown(c, view))
-    })
+    command.mut_subcommands(shown)
 }
 
-/// Returns an argument for `-h`: hides flags that are not `common`, and lists the others without headings.
-fn short(arg: Arg, common: Option<&[&str]>) -> Arg {
-    let arg = arg.hide_env(true);
-    let is_global = arg.is_global_set();
-    let (Some(common), Some(flag)) = (common, arg.get_long()) else {
-        return arg.hide_short_help(is_global);
-    };
-    match common.iter().position(|known| *known == flag) {
-        Some(place) => {
-            // In debug builds, clap asserts that only flags with values hide them.
-            let has_value = arg.get_action().takes_values();
-            arg.help_heading(Resettable::Reset)
-                .hide_possible_values(has_value)
-                .display_order(place)
-        }
-        None => arg.hide_short_help(true),
-    }
+/// Returns the words behind the first one of the line that begins with it.
+fn words_of(lines: &[&'static str], first: &str) -> Option<Vec<&'static str>> {
+    let mut lines = lines.iter().filter_map(|line| line.split_once(' '));
+    let (_, words) = lines.find(|(word, _)| *word == first)?;
+    Some(words.split(' ').collect())
 }
 
 #[cfg(test)]
@@ -125,33 +61,24 @@ mod tests {
     use super::*;
 
     #[test]
-    fn common_flags_exist() {
-        let command = Cli::command();
-        for (name, flags) in COMMON {
+    fn common_flags_and_those_with_other_spellings_exist() {
+        let command = command();
+        let has = |name: &str, flag: &str| {
             let command = command.find_subcommand(name).unwrap();
-            for flag in flags {
-                let mut all = command.get_arguments();
-                let is_there = all.any(|arg| arg.get_long() == Some(flag));
-                assert!(is_there, "{name} --{flag}");
+            command
+                .get_arguments()
+                .any(|arg| arg.get_long() == Some(flag))
+        };
+        for line in COMMON {
+            let (name, flags) = line.split_once(' ').unwrap();
+            for flag in flags.split(' ') {
+                assert!(has(name, flag), "{name} --{flag}");
             }
         }
-    }
-
-    #[test]
-    fn a_view_is_chosen_by_the_command_line() {
-        let view = |line: &str| {
-            let words: Vec<_> = line.split(' ').map(OsString::from).collect();
-            View::requested(&words)
-        };
-        assert_eq!(view("bidir render --help"), View::Long);
-        assert_eq!(view("bidir help render"), View::Long);
-        assert_eq!(view("bidir render -h"), View::Short);
-        assert_eq!(view("bidir"), View::Short);
-    }
-
-    #[test]
-    fn both_views_are_consistent() {
-        command(View::Short).debug_assert();
-        command(View::Long).debug_assert();
+        for line in ALIASES {
+            let (flag, _) = line.split_once(' ').unwrap();
+            assert!(has("render", flag), "--{flag}");
+        }
+        command.debug_assert();
     }
 }

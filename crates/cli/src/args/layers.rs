@@ -1,6 +1,6 @@
 //! The flags for layers.
 
-use super::values::named;
+use super::values::{count, named};
 use bidir::film::{Aov, Layers};
 use clap::{Args, ValueHint};
 use lab::pyramid;
@@ -38,7 +38,7 @@ pub(crate) struct LayerArgs {
     ///
     /// Layers are sStT.R, G, B, and longer.R, G, B for all longer paths.
     #[arg(long, value_name = "N")]
-    #[arg(value_parser = clap::value_parser!(u16).range(2..=Layers::MOST_STRATEGY_VERTICES as i64))]
+    #[arg(value_parser = count::<u16>(2..=Layers::MOST_STRATEGY_VERTICES as u64))]
     pub(crate) strategy_layers: Option<u16>,
     /// Write the strategy pyramid: pyramid.exr in this folder.
     ///

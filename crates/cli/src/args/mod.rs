@@ -12,7 +12,6 @@ mod mistakes;
 mod reference;
 mod renamed;
 mod render;
-mod sources;
 mod threads;
 mod tonemap;
 mod values;
@@ -23,7 +22,7 @@ pub(crate) use denoise::DenoiseArgs;
 pub(crate) use experiment::ExperimentArgs;
 pub(crate) use farm::{FarmArgs, FarmCommand};
 pub(crate) use film::{FilmCommand, MergeArgs, MissingArgs};
-pub(crate) use help::{View, command};
+pub(crate) use help::command;
 pub(crate) use long::{LongArgs, Part};
 pub(crate) use mistakes::explained;
 pub(crate) use reference::ReferenceArgs;
@@ -36,8 +35,8 @@ pub(crate) use view::{ServeAddress, ViewArgs};
 use crate::exit::{Exit, Failure};
 use bidir::ESTIMATOR_VERSION;
 use clap::error::ErrorKind;
+use clap::parser::ValueSource;
 use clap::{Args, FromArgMatches, Parser, Subcommand, ValueHint};
-use sources::Sources;
 use std::ffi::OsString;
 use std::path::PathBuf;
 
@@ -82,10 +81,12 @@ impl Cli {
     /// Reads the command line and the environment.
     pub(crate) fn read() -> Result<Self, Unread> {
         let arguments: Vec<_> = std::env::args_os().collect();
-        let mut command = mistakes::accept_negative(command(View::requested(&arguments)));
+        let mut command = command();
         Self::parsed(&mut command, &arguments).map_err(|error| match error.kind() {
             ErrorKind::DisplayVersion => Unread::Version,
-            kind if mistakes::is_help(kind) => Unread::Help(error),
+            ErrorKind::DisplayHelp | ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand => {
+                Unread::Help(error)
+            }
             _ => Unread::Wrong(explained(&error, &command, &arguments)),
         })
     }
@@ -99,11 +100,16 @@ impl Cli {
         }
         let mut cli = Self::from_arg_matches(&matches)?;
         cli.renamed = renamed::warnings(arguments, |name| std::env::var(name).ok());
-        if let Command::Render(args) = &mut cli.command
-            && let Some((name, matches)) = matches.subcommand()
-            && let Some(command) = command.find_subcommand(name)
+        if let (Command::Render(args), Some((_, matches))) =
+            (&mut cli.command, matches.subcommand())
         {
-            args.sources = Sources::new(command, matches);
+            let source = |id: &clap::Id| matches.value_source(id.as_str());
+            let of_variables = matches
+                .ids()
+                .filter(|id| source(id) == Some(ValueSource::EnvVariable));
+            args.of_variables = of_variables
+                .map(|id| id.as_str().replace('_', "-"))
+                .collect();
         }
         Ok(cli)
     }

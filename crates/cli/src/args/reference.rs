@@ -36,11 +36,11 @@ pub(crate) struct ReferenceArgs {
     ///
     /// Includes the samples that the reference has already.
     #[arg(long, value_name = "N", help_heading = "Samples")]
-    #[arg(value_parser = count(1..=MOST_SAMPLES))]
+    #[arg(value_parser = count::<u64>(1..=MOST_SAMPLES))]
     pub(crate) spp: Option<u64>,
     /// Add N samples per pixel to an existing reference, with its settings.
     #[arg(long, value_name = "N", help_heading = "Samples")]
-    #[arg(value_parser = count(1..=MOST_SAMPLES))]
+    #[arg(value_parser = count::<u64>(1..=MOST_SAMPLES))]
     #[arg(conflicts_with_all = ["spp", "estimator", "against", "restart", "size", "crops"])]
     pub(crate) extend: Option<u64>,
     /// Start over, and replace an existing reference.

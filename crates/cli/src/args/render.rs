@@ -2,7 +2,6 @@
 
 use super::layers::LayerArgs;
 use super::long::LongArgs;
-use super::sources::Sources;
 use super::values::{CropFractions, Duration, PixelBounds, ReplayTarget, Size, named};
 use super::view::ServeAddress;
 use super::{SceneArgs, ThreadsArgs, values};
@@ -69,9 +68,9 @@ pub(crate) struct RenderArgs {
     /// The settings of the estimator.
     #[command(flatten)]
     pub(crate) estimator: Request,
-    /// The environment variables among the sources of flags.
+    /// The flags whose values come from environment variables.
     #[arg(skip)]
-    pub(crate) sources: Sources,
+    pub(crate) of_variables: Vec<String>,
     /// The layers.
     #[command(flatten)]
     pub(crate) layers: LayerArgs,
@@ -116,7 +115,7 @@ pub(crate) struct OutputArgs {
     /// The default is the file name that the scene gives its film, or else the name of the scene file,
     /// with the ending .exr, in the current folder. An output that would replace an input, or a file
     /// that the scene names, is refused (exit code 4). pbrt's spelling --outfile is accepted.
-    #[arg(short, long, alias = "outfile", value_name = "FILE", value_hint = ValueHint::FilePath)]
+    #[arg(short, long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub(crate) output: Option<PathBuf>,
     /// Write settings, ray counts and timings as JSON.
     ///
@@ -158,7 +157,7 @@ pub(crate) struct BudgetArgs {
     /// With --time or --noise the default is unlimited; the limit that is reached first ends the render.
     /// A pass takes one sample of every pixel. 4k is 4000, 1e6 a million.
     #[arg(long, env = "BIDIR_SPP", value_name = "N")]
-    #[arg(value_parser = values::count(1..=u64::MAX))]
+    #[arg(value_parser = values::count::<u64>(1..=u64::MAX))]
     pub(crate) spp: Option<u64>,
     /// Stop after this time: 90, 90s, 10m, 1h30m.
     ///

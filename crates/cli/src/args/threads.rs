@@ -1,5 +1,6 @@
 //! The flag for the number of threads.
 
+use super::values::count;
 use bidir::driver::Threads;
 use clap::Args;
 
@@ -14,11 +15,10 @@ pub(crate) struct ThreadsArgs {
     #[arg(
         id = "threads",
         long = "threads",
-        alias = "nthreads",
         env = "BIDIR_THREADS",
         value_name = "N"
     )]
     #[arg(default_value_t = 0, hide_default_value = true)]
-    #[arg(value_parser = clap::value_parser!(u16).range(..=Threads::MOST as i64))]
+    #[arg(value_parser = count::<u16>(0..=Threads::MOST as u64))]
     pub(crate) count: u16,
 }

@@ -20,12 +20,13 @@ where
 }
 
 /// Returns a parser of whole numbers in a range: `4096`, `4k` (4000), `2M`, `1e6`.
-pub(crate) fn count(
+pub(crate) fn count<T: TryFrom<u64>>(
     range: RangeInclusive<u64>,
-) -> impl Fn(&str) -> Result<u64, String> + Clone + Send + Sync + 'static {
+) -> impl Fn(&str) -> Result<T, String> + Clone + Send + Sync + 'static {
     move |text: &str| {
         let number = whole_number(text).filter(|number| range.contains(number));
-        number.ok_or_else(|| format!("`{text}` is not {}", whole_numbers(&range)))
+        let number = number.and_then(|number| T::try_from(number).ok());
+        number.ok_or_else(|| format!("expected {}", whole_numbers(&range)))
     }
 }
 
@@ -258,7 +259,7 @@ mod tests {
 
     #[test]
     fn counts_have_units_and_exponents() {
-        let read = |text| count(1..=u64::MAX)(text).ok();
+        let read = |text| count::<u64>(1..=u64::MAX)(text).ok();
         for (text, expected) in [
             ("64", 64),
             (" 64 ", 64),
@@ -282,8 +283,8 @@ mod tests {
             assert_eq!(read(text), None, "{text}");
         }
         assert_eq!(
-            count(1..=100)("1k").unwrap_err(),
-            "`1k` is not a whole number from 1 to 100"
+            count::<u64>(1..=100)("1k").unwrap_err(),
+            "expected a whole number from 1 to 100"
         );
     }
 

@@ -20,6 +20,7 @@ Examples:
 pub(crate) struct ViewArgs {
     /// Port; 0 is any free one [default: 8080, or one of the next ten].
     #[arg(long, value_name = "N", help_heading = "Server")]
+    #[arg(value_parser = values::count::<u16>(0..=u16::MAX.into()))]
     pub(crate) port: Option<u16>,
     /// Address that the page is served on.
     ///
@@ -37,7 +38,7 @@ pub(crate) struct ViewArgs {
     pub(crate) film: FilmArgs,
     /// Stop rendering at this number of samples per pixel; the page stays [default: unlimited].
     #[arg(long, env = "BIDIR_SPP", value_name = "N", help_heading = "Stopping")]
-    #[arg(value_parser = values::count(1..=u64::MAX))]
+    #[arg(value_parser = values::count::<u64>(1..=u64::MAX))]
     pub(crate) spp: Option<u64>,
     /// The settings of the estimator.
     #[command(flatten)]

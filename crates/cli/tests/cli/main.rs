@@ -15,7 +15,7 @@ mod help;
 mod info;
 mod layers;
 mod means;
-mod mistakes;
+mod messages;
 mod outputs;
 mod progress;
 #[cfg(unix)]

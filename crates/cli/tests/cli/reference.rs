@@ -270,7 +270,7 @@ fn a_wrong_command_line_is_an_error() {
         ("--spp 4 --extend 4", "cannot be used with"),
         ("--extend 4 --size 4x4", "cannot be used with"),
         ("--extend 4 --crop 0,0,4,4", "cannot be used with"),
-        ("--spp 0", "`0` is not a whole number"),
+        ("--spp 0", "`0`: expected a whole number"),
         (
             "--against photons",
             "--against: --integrator: `photons` is not one of path",
