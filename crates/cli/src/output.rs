@@ -141,7 +141,7 @@ fn images(image: PathBuf) -> Result<[Option<PathBuf>; 2], Failure> {
 }
 
 /// Returns the image that the scene names, as EXR; else one with the name of the scene file.
-fn default_image(scene: &Path, film: Option<&Path>) -> PathBuf {
+pub(crate) fn default_image(scene: &Path, film: Option<&Path>) -> PathBuf {
     let name = film
         .filter(|film| film.file_stem().is_some())
         .or_else(|| Some(Path::new(scene.file_stem()?)).filter(|stem| *stem != Path::new("-")));

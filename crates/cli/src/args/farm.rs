@@ -31,9 +31,7 @@ pub(crate) struct FarmArgs {
     /// Output image; its name without .exr also names the film files [default: the scene's name].
     #[arg(short, long, value_name = "FILE.exr", value_hint = ValueHint::FilePath)]
     pub(crate) output: Option<String>,
-    /// More flags for `bidir render`, after `--`.
-    ///
-    /// Flags that name files, and flags that the job sets itself, are refused.
+    /// More flags for `bidir render`, after `--`; none that names a file, which all parts would write.
     #[arg(last = true, value_name = "FLAG")]
     pub(crate) flags: Vec<String>,
 }

@@ -1,5 +1,5 @@
 #!/bin/sh
-# {{title}}. Written by `bidir farm shell`.
+# Written by `bidir farm shell`.
 #
 #   sh FILE         renders all parts here, one after the other, and makes the image
 #   sh FILE 0 3     renders parts 0 and 3, such as on one of several machines
@@ -7,25 +7,22 @@
 #
 # A stopped part continues when it is started again; finished parts return at once.
 set -eu
-
-render() {
-  part=$1
-  bidir render {{scene}} --part "$part"/{{parts}}{{spp}} --checkpoint {{share}}"$part"-of-{{parts}}.film --resume{{flags}}
-}
-
-merge() {
-  {{merge}}
-  {{develop}}
-}
+parts={{parts}}
+name={{name}}
 
 if [ $# -eq 0 ]; then
-  share=0
-  while [ "$share" -lt {{parts}} ]; do
-    render "$share"
-    share=$((share + 1))
+  part=0
+  while [ "$part" -lt "$parts" ]; do
+    set -- "$@" "$part"
+    part=$((part + 1))
   done
-  merge
+  set -- "$@" merge
 fi
-for share; do
-  if [ "$share" = merge ]; then merge; else render "$share"; fi
+for part; do
+  if [ "$part" = merge ]; then
+    bidir merge "$name".part-[0-9]*-of-"$parts".film -o "$name.film"
+    bidir film develop "$name.film" -o "$name.exr"
+  else
+    bidir render {{scene}} --part "$part/$parts" --checkpoint "$name.part-$part-of-$parts.film" --resume{{flags}}
+  fi
 done

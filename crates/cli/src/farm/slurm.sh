@@ -1,11 +1,11 @@
 #!/bin/sh
-# {{title}}. Written by `bidir farm slurm`.
+# Written by `bidir farm slurm`.
 #
 #   sh FILE       submits the parts, and a last job that makes the image when all are done
 #   sbatch FILE   submits the parts alone
 #
 # A stopped part continues when it is submitted again; finished parts return at once.
-#SBATCH --job-name={{job}}
+#SBATCH --job-name={{label}}
 #SBATCH --array=0-{{last}}
 #SBATCH --requeue
 #SBATCH --open-mode=append
@@ -17,21 +17,28 @@
 ##SBATCH --mem=8G
 ##SBATCH --partition=NAME
 
+parts={{parts}}
+name={{name}}
+
+if [ "${1:-}" = merge ]; then
+  bidir merge "$name".part-[0-9]*-of-"$parts".film -o "$name.film" &&
+    bidir film develop "$name.film" -o "$name.exr"
+  exit
+fi
 if [ -z "${SLURM_ARRAY_TASK_ID:-}" ]; then
-  shares=$(sbatch --parsable "$0") || exit
-  sbatch --job-name={{job}}-image --dependency=afterok:"${shares%%;*}" \
-    --wrap={{wrap}}
+  array=$(sbatch --parsable "$0") || exit
+  sbatch --array=0 --dependency=afterok:"${array%%;*}" "$0" merge
   exit
 fi
 
 # Parts are counted from the array's first task, so a section of the array would be other parts.
-if [ "${SLURM_ARRAY_TASK_COUNT:-{{parts}}}" -ne {{parts}} ]; then
+if [ "${SLURM_ARRAY_TASK_COUNT:-$parts}" -ne "$parts" ]; then
   echo "submit the whole array: finished parts return at once" >&2
   exit 2
 fi
 part=$((SLURM_ARRAY_TASK_ID - ${SLURM_ARRAY_TASK_MIN:-0}))
 
-bidir render {{scene}} --part env/{{parts}}{{spp}} --checkpoint {{share}}"$part"-of-{{parts}}.film --resume{{flags}} &
+bidir render {{scene}} --part "$part/$parts" --checkpoint "$name.part-$part-of-$parts.film" --resume{{flags}} &
 render=$!
 
 # Only this shell gets the notice; TERM goes to all processes, and the shell waits for their end.

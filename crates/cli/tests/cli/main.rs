@@ -9,6 +9,7 @@ mod compare;
 mod denoise;
 mod experiment;
 mod failures;
+#[cfg(unix)]
 mod farm;
 mod film;
 mod help;
