@@ -53,10 +53,10 @@ def prepare(folder):
 
 
 def contents(folder):
-    """Returns the contents of all files by name, but for those that a share or a merge has more or less of."""
+    """Returns the contents of all files by name, but for locks and those that a share or a merge has more or less of."""
     paths = [os.path.relpath(os.path.join(place, name), folder)
              for place, _, names in os.walk(folder) for name in names]
-    others = (".film", ".film.previous", "a.png")
+    others = (".film", ".film.previous", ".lock", "a.png")
     return commands.contents(folder, [path for path in paths if not path.endswith(others)])
 
 

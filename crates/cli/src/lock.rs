@@ -1,27 +1,19 @@
 //! Locks that keep processes from writing the same film file at once.
 //!
-//! The lock is that of the file FILE.lock beside it. The system releases it where the process is
-//! killed; the file then stays, empty and harmless, until the next writer ends. A writer removes the
-//! file *while it holds the lock*, and one that gets a lock begins anew where the name no longer
-//! stands for the locked file. Hence two processes can never both hold it.
+//! The lock is that of the empty file FILE.lock beside it, which stays: a file that is removed may be locked by
+//! one process while another locks its successor. The system releases the lock of a process that ends.
 
 use crate::exit::{Exit, Failure};
 use crate::scene_io;
 use std::fs::{File, OpenOptions, TryLockError};
-use std::io;
 use std::path::{Path, PathBuf};
 
-/// The most times that others may remove a lock file while it is being locked.
-const ATTEMPTS: u32 = 100;
-
-/// The right to write a film file, as long as it lives.
+/// The right to write a film file, as long as it lives. None: there is nothing to lock, or the file system
+/// cannot. Names of temporary files keep writers apart even there.
 #[derive(Debug)]
-pub(crate) struct FilmLock {
-    name: PathBuf,
-    /// None: there is nothing to lock, or the file system cannot. Names of temporary files keep
-    /// writers apart even there.
-    held: Option<File>,
-}
+pub(crate) struct FilmLock(
+    #[expect(dead_code, reason = "an open file holds the lock")] Option<File>,
+);
 
 impl FilmLock {
     /// Takes the lock of a film file, and removes temporary files of killed writers.
@@ -30,40 +22,23 @@ impl FilmLock {
     pub(crate) fn take(film: &Path) -> Result<Self, Failure> {
         // The lock is that of the file itself, whatever link leads to it.
         let film = scene_io::target_of(film);
-        let name = beside(&film, ".lock");
         // Devices and the like are written to and not replaced.
         if film.exists() && !film.is_file() {
-            return Ok(Self { name, held: None });
+            return Ok(Self(None));
         }
-        let unwritable = |error| Failure::io(&name, "write", &error);
-        for _ in 0..ATTEMPTS {
-            let file = open(&name).map_err(unwritable)?;
-            if file.metadata().is_ok_and(|metadata| metadata.len() > 0) {
-                return Err(no_lock(&name));
-            }
-            match file.try_lock() {
-                Ok(()) => {}
-                Err(TryLockError::WouldBlock) => return Err(taken(&film)),
-                Err(TryLockError::Error(_)) => return Ok(Self { name, held: None }),
-            }
-            if is_still(&file, &name).map_err(unwritable)? {
-                for written in [&film, &previous(&film)] {
-                    scene_io::remove_leftovers(written);
-                }
-                let held = Some(file);
-                return Ok(Self { name, held });
-            }
+        let name = beside(&film, ".lock");
+        let mut options = OpenOptions::new();
+        let file = options.write(true).create(true).truncate(false).open(&name);
+        let file = file.map_err(|error| Failure::io(&name, "write", &error))?;
+        match file.try_lock() {
+            Ok(()) => {}
+            Err(TryLockError::WouldBlock) => return Err(taken(&film)),
+            Err(TryLockError::Error(_)) => return Ok(Self(None)),
         }
-        Err(taken(&film))
-    }
-}
-
-impl Drop for FilmLock {
-    fn drop(&mut self) {
-        if cfg!(unix) && self.held.is_some() {
-            // A file that stays is harmless.
-            let _ = std::fs::remove_file(&self.name);
+        for written in [&film, &previous(&film)] {
+            scene_io::remove_leftovers(written);
         }
+        Ok(Self(Some(file)))
     }
 }
 
@@ -98,82 +73,18 @@ fn taken(film: &Path) -> Failure {
     Failure::new(Exit::InputOutput, message).with_hint(hint)
 }
 
-/// The name of the lock is that of a file with content, which would be removed with the lock.
-fn no_lock(name: &Path) -> Failure {
-    let message = format!("{} is not an empty lock file", name.display());
-    let hint = "rename it, or give the film file another name";
-    Failure::new(Exit::InputOutput, message).with_hint(hint)
-}
-
-/// Opens a lock file, or makes it.
-fn open(name: &Path) -> io::Result<File> {
-    let mut options = OpenOptions::new();
-    options.write(true).create(true).truncate(false).open(name)
-}
-
-/// True where the name still stands for the file. It is opened for that, as network file systems look
-/// afresh only then.
-#[cfg(unix)]
-fn is_still(file: &File, name: &Path) -> io::Result<bool> {
-    use std::os::unix::fs::MetadataExt;
-    let identity = |file: &File| {
-        let metadata = file.metadata()?;
-        Ok::<_, io::Error>((metadata.dev(), metadata.ino()))
-    };
-    match File::open(name) {
-        Ok(now) => Ok(identity(&now)? == identity(file)?),
-        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(false),
-        Err(error) => Err(error),
-    }
-}
-
-/// Lock files are not removed here, as open files cannot be.
-#[cfg(not(unix))]
-fn is_still(_file: &File, _name: &Path) -> io::Result<bool> {
-    Ok(true)
-}
-
-#[cfg(all(test, unix))]
+#[cfg(test)]
 mod tests {
     use super::*;
-    use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
     #[test]
-    fn a_lock_is_taken_once_and_leaves_nothing_behind() {
+    fn a_lock_is_taken_once_until_it_is_dropped() {
         let folder = tempfile::tempdir().unwrap();
         let film = folder.path().join("a.film");
         let lock = FilmLock::take(&film).unwrap();
         let failure = FilmLock::take(&film).unwrap_err();
         assert_eq!(failure.exit(), Exit::InputOutput);
         drop(lock);
-        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
-        // A killed process leaves this.
-        File::create(beside(&film, ".lock")).unwrap();
-        drop(FilmLock::take(&film).unwrap());
-        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
-    }
-
-    #[test]
-    fn two_never_have_the_lock() {
-        let folder = tempfile::tempdir().unwrap();
-        let film = folder.path().join("a.film");
-        let (is_held, taken) = (AtomicBool::new(false), AtomicU64::new(0));
-        let threads = || {
-            while taken.load(Ordering::Relaxed) < 500 {
-                let Ok(lock) = FilmLock::take(&film) else {
-                    continue;
-                };
-                assert!(!is_held.swap(true, Ordering::SeqCst), "held twice");
-                taken.fetch_add(1, Ordering::Relaxed);
-                std::thread::yield_now();
-                is_held.store(false, Ordering::SeqCst);
-                drop(lock);
-            }
-        };
-        std::thread::scope(|scope| {
-            for _ in 0..4 {
-                scope.spawn(threads);
-            }
-        });
+        FilmLock::take(&film).unwrap();
     }
 }

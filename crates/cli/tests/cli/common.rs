@@ -58,13 +58,22 @@ impl Workplace {
         fs::read_to_string(self.path(name)).unwrap()
     }
 
-    /// Returns the sorted names of all files.
+    /// Returns the sorted names of all files but locks, which stay.
     pub(crate) fn names(&self) -> Vec<String> {
         let entries = fs::read_dir(self.folder.path()).unwrap();
         let names = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap());
-        let mut names: Vec<_> = names.collect();
+        let mut names: Vec<_> = names
+            .filter(|name| name.strip_suffix(".lock").is_none())
+            .collect();
         names.sort();
         names
+    }
+
+    /// Returns the bytes of all files but locks.
+    pub(crate) fn contents(&self) -> BTreeMap<String, Vec<u8>> {
+        let names = self.names().into_iter();
+        let files = names.filter_map(|name| Some((fs::read(self.path(&name)).ok()?, name)));
+        files.map(|(bytes, name)| (name, bytes)).collect()
     }
 
     /// Returns the attributes of an image as texts by name.

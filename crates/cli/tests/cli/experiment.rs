@@ -59,13 +59,13 @@ fn an_experiment_has_tables_records_and_a_report() {
     assert!(place.read("out/deep/report.html").contains("A test"));
     let images = std::fs::read_dir(place.path("out/deep/images")).unwrap();
     assert_eq!(images.count(), 4);
-    // Nothing is rendered twice, and nothing else is in the folder.
+    // Nothing is rendered twice, and nothing else but a lock is in the folder.
     place
         .run("experiment test.toml -o out/deep --quiet")
         .expect(0)
         .prints("room, 2 spp");
     let names = std::fs::read_dir(place.path("out/deep")).unwrap();
-    assert_eq!(names.count(), 5);
+    assert_eq!(names.count(), 6);
 }
 
 #[test]

@@ -20,7 +20,6 @@ fn leftovers_of_killed_writers_are_removed() {
     for name in ["b.exr", "b.png"] {
         place.write(&format!(".{name}.bidir-{host}-1-aB3dE6.tmp"), "part of");
     }
-    place.write("a.film.lock", "");
     place.render_share("0..1", "a.film");
     place.run("film develop a.film -o b.exr").expect(0);
     place.run("film develop a.film -o b.png").expect(0);
@@ -29,16 +28,6 @@ fn leftovers_of_killed_writers_are_removed() {
     let other = format!(".b.film.bidir-{host}-1-aB3dE6.tmp");
     let names = [&*other, "a.film", "b.exr", "b.png", "c.film", "room.pbrt"];
     assert_eq!(place.names(), names);
-}
-
-#[test]
-fn a_file_with_contents_is_no_lock() {
-    let place = Workplace::new();
-    place.write("a.film.lock", "notes");
-    let render = "render room.pbrt -q --spp 1 --checkpoint a.film";
-    let says = "a.film.lock is not an empty lock file";
-    place.run(render).expect(4).says(says);
-    assert_eq!(place.read("a.film.lock"), "notes");
 }
 
 #[cfg(unix)]
