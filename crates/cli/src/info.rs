@@ -4,7 +4,7 @@ use crate::args::{InfoArgs, SceneArgs};
 use crate::console::{Console, print, print_json};
 use crate::exit::{Exit, Failure};
 use crate::scene_io::{self, LoadedScene};
-use bidir::analysis::{BlindSpot, blind_spots};
+use bidir::analysis::blind_spots;
 use bidir::film::{Film, Layers};
 use bidir::integrator::IntegratorKind;
 use bidir::light::Light;
@@ -12,71 +12,11 @@ use bidir::material::Material;
 use bidir::medium::Medium;
 use bidir::scene::Scene;
 use bidir::shape::Shape;
-use bidir::view::View;
 use formats::film::SettingsText;
 use formats::{number, printable};
-use serde::Serialize;
+use indicatif::BinaryBytes;
+use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
-use std::fmt::{Display, Write};
-
-/// The number of items of each kind.
-type Counts = BTreeMap<&'static str, usize>;
-
-/// The contents of a scene.
-#[derive(Debug, Serialize)]
-struct Info {
-    scene: String,
-    film: FilmInfo,
-    camera: &'static str,
-    settings: SettingsText,
-    spp: u64,
-    shapes: Counts,
-    triangles: usize,
-    /// Primitives; those of shared objects count once.
-    primitives: u64,
-    /// Primitives; those of shared objects count once per instance.
-    placed_primitives: u64,
-    instances: usize,
-    /// Instances whose object is shared.
-    shared_instances: usize,
-    materials: Counts,
-    /// Participating media, without the vacuum.
-    media: Counts,
-    lights: Counts,
-    /// The number of lights in each group.
-    light_groups: BTreeMap<String, usize>,
-    textures: usize,
-    /// The two corners of a box around all surfaces. None: the scene has none.
-    bounds: Option<[[f32; 3]; 2]>,
-    bvh_bytes: usize,
-    isa: String,
-    /// The light paths that integrators miss or sample badly, by integrator.
-    blind_spots: BTreeMap<&'static str, Vec<BlindSpotInfo>>,
-    /// Unsupported features, and their replacements with `--lenient`.
-    refused: Vec<String>,
-    warnings: Vec<String>,
-}
-
-/// Light paths that an integrator misses or samples badly.
-#[derive(Debug, PartialEq, Serialize)]
-struct BlindSpotInfo {
-    /// True if the paths are missing from images; false if they are only noisy.
-    missing: bool,
-    paths: &'static str,
-}
-
-#[derive(Debug, Serialize)]
-struct FilmInfo {
-    resolution: [u32; 2],
-    /// Left, top, right and bottom (exclusive).
-    crop: [u32; 4],
-    /// Half widths of the pixel filter.
-    filter_radius: [f32; 2],
-    exposure: f32,
-    /// The name that the scene gives its image.
-    output: Option<String>,
-    bytes: u64,
-}
 
 /// Prints the contents of a scene.
 pub(crate) fn run(args: &InfoArgs, console: Console) -> Result<Exit, Failure> {
@@ -86,241 +26,234 @@ pub(crate) fn run(args: &InfoArgs, console: Console) -> Result<Exit, Failure> {
         ..args.scene.clone()
     };
     let loaded = scene_io::load(&scene, None)?;
-    let info = Info::new(args.scene.scene.display().to_string(), &loaded);
+    let info = contents(&args.scene.scene.display().to_string(), &loaded);
     if args.json {
         loaded.check_strict(&args.scene, 0)?;
         return print_json(&info);
     }
     // The text has the refused features, and stderr all other warnings.
-    let is_other = |warning: &&String| !info.refused.contains(warning);
-    for warning in info.warnings.iter().filter(is_other) {
+    let is_other = |warning: &&String| !loaded.refused.contains(warning);
+    for warning in loaded.warnings.iter().filter(is_other) {
         console.warning(warning);
     }
     loaded.check_strict(&args.scene, 0)?;
-    print(&info.text())
+    let lines = lines(&info, &loaded).into_iter();
+    let lines = lines.map(|(name, value)| format!("{name:<12} {}\n", printable(&value)));
+    print(&lines.collect::<String>())
 }
 
-impl Info {
-    fn new(name: String, loaded: &LoadedScene) -> Self {
-        let scene = &loaded.subject.scene;
-        let bounds = scene.bvh().bounds();
-        let corners = [bounds.min, bounds.max];
-        let corners = corners.map(|p| scene.space().world_point(p).as_vec3().to_array());
-        let triangles = scene.shapes().iter().map(|shape| match shape {
-            Shape::Mesh(mesh) => mesh.triangle_count(),
-            _ => 0,
-        });
-        Self {
-            scene: name,
-            film: FilmInfo::new(&loaded.subject.view, loaded.output.as_deref()),
-            camera: loaded.subject.view.camera().kind(),
-            settings: SettingsText::from(&loaded.settings),
-            spp: loaded.spp,
-            shapes: count(scene.shapes(), Shape::kind),
-            triangles: triangles.sum(),
-            primitives: scene.unique_primitives(),
-            placed_primitives: scene.placed_primitives(),
-            instances: loaded.summary.instances,
-            shared_instances: scene.instance_count(),
-            materials: count(scene.materials(), Material::kind),
-            media: count(scene.media(), Medium::kind),
-            lights: count(scene.lights(), Light::kind),
-            light_groups: light_groups(scene),
-            textures: loaded.summary.textures,
-            bounds: (scene.placed_primitives() > 0).then_some(corners),
-            bvh_bytes: scene.bvh().memory_bytes(),
-            isa: scene.bvh().isa().to_string(),
-            blind_spots: IntegratorKind::NAMES
-                .map(|(name, integrator)| (name, blind_spots_of(loaded, integrator)))
-                .into(),
-            refused: loaded.refused.clone(),
-            warnings: loaded.warnings.clone(),
-        }
-    }
-
-    /// Returns one line per property.
-    fn text(&self) -> String {
-        let mut text = String::new();
-        for (name, value) in self.lines() {
-            // Writing to a string cannot fail.
-            let _ = writeln!(text, "{name:<12} {}", printable(&value));
-        }
-        self.write_blind_spots(&mut text);
-        for refused in &self.refused {
-            let _ = writeln!(text, "refused      {}", printable(refused));
-        }
-        text
-    }
-
-    /// Returns the properties with their names.
-    fn lines(&self) -> [(&'static str, String); 17] {
-        let film = &self.film;
-        let ([width, height], [x0, y0, x1, y1]) = (film.resolution, film.crop);
-        let settings = self.settings.by_flag();
-        let depth = match &*settings["max-depth"] {
-            "0" => "no limit".to_owned(),
-            depth => format!("at most {depth} bounces"),
-        };
-        [
-            ("scene", self.scene.clone()),
-            (
-                "film",
-                format!("{width}x{height}, pixels {x0},{y0} to {x1},{y1}"),
-            ),
-            (
-                "output",
-                film.output.clone().unwrap_or_else(|| "not named".into()),
-            ),
-            ("camera", self.camera.to_owned()),
-            ("integrator", format!("{}, {depth}", settings["integrator"])),
-            (
-                "sampler",
-                format!(
-                    "{}, {} spp, seed {}",
-                    settings["sampler"], self.spp, settings["seed"]
-                ),
-            ),
-            ("shapes", list(&self.shapes)),
-            ("triangles", self.triangles.to_string()),
-            ("instances", self.instances_text()),
-            ("materials", list(&self.materials)),
-            ("media", list(&self.media)),
-            ("lights", list(&self.lights)),
-            ("light groups", self.groups_text()),
-            ("textures", self.textures.to_string()),
-            ("bounds", self.bounds_text()),
-            ("film memory", bytes(film.bytes)),
-            (
-                "BVH memory",
-                format!("{} ({})", bytes(self.bvh_bytes as u64), self.isa),
-            ),
-        ]
-    }
-
-    /// Writes a line for each blind spot, those of the scene's integrator first. Integrators with the same blind
-    /// spots share their lines.
-    fn write_blind_spots(&self, text: &mut String) {
-        let integrator = self.settings.request.integrator.map(IntegratorKind::name);
-        let mut integrators: Vec<_> = self.blind_spots.iter().collect();
-        integrators.sort_by_key(|(name, _)| Some(**name) != integrator);
-        let mut groups: Vec<(Vec<&str>, &[BlindSpotInfo])> = Vec::new();
-        for (name, spots) in integrators {
-            match groups.iter_mut().find(|(_, known)| known == spots) {
-                Some((names, _)) => names.push(*name),
-                None => groups.push((vec![*name], spots.as_slice())),
-            }
-        }
-        for (names, spots) in groups {
-            let name = names.join(", ");
-            let [find, miss, undersample] = match names.len() {
-                1 => ["finds", "misses", "is noisy for"],
-                _ => ["find", "miss", "are noisy for"],
-            };
-            if spots.is_empty() {
-                let _ = writeln!(text, "{name:<12} {find} all light paths");
-            }
-            for spot in spots {
-                let how = if spot.missing { miss } else { undersample };
-                let _ = writeln!(text, "{name:<12} {how} {}", spot.paths);
-            }
-        }
-    }
-
-    /// Returns the light groups with their numbers of lights, such as `2: desk (1 light), default (3 lights)`.
-    fn groups_text(&self) -> String {
-        let lights = |count| if count == 1 { "light" } else { "lights" };
-        let groups = self.light_groups.iter();
-        let groups = groups.map(|(name, &count)| format!("{name} ({count} {})", lights(count)));
-        let groups: Vec<_> = groups.collect();
-        match groups.len() {
-            0 => "none".to_owned(),
-            count => format!("{count}: {}", groups.join(", ")),
-        }
-    }
-
-    fn instances_text(&self) -> String {
-        match self.shared_instances {
-            0 => self.instances.to_string(),
-            shared => format!(
-                "{}, {shared} of shared objects: {} primitives kept, {} placed",
-                self.instances, self.primitives, self.placed_primitives
-            ),
-        }
-    }
-
-    fn bounds_text(&self) -> String {
-        self.bounds.map_or_else(
-            || "no surfaces".into(),
-            |corners| {
-                let corner = |corner: [f32; 3]| corner.map(number).join(", ");
-                let [low, high] = corners.map(corner);
-                format!("({low}) to ({high})")
-            },
-        )
-    }
+/// Returns the contents of a scene as JSON.
+fn contents(name: &str, loaded: &LoadedScene) -> Value {
+    let (scene, view) = (&loaded.subject.scene, &loaded.subject.view);
+    let (film, bvh) = (view.film(), scene.bvh());
+    let ([left, top], [right, bottom]) = (film.crop.min, film.crop.max);
+    let triangles = scene.shapes().iter().map(|shape| match shape {
+        Shape::Mesh(mesh) => mesh.triangle_count(),
+        _ => 0,
+    });
+    let blind_spots = IntegratorKind::NAMES.map(|(name, integrator)| {
+        let spots = blind_spots(scene, view, integrator).into_iter();
+        // Paths that are not missing are only noisy.
+        let spots =
+            spots.map(|spot| json!({"missing": spot.is_missing(), "paths": spot.description()}));
+        (name, spots.collect::<Vec<_>>())
+    });
+    json!({
+        "scene": name,
+        "film": {
+            "resolution": film.resolution,
+            "crop": [left, top, right, bottom],
+            "filter_radius": film.filter.radius().to_array().map(short),
+            "exposure": short(film.exposure),
+            "output": loaded.output.as_ref().map(|output| output.display().to_string()),
+            "bytes": Film::memory(film, &Layers::default()),
+        },
+        "camera": view.camera().kind(),
+        "settings": SettingsText::from(&loaded.settings),
+        "spp": loaded.spp,
+        "shapes": count(scene.shapes().iter().map(Shape::kind)),
+        "triangles": triangles.sum::<usize>(),
+        // Those of shared objects count once,
+        "primitives": scene.unique_primitives(),
+        // or once per instance.
+        "placed_primitives": scene.placed_primitives(),
+        "instances": loaded.summary.instances,
+        "shared_instances": scene.instance_count(),
+        "materials": count(scene.materials().iter().map(Material::kind)),
+        "media": count(scene.media().iter().map(Medium::kind)),
+        "lights": count(scene.lights().iter().map(Light::kind)),
+        "light_groups": count((0..scene.lights().len() as u32).map(|light| {
+            &*scene.group_names()[scene.light_group(light) as usize]
+        })),
+        "textures": loaded.summary.textures,
+        "bounds": bounds(scene).map(|corners| corners.map(|corner| corner.map(short))),
+        "bvh_bytes": bvh.memory_bytes(),
+        "isa": bvh.isa().to_string(),
+        "blind_spots": BTreeMap::from(blind_spots),
+        "refused": loaded.refused,
+        "warnings": loaded.warnings,
+    })
 }
 
-impl FilmInfo {
-    fn new(view: &View, output: Option<&std::path::Path>) -> Self {
-        let film = view.film();
-        Self {
-            resolution: film.resolution,
-            crop: [
-                film.crop.min[0],
-                film.crop.min[1],
-                film.crop.max[0],
-                film.crop.max[1],
-            ],
-            filter_radius: film.filter.radius().to_array(),
-            exposure: film.exposure,
-            output: output.map(|output| output.display().to_string()),
-            bytes: Film::memory(film, &Layers::default()),
-        }
-    }
+/// Returns a number with the digits of 32 bits, where a `Value` would have those of 64.
+fn short(number: f32) -> Value {
+    serde_json::from_str(&format!("{number:?}")).unwrap_or_default()
 }
 
-fn blind_spots_of(loaded: &LoadedScene, integrator: IntegratorKind) -> Vec<BlindSpotInfo> {
-    let spots = blind_spots(&loaded.subject.scene, &loaded.subject.view, integrator).into_iter();
-    let info = |spot: BlindSpot| BlindSpotInfo {
-        missing: spot.is_missing(),
-        paths: spot.description(),
-    };
-    spots.map(info).collect()
+/// Returns two corners of a box around all surfaces. None: the scene has none.
+fn bounds(scene: &Scene) -> Option<[[f32; 3]; 2]> {
+    let bounds = scene.bvh().bounds();
+    let corners = [bounds.min, bounds.max];
+    let corners = corners.map(|p| scene.space().world_point(p).as_vec3().to_array());
+    (scene.placed_primitives() > 0).then_some(corners)
 }
 
-fn light_groups(scene: &Scene) -> BTreeMap<String, usize> {
+/// Returns the number of items of each name.
+fn count<'a>(names: impl Iterator<Item = &'a str>) -> BTreeMap<&'a str, usize> {
     let mut counts = BTreeMap::new();
-    for light in 0..scene.lights().len() as u32 {
-        let name = &scene.group_names()[scene.light_group(light) as usize];
-        *counts.entry(name.clone()).or_default() += 1;
+    for name in names {
+        *counts.entry(name).or_default() += 1;
     }
     counts
 }
 
-fn count<T>(items: &[T], kind: impl Fn(&T) -> &'static str) -> Counts {
-    let mut counts = Counts::new();
-    for item in items {
-        *counts.entry(kind(item)).or_default() += 1;
+/// Returns the contents of a scene as lines, each with its name.
+fn lines(info: &Value, loaded: &LoadedScene) -> Vec<(String, String)> {
+    let film = loaded.subject.view.film();
+    let ([width, height], [x0, y0], [x1, y1]) = (film.resolution, film.crop.min, film.crop.max);
+    let settings = SettingsText::from(&loaded.settings).by_flag();
+    let depth = match &*settings["max-depth"] {
+        "0" => "no limit".to_owned(),
+        depth => format!("at most {depth} bounces"),
+    };
+    let memory = |bytes: &Value| BinaryBytes(bytes.as_u64().unwrap_or_default()).to_string();
+    let text = |key: &str| match &info[key] {
+        Value::String(text) => text.clone(),
+        Value::Object(counts) => list(counts),
+        number => number.to_string(),
+    };
+    let groups = info["light_groups"].as_object().into_iter().flatten();
+    let groups: Vec<_> = groups
+        .map(|(name, count)| {
+            let lights = if *count == 1 { "light" } else { "lights" };
+            format!("{name} ({count} {lights})")
+        })
+        .collect();
+    let groups = match groups.len() {
+        0 => "none".to_owned(),
+        count => format!("{count}: {}", groups.join(", ")),
+    };
+    let corner = |corner: [f32; 3]| corner.map(number).join(", ");
+    let bounds = bounds(&loaded.subject.scene).map(|corners| corners.map(corner));
+    let bounds = bounds.map(|[low, high]| format!("({low}) to ({high})"));
+    let named = [
+        ("scene", text("scene")),
+        (
+            "film",
+            format!("{width}x{height}, pixels {x0},{y0} to {x1},{y1}"),
+        ),
+        (
+            "output",
+            info["film"]["output"]
+                .as_str()
+                .unwrap_or("not named")
+                .to_owned(),
+        ),
+        ("camera", text("camera")),
+        ("integrator", format!("{}, {depth}", settings["integrator"])),
+        (
+            "sampler",
+            format!(
+                "{}, {} spp, seed {}",
+                settings["sampler"], loaded.spp, settings["seed"]
+            ),
+        ),
+        ("shapes", text("shapes")),
+        ("triangles", text("triangles")),
+        (
+            "instances",
+            instances(&loaded.subject.scene, text("instances")),
+        ),
+        ("materials", text("materials")),
+        ("media", text("media")),
+        ("lights", text("lights")),
+        ("light groups", groups),
+        ("textures", text("textures")),
+        ("bounds", bounds.unwrap_or_else(|| "no surfaces".to_owned())),
+        ("film memory", memory(&info["film"]["bytes"])),
+        (
+            "BVH memory",
+            format!("{} ({})", memory(&info["bvh_bytes"]), text("isa")),
+        ),
+    ];
+    let named = named
+        .map(|(name, text)| (name.to_owned(), text))
+        .into_iter();
+    let refused = loaded
+        .refused
+        .iter()
+        .map(|text| ("refused".to_owned(), text.clone()));
+    let spots = info["blind_spots"].as_object();
+    let spots = spots.map(|spots| blind_spot_lines(spots, loaded.settings.integrator));
+    named
+        .chain(spots.unwrap_or_default())
+        .chain(refused)
+        .collect()
+}
+
+/// Returns a line for each blind spot, those of the scene's integrator first. Integrators with the same blind spots
+/// share their lines.
+fn blind_spot_lines(spots: &Map<String, Value>, own: IntegratorKind) -> Vec<(String, String)> {
+    let mut integrators: Vec<_> = spots.iter().collect();
+    integrators.sort_by_key(|(name, _)| **name != own.name());
+    let mut groups: Vec<(Vec<&str>, &Value)> = Vec::new();
+    for (name, spots) in integrators {
+        match groups.iter_mut().find(|(_, known)| *known == spots) {
+            Some((names, _)) => names.push(name),
+            None => groups.push((vec![name], spots)),
+        }
     }
-    counts
+    let lines = groups.into_iter().flat_map(|(names, spots)| {
+        let [find, miss, undersample] = match names.len() {
+            1 => ["finds", "misses", "is noisy for"],
+            _ => ["find", "miss", "are noisy for"],
+        };
+        let spots = spots.as_array().into_iter().flatten().map(|spot| {
+            let how = if spot["missing"] == true {
+                miss
+            } else {
+                undersample
+            };
+            format!("{how} {}", spot["paths"].as_str().unwrap_or_default())
+        });
+        let mut texts: Vec<_> = spots.collect();
+        if texts.is_empty() {
+            texts.push(format!("{find} all light paths"));
+        }
+        texts.into_iter().map(move |text| (names.join(", "), text))
+    });
+    lines.collect()
+}
+
+fn instances(scene: &Scene, all: String) -> String {
+    match scene.instance_count() {
+        0 => all,
+        shared => format!(
+            "{all}, {shared} of shared objects: {} primitives kept, {} placed",
+            scene.unique_primitives(),
+            scene.placed_primitives()
+        ),
+    }
 }
 
 /// Returns counts as text, such as `3: 2 disk, 1 mesh`.
-fn list<K: Display>(counts: &BTreeMap<K, usize>) -> String {
-    let kinds: Vec<_> = counts
+fn list(counts: &Map<String, Value>) -> String {
+    let texts: Vec<_> = counts
         .iter()
         .map(|(kind, count)| format!("{count} {kind}"))
         .collect();
-    match counts.values().sum::<usize>() {
+    match counts.values().filter_map(Value::as_u64).sum::<u64>() {
         0 => "none".to_owned(),
-        total => format!("{total}: {}", kinds.join(", ")),
-    }
-}
-
-fn bytes(count: u64) -> String {
-    let units = [(1u64 << 30, "GiB"), (1 << 20, "MiB"), (1 << 10, "KiB")];
-    match units.into_iter().find(|(unit, _)| count >= *unit) {
-        Some((unit, name)) => format!("{:.1} {name}", count as f64 / unit as f64),
-        None => format!("{count} bytes"),
+        total => format!("{total}: {}", texts.join(", ")),
     }
 }

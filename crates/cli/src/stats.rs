@@ -1,23 +1,19 @@
 //! Counts and measurements of a render: as JSON, and as lines to read.
 
-mod parts;
 mod summary;
 
 use crate::scene_io::Stopping;
 use bidir::driver::{Budget, Session};
 use bidir::film::Film;
-use bidir::stats::{Dropped, StrategyCounts};
+use bidir::stats::{Stage, StageTimes};
 use formats::film::SettingsText;
+use lab::pyramid::Figures;
 use lab::sample::TrainingReport;
-use parts::{BudgetReport, RayReport, StagesReport, StrategyReport};
 use serde::Serialize;
-use std::collections::BTreeSet;
+use serde_json::{Value, json};
 use std::time::Duration;
 
 pub(crate) use summary::{Summary, listed};
-
-/// The version of the program.
-const VERSION: &str = env!("CARGO_PKG_VERSION");
 
 /// The course of a render.
 #[derive(Clone, Copy, Debug)]
@@ -30,41 +26,16 @@ pub(crate) struct Course {
     pub(crate) stopping: Stopping,
 }
 
-/// The report of a render.
-#[derive(Clone, Debug, Serialize)]
+/// The report of a render. Numbers that are not finite become null in JSON.
+#[derive(Debug, Serialize)]
+#[serde(transparent)]
 pub(crate) struct Report {
-    version: &'static str,
-    scene: String,
-    resolution: [u32; 2],
-    /// Left, top, right and bottom (exclusive) of what was rendered.
-    crop: [u32; 4],
-    settings: SettingsText,
-    budget: BudgetReport,
-    threads: usize,
-    isa: String,
-    spp: u64,
-    /// The passes of the film, those of earlier runs included.
-    passes: String,
-    stopping: &'static str,
-    seconds: f64,
-    load_seconds: f64,
-    samples: u64,
-    samples_per_second: f64,
-    /// None: too few samples to measure one.
-    stages: Option<StagesReport>,
-    rays: RayReport,
-    connection_rays_per_sample: f64,
-    connection_blocked: u64,
-    light_image_blocked: u64,
-    candidates: u64,
-    strategies: Vec<StrategyReport>,
-    /// Of paths that are too long for counts of their own.
-    longer_paths: StrategyCounts,
-    training: Option<TrainingReport>,
-    dropped: u64,
-    dropped_list: BTreeSet<Dropped>,
-    film_bytes: u64,
-    bvh_bytes: usize,
+    json: Value,
+    #[serde(skip)]
+    strategies: Vec<Figures>,
+    /// The warning of dropped contributions. None: there were none.
+    #[serde(skip)]
+    warning: Option<String>,
 }
 
 impl Report {
@@ -79,53 +50,81 @@ impl Report {
         let (bvh, training) = (session.scene().bvh(), session.training());
         let ([left, top], [right, bottom]) = (film.crop.min, film.crop.max);
         let seconds = course.render.as_secs_f64();
+        let strategies = Figures::all(session);
+        let mut rays = json!(stats.rays);
+        rays["training"] = training.map_or(0, |training| training.rays.total()).into();
+        let json = json!({
+            "version": env!("CARGO_PKG_VERSION"),
+            "scene": Value::String(scene),
+            "resolution": film.resolution,
+            "crop": [left, top, right, bottom],
+            "settings": SettingsText::from(session.settings()),
+            "budget": {
+                "spp": budget.passes,
+                "seconds": budget.time.map(|time| time.as_secs_f64()),
+            },
+            "threads": session.threads(),
+            "isa": bvh.isa().to_string(),
+            "spp": session.film().passes().len(),
+            "passes": session.film().passes().to_string(),
+            "stopping": course.stopping.name(),
+            "seconds": seconds,
+            "load_seconds": course.load.as_secs_f64(),
+            "samples": stats.samples,
+            "samples_per_second": stats.samples as f64 / seconds,
+            "stages": stages(session.stage_times()),
+            "rays": rays,
+            "connection_rays_per_sample": per_sample(stats.rays.connection, stats.samples),
+            "connection_blocked": stats.connections_blocked,
+            "light_image_blocked": stats.light_image_blocked,
+            "candidates": stats.candidates,
+            "strategies": strategies.iter().map(row).collect::<Vec<_>>(),
+            "longer_paths": stats.strategies.longer(),
+            "training": TrainingReport::new(session),
+            "dropped": stats.dropped,
+            "dropped_list": stats.dropped_list,
+            "film_bytes": Film::memory(film, &session.settings().layers),
+            "bvh_bytes": bvh.memory_bytes(),
+        });
+        let warning = stats.dropped_list.first().map(|first| {
+            let ([x, y], pass) = (first.pixel, first.pass);
+            format!(
+                "{} contributions were not finite or too large, and were dropped; the first by {}, \
+                 repeat it with --replay {x},{y},{pass}",
+                stats.dropped, first.strategy
+            )
+        });
         Self {
-            version: VERSION,
-            scene,
-            resolution: film.resolution,
-            crop: [left, top, right, bottom],
-            settings: SettingsText::from(session.settings()),
-            budget: BudgetReport {
-                spp: budget.passes,
-                seconds: budget.time.map(|time| time.as_secs_f64()),
-            },
-            threads: session.threads(),
-            isa: bvh.isa().to_string(),
-            spp: session.film().passes().len(),
-            passes: session.film().passes().to_string(),
-            stopping: course.stopping.name(),
-            seconds,
-            load_seconds: course.load.as_secs_f64(),
-            samples: stats.samples,
-            samples_per_second: stats.samples as f64 / seconds,
-            stages: StagesReport::new(session.stage_times()),
-            rays: RayReport {
-                of_image: stats.rays,
-                training: training.map_or(0, |training| training.rays.total()),
-            },
-            connection_rays_per_sample: per_sample(stats.rays.connection, stats.samples),
-            connection_blocked: stats.connections_blocked,
-            light_image_blocked: stats.light_image_blocked,
-            candidates: stats.candidates,
-            strategies: StrategyReport::all(session),
-            longer_paths: stats.strategies.longer(),
-            training: TrainingReport::new(session),
-            dropped: stats.dropped,
-            dropped_list: stats.dropped_list.clone(),
-            film_bytes: Film::memory(film, &session.settings().layers),
-            bvh_bytes: bvh.memory_bytes(),
+            json,
+            strategies,
+            warning,
         }
     }
 
-    /// The counts of each strategy, as a table to read.
+    /// The counts of the strategies that the film keeps images of, as a table to read.
     pub(crate) fn strategy_table(&self) -> String {
-        parts::strategy_table(&self.strategies, self.samples)
+        let head = "strategy  rays/sample  blocked        mean    variance\n".to_owned();
+        let samples = self.json["samples"].as_u64().unwrap_or_default();
+        self.strategies.iter().fold(head, |table, row| {
+            let Some(images) = row.images else {
+                return table;
+            };
+            let rays = per_sample(row.counts.traced, samples);
+            let or_dash = |text: Option<String>| text.unwrap_or_else(|| "-".to_owned());
+            let blocked = row
+                .blocked_share()
+                .map(|share| format!("{:.1} %", 100.0 * share));
+            let variance = images.variance.map(|variance| format!("{variance:.3e}"));
+            let [blocked, variance] = [blocked, variance].map(or_dash);
+            let (name, mean) = (row.strategy.to_string(), format!("{:.3e}", images.mean));
+            table + &format!("{name:<8} {rays:>12.3} {blocked:>8} {mean:>11} {variance:>11}\n")
+        })
     }
 
     /// The warning of raw images that lack values. None: they lack none.
     pub(crate) fn raw_warning(&self) -> Option<String> {
-        let dropped = |strategy: &StrategyReport| strategy.raw_dropped.unwrap_or(0);
-        let count: u64 = self.strategies.iter().map(dropped).sum();
+        let images = self.strategies.iter().filter_map(|figures| figures.images);
+        let count: u64 = images.map(|images| images.raw_dropped).sum();
         (count > 0).then(|| {
             format!(
                 "{count} values were too large without their weight, and are missing in raw images"
@@ -135,16 +134,47 @@ impl Report {
 
     /// The warning of dropped contributions. None: there were none.
     pub(crate) fn warning(&self) -> Option<String> {
-        let first = self.dropped_list.first()?;
-        let [x, y] = first.pixel;
-        Some(format!(
-            "{} contributions were not finite or too large, and were dropped; the first by {}, \
-             repeat it with --replay {x},{y},{}",
-            self.dropped, first.strategy, first.pass
-        ))
+        self.warning.clone()
     }
 }
 
 fn per_sample(count: u64, samples: u64) -> f64 {
     count as f64 / samples.max(1) as f64
+}
+
+/// The time of samples by stage, of one thread with its clock, from the samples that were measured. None: no
+/// sample was.
+fn stages(times: &StageTimes) -> Option<Value> {
+    let total = times.total().as_secs_f64();
+    let per_sample = |seconds: f64| seconds * 1e9 / times.samples as f64;
+    let parts = Stage::NAMES.into_iter().filter_map(|(name, stage)| {
+        let seconds = times.of(stage).as_secs_f64();
+        (seconds > 0.0).then(|| {
+            json!({
+                "stage": name,
+                "share": seconds / total,
+                "nanoseconds_per_sample": per_sample(seconds),
+            })
+        })
+    });
+    (times.samples > 0).then(|| {
+        json!({
+            "measured_samples": times.samples,
+            "nanoseconds_per_sample": per_sample(total),
+            "parts": parts.collect::<Vec<_>>(),
+        })
+    })
+}
+
+/// The counts of a strategy; its mean luminance and variance where the film keeps an image of it.
+fn row(figures: &Figures) -> Value {
+    let images = figures.images;
+    let mut row = json!(figures.counts);
+    row["s"] = figures.strategy.s.into();
+    row["t"] = figures.strategy.t.into();
+    row["blocked_share"] = figures.blocked_share().into();
+    row["mean"] = images.map(|images| images.mean).into();
+    row["variance"] = images.and_then(|images| images.variance).into();
+    row["raw_dropped"] = images.map(|images| images.raw_dropped).into();
+    row
 }
