@@ -1,9 +1,8 @@
 //! Starts a render: trains its session, which may take longer than the passes.
 
 use crate::args::RenderArgs;
-use crate::console::{Console, Display, LineFormat, say};
+use crate::console::{Console, Display, LineFormat};
 use crate::exit::Failure;
-use crate::progress::write_openjd;
 use crate::scene_io::{FilmHeader, LoadedScene};
 use crate::signals::Signals;
 use bidir::driver::{Effort, Resources, SessionError, Settings, Stop};
@@ -60,7 +59,7 @@ pub(crate) fn render(
     let tick = || {
         if !is_said && begun.elapsed() >= LONG {
             is_said = true;
-            say_training(display(args, console));
+            display(args, console).say("training before the first sample");
         }
     };
     let render = match signals.wait_for(train, tick) {
@@ -79,17 +78,6 @@ fn display(args: &RenderArgs, console: Console) -> Display {
     match console.display(args.output.talk) {
         Display::Lines(LineFormat::OpenJd) if args.json => Display::Silent,
         display => display,
-    }
-}
-
-/// Says that training is running, while there is no progress.
-fn say_training(display: Display) {
-    let text = "training before the first sample";
-    match display {
-        // Readers of NDJSON expect only objects with progress.
-        Display::Silent | Display::Lines(LineFormat::Ndjson) => {}
-        Display::Lines(LineFormat::OpenJd) => write_openjd("status", text),
-        Display::Bar | Display::Lines(LineFormat::Plain) => say(text),
     }
 }
 

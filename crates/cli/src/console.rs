@@ -17,13 +17,6 @@ use std::sync::OnceLock;
 /// The message of the first write that failed: the streams belong to the process, and so does their state.
 static LOST: OnceLock<String> = OnceLock::new();
 
-/// The colour of labels.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Color {
-    On,
-    Off,
-}
-
 /// The form of progress reports.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Display {
@@ -59,7 +52,7 @@ impl Display {
 /// The properties of stderr: colour, and whether it is a terminal.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Console {
-    color: Color,
+    is_coloured: bool,
     is_terminal: bool,
 }
 
@@ -72,14 +65,11 @@ impl Console {
         let is_set = |name| std::env::var_os(name).is_some_and(|value| !value.is_empty());
         let is_dumb = std::env::var_os("TERM").is_some_and(|term| term == "dumb");
         let is_terminal = io::stderr().is_terminal() && !is_dumb;
-        let color = if args.no_color || is_set("NO_COLOR") || is_dumb {
-            Color::Off
-        } else if is_set("FORCE_COLOR") || is_terminal {
-            Color::On
-        } else {
-            Color::Off
-        };
-        Self { color, is_terminal }
+        let is_plain = args.no_color || is_set("NO_COLOR") || is_dumb;
+        Self {
+            is_coloured: !is_plain && (is_set("FORCE_COLOR") || is_terminal),
+            is_terminal,
+        }
     }
 
     /// Returns the form of progress that the flags request; a bar only on a terminal.
@@ -109,13 +99,11 @@ impl Console {
     pub(crate) fn failure(self, failure: &Failure) {
         if let Some(diagnostic) = failure.as_diagnostic() {
             let label = self.paint("error", "1;31");
-            write_line(&format!("{label}: {}", self.report(diagnostic)));
+            return write_line(&format!("{label}: {}", self.report(diagnostic)));
         }
-        if let Some((message, hint)) = failure.message() {
-            self.label("error", "1;31", message);
-            if let Some(hint) = hint {
-                self.label("hint", "1;36", hint);
-            }
+        self.label("error", "1;31", failure.message());
+        if let Some(hint) = failure.hint() {
+            self.label("hint", "1;36", hint);
         }
     }
 
@@ -126,17 +114,19 @@ impl Console {
     }
 
     fn paint(self, word: &str, style: &str) -> String {
-        match self.color {
-            Color::On => format!("\x1b[{style}m{word}\x1b[0m"),
-            Color::Off => word.to_owned(),
+        if self.is_coloured {
+            format!("\x1b[{style}m{word}\x1b[0m")
+        } else {
+            word.to_owned()
         }
     }
 
     /// Returns the message of a diagnostic with the lines of the file, which are already printable.
     fn report(self, diagnostic: &dyn miette::Diagnostic) -> String {
-        let theme = match self.color {
-            Color::On => GraphicalTheme::unicode(),
-            Color::Off => GraphicalTheme::unicode_nocolor(),
+        let theme = if self.is_coloured {
+            GraphicalTheme::unicode()
+        } else {
+            GraphicalTheme::unicode_nocolor()
         };
         // Lines are not wrapped, so that `file:line:column` stays in one piece.
         let handler = GraphicalReportHandler::new_themed(theme)

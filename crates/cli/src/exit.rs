@@ -1,120 +1,90 @@
 //! Exit codes, and failures with hints.
 
 use formats::ErrorKind;
-use std::fmt::Write;
+use miette::Diagnostic;
 use std::path::Path;
 
 /// The exit of the command. Its code is part of the interface for scripts and schedulers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
 pub(crate) enum Exit {
     /// The command succeeded.
-    Done,
+    Done = 0,
     /// The render failed.
-    RenderFailed,
+    RenderFailed = 1,
     /// The command line is wrong.
-    Usage,
+    Usage = 2,
     /// The scene is wrong.
-    Scene,
+    Scene = 3,
     /// A file cannot be read or written.
-    InputOutput,
+    InputOutput = 4,
     /// A film file belongs to another render.
-    FilmMismatch,
+    FilmMismatch = 5,
     /// A check did not hold.
-    Validation,
+    Validation = 6,
     /// The time ended before a pass was complete.
-    NoPass,
+    NoPass = 7,
     /// Stopped early, with a checkpoint to continue from.
-    Checkpoint,
+    Checkpoint = 75,
     /// Stopped by Ctrl-C; the image has the complete passes.
-    Interrupted,
+    Interrupted = 130,
     /// Stopped by SIGTERM; the image has the complete passes.
-    Terminated,
+    Terminated = 143,
 }
 
+/// The meanings of [`Exit::ALL`].
+const MEANINGS: [&str; Exit::ALL.len()] = [
+    "success",
+    "the render failed",
+    "the command line is wrong, or its crop is outside the image",
+    "the scene or the experiment is wrong, or the scene or film is too large for memory",
+    "a file cannot be read or written, an output would replace an input or another output, a port is taken, \
+     images differ in size, or a library is missing",
+    "a file belongs to another render or experiment, or a film has the same passes",
+    "a check failed (`render --strict`, `compare --exact`, `missing`, `reference`), or a reference is refused",
+    "no pass was complete when `render --time` ended; nothing was written",
+    "stopped early by a signal; the same command continues from its checkpoint or records",
+    "stopped by Ctrl-C; the image has the complete passes",
+    "stopped by SIGTERM; the image has the complete passes",
+];
+
 impl Exit {
-    /// Every exit with its meaning, in the order of the help text.
-    const ALL: [(Self, &'static str); 11] = [
-        (Self::Done, "success"),
-        (Self::RenderFailed, "the render failed"),
-        (
-            Self::Usage,
-            "the command line is wrong, or its crop is outside the image",
-        ),
-        (
-            Self::Scene,
-            "the scene or the experiment is wrong, or the scene or film is too large for memory",
-        ),
-        (
-            Self::InputOutput,
-            "a file cannot be read or written, an output would replace an input or another output, a port \
-             is taken, images differ in size, or a library is missing",
-        ),
-        (
-            Self::FilmMismatch,
-            "a file belongs to another render or experiment, or a film has the same passes",
-        ),
-        (
-            Self::Validation,
-            "a check failed (`render --strict`, `compare --exact`, `missing`, `reference`), or a reference \
-             is refused",
-        ),
-        (
-            Self::NoPass,
-            "no pass was complete when `render --time` ended; nothing was written",
-        ),
-        (
-            Self::Checkpoint,
-            "stopped early by a signal; the same command continues from its checkpoint or records",
-        ),
-        (
-            Self::Interrupted,
-            "stopped by Ctrl-C; the image has the complete passes",
-        ),
-        (
-            Self::Terminated,
-            "stopped by SIGTERM; the image has the complete passes",
-        ),
+    /// Every exit, in the order of the help text.
+    const ALL: [Self; 11] = [
+        Self::Done,
+        Self::RenderFailed,
+        Self::Usage,
+        Self::Scene,
+        Self::InputOutput,
+        Self::FilmMismatch,
+        Self::Validation,
+        Self::NoPass,
+        Self::Checkpoint,
+        Self::Interrupted,
+        Self::Terminated,
     ];
 
     /// Returns the exit code.
     pub(crate) fn code(self) -> u8 {
-        match self {
-            Self::Done => 0,
-            Self::RenderFailed => 1,
-            Self::Usage => 2,
-            Self::Scene => 3,
-            Self::InputOutput => 4,
-            Self::FilmMismatch => 5,
-            Self::Validation => 6,
-            Self::NoPass => 7,
-            Self::Checkpoint => 75,
-            Self::Interrupted => 130,
-            Self::Terminated => 143,
-        }
+        self as u8
     }
 
     /// Returns the exit that has this code; `RenderFailed` for a code that no exit has.
     pub(crate) fn of_code(code: Option<i32>) -> Self {
-        let mut all = Self::ALL.into_iter().map(|(exit, _)| exit);
+        let mut all = Self::ALL.into_iter();
         let exit = all.find(|exit| Some(i32::from(exit.code())) == code);
         exit.unwrap_or(Self::RenderFailed)
     }
 
     /// Returns every exit code with its meaning.
     pub(crate) fn codes() -> impl Iterator<Item = (u8, &'static str)> {
-        let all = Self::ALL.into_iter();
-        all.map(|(exit, meaning)| (exit.code(), meaning))
+        Self::ALL.into_iter().map(Self::code).zip(MEANINGS)
     }
 
     /// Returns the section on exit codes of the help text.
     pub(crate) fn help() -> String {
-        let mut text = String::from("Exit codes:\n");
-        for (exit, meaning) in Self::ALL {
-            // Writing to a string cannot fail.
-            let _ = writeln!(text, "  {:>3}  {meaning}", exit.code());
-        }
-        text.pop();
-        text
+        let lines = Self::codes().map(|(code, meaning)| format!("\n  {code:>3}  {meaning}"));
+        "Exit codes:".to_owned() + &lines.collect::<String>()
     }
 }
 
@@ -122,18 +92,11 @@ impl Exit {
 #[derive(Debug)]
 pub(crate) struct Failure {
     exit: Exit,
-    kind: FailureKind,
-}
-
-#[derive(Debug)]
-enum FailureKind {
-    /// A message, and a hint that says what to do.
-    Message {
-        message: String,
-        hint: Option<String>,
-    },
-    /// An error that shows its place in a file.
-    Diagnostic(Box<dyn miette::Diagnostic + Send + Sync>),
+    message: String,
+    /// What to do.
+    hint: Option<String>,
+    /// The error with its place in a file, shown in place of message and hint.
+    diagnostic: Option<Box<dyn Diagnostic + Send + Sync>>,
 }
 
 impl Failure {
@@ -141,21 +104,18 @@ impl Failure {
     pub(crate) fn new(exit: Exit, message: impl Into<String>) -> Self {
         Self {
             exit,
-            kind: FailureKind::Message {
-                message: message.into(),
-                hint: None,
-            },
+            message: message.into(),
+            hint: None,
+            diagnostic: None,
         }
     }
 
     /// Returns a failure that shows its place in a file.
-    pub(crate) fn diagnostic(
-        exit: Exit,
-        error: impl miette::Diagnostic + Send + Sync + 'static,
-    ) -> Self {
+    pub(crate) fn diagnostic(exit: Exit, error: impl Diagnostic + Send + Sync + 'static) -> Self {
+        let message = error.to_string();
         Self {
-            exit,
-            kind: FailureKind::Diagnostic(Box::new(error)),
+            diagnostic: Some(Box::new(error)),
+            ..Self::new(exit, message)
         }
     }
 
@@ -169,12 +129,12 @@ impl Failure {
         Self::new(Exit::InputOutput, formats::cannot(action, path, error))
     }
 
-    /// Adds a hint, unless the failure is a diagnostic.
-    pub(crate) fn with_hint(mut self, text: impl Into<String>) -> Self {
-        if let FailureKind::Message { hint, .. } = &mut self.kind {
-            *hint = Some(text.into());
+    /// Adds a hint, which a diagnostic has no room for.
+    pub(crate) fn with_hint(self, text: impl Into<String>) -> Self {
+        Self {
+            hint: Some(text.into()),
+            ..self
         }
-        self
     }
 
     /// Returns the exit of the command.
@@ -182,20 +142,21 @@ impl Failure {
         self.exit
     }
 
-    /// Returns the message and the hint. None: the failure is a diagnostic.
-    pub(crate) fn message(&self) -> Option<(&str, Option<&str>)> {
-        match &self.kind {
-            FailureKind::Message { message, hint } => Some((message, hint.as_deref())),
-            FailureKind::Diagnostic(_) => None,
-        }
+    /// Returns the message.
+    pub(crate) fn message(&self) -> &str {
+        &self.message
+    }
+
+    /// Returns the hint. None: there is none.
+    pub(crate) fn hint(&self) -> Option<&str> {
+        self.hint.as_deref()
     }
 
     /// Returns the error that shows its place. None: the failure is a message.
-    pub(crate) fn as_diagnostic(&self) -> Option<&dyn miette::Diagnostic> {
-        match &self.kind {
-            FailureKind::Diagnostic(error) => Some(&**error),
-            FailureKind::Message { .. } => None,
-        }
+    pub(crate) fn as_diagnostic(&self) -> Option<&dyn Diagnostic> {
+        self.diagnostic
+            .as_deref()
+            .map(|error| error as &dyn Diagnostic)
     }
 }
 
@@ -207,24 +168,5 @@ impl From<formats::Error> for Failure {
             _ => Exit::InputOutput,
         };
         Self::new(exit, error.to_string())
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn codes_differ_and_are_in_the_help() {
-        let mut codes: Vec<u8> = Exit::ALL.iter().map(|(exit, _)| exit.code()).collect();
-        let help = Exit::help();
-        assert!(
-            codes
-                .iter()
-                .all(|code| help.contains(&format!("{code:>3}  ")))
-        );
-        codes.sort_unstable();
-        codes.dedup();
-        assert_eq!(codes.len(), Exit::ALL.len());
     }
 }

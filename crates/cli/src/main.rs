@@ -32,8 +32,8 @@ mod threads;
 mod tonemap;
 mod view;
 
-use args::{Cli, ColorArgs, Command, Unread, version};
-use console::{Console, print, print_help};
+use args::{Cli, ColorArgs, Command};
+use console::Console;
 use exit::{Exit, Failure};
 use std::process::ExitCode;
 
@@ -42,15 +42,7 @@ fn main() -> ExitCode {
     signals::survive_size_limits();
     let cli = match Cli::read() {
         Ok(cli) => cli,
-        Err(unread) => {
-            let console = Console::new(ColorArgs::of_words());
-            let printed = match unread {
-                Unread::Help(text) => print_help(&text),
-                Unread::Version => print(&version()),
-                Unread::Wrong(failure) => Err(failure),
-            };
-            return ended(printed, console);
-        }
+        Err(printed) => return ended(printed, Console::new(ColorArgs::of_words())),
     };
     let console = Console::new(cli.color);
     for warning in &cli.renamed {

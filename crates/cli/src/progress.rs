@@ -10,10 +10,9 @@ use crate::signals::Signals;
 use bidir::driver::{Budget, Progress, Stop};
 use formats::printable;
 use indicatif::{ProgressBar, ProgressStyle};
-use serde::Serialize;
+use serde_json::json;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::thread;
 use std::time::{Duration, Instant};
 
 /// The least time between two lines.
@@ -51,19 +50,18 @@ pub(crate) struct Reporter<'a> {
     /// Samples of earlier runs.
     before: AtomicU64,
     samples: AtomicU64,
-    /// The time of the last text of the bar, since the start. Unit: milliseconds.
-    drawn: AtomicU64,
+    last: Mutex<LastReport>,
     channel: Channel,
 }
 
 enum Channel {
     Silent,
     Bar(ProgressBar),
-    Lines(LineFormat, Mutex<LastLine>),
+    Lines(LineFormat),
 }
 
-/// The last line.
-struct LastLine {
+/// The last line, or the last text of the bar.
+struct LastReport {
     at: Instant,
     percent: u32,
 }
@@ -74,20 +72,18 @@ impl<'a> Reporter<'a> {
         let channel = match display {
             Display::Silent => Channel::Silent,
             Display::Bar => Channel::Bar(bar(TEMPLATE).with_elapsed(clock.start.elapsed())),
-            Display::Lines(format) => {
-                let last = LastLine {
-                    at: clock.start,
-                    percent: 0,
-                };
-                Channel::Lines(format, Mutex::new(last))
-            }
+            Display::Lines(format) => Channel::Lines(format),
+        };
+        let last = LastReport {
+            at: clock.start,
+            percent: 0,
         };
         let reporter = Self {
             signals,
             clock,
             before: AtomicU64::new(0),
             samples: AtomicU64::new(0),
-            drawn: AtomicU64::new(0),
+            last: Mutex::new(last),
             channel,
         };
         if let Channel::Bar(bar) = &reporter.channel {
@@ -110,10 +106,8 @@ impl<'a> Reporter<'a> {
 
     /// Writes the line of the end, unless it is the last one.
     pub(crate) fn complete(&self) {
-        if let Channel::Lines(format, last) = &self.channel {
-            if last.lock().is_ok_and(|last| last.percent >= 100) {
-                return;
-            }
+        let is_last = self.last.lock().is_ok_and(|last| last.percent >= 100);
+        if let (Channel::Lines(format), false) = (&self.channel, is_last) {
             let pass = self.passes(self.samples.load(Ordering::Relaxed)) as u64;
             format.write(&State {
                 progress: 1.0,
@@ -166,53 +160,40 @@ impl<'a> Reporter<'a> {
         match &self.channel {
             Channel::Silent => {}
             Channel::Bar(bar) => bar.println(text),
-            Channel::Lines(LineFormat::OpenJd, _) => write_openjd("status", text),
-            Channel::Lines(..) => say(text),
+            Channel::Lines(format) => Display::Lines(*format).say(text),
         }
     }
 
-    /// Returns true if the text of the bar is old; then another thread leaves it alone.
-    fn is_due(&self) -> bool {
-        let now = self.clock.start.elapsed().as_millis() as u64;
-        let last = self.drawn.load(Ordering::Relaxed);
-        let swap = |last| {
-            self.drawn
-                .compare_exchange(last, now, Ordering::Relaxed, Ordering::Relaxed)
+    /// Writes a line, or the text of the bar, where one is due.
+    fn report(&self, last: &mut LastReport) {
+        let (state, gap) = (self.state(), last.at.elapsed());
+        let is_step = state.percent() >= last.percent + STEP;
+        let is_due = match self.channel {
+            Channel::Silent => false,
+            Channel::Bar(_) => gap >= TICK,
+            Channel::Lines(_) => gap >= LONGEST_GAP || gap >= SHORTEST_GAP && is_step,
         };
-        now - last.min(now) >= TICK.as_millis() as u64 && swap(last).is_ok()
-    }
-
-    /// Writes a line where one is due.
-    fn write_due(&self, format: LineFormat, last: &mut LastLine) {
-        let state = self.state();
-        let (percent, gap) = (state.percent(), last.at.elapsed());
-        if gap < SHORTEST_GAP || (gap < LONGEST_GAP && percent < last.percent + STEP) {
+        if !is_due {
             return;
         }
-        *last = LastLine {
+        *last = LastReport {
             at: Instant::now(),
-            percent,
+            percent: state.percent(),
         };
-        format.write(&state);
+        match &self.channel {
+            Channel::Silent => {}
+            Channel::Bar(bar) => state.draw(bar),
+            Channel::Lines(format) => format.write(&state),
+        }
     }
 }
 
 impl Progress for Reporter<'_> {
     fn advance(&self, samples: u64) {
         self.samples.fetch_add(samples, Ordering::Relaxed);
-        match &self.channel {
-            Channel::Silent => {}
-            Channel::Bar(bar) => {
-                if self.is_due() {
-                    self.state().draw(bar);
-                }
-            }
-            Channel::Lines(format, last) => {
-                // A line that another thread is writing is enough.
-                if let Ok(mut last) = last.try_lock() {
-                    self.write_due(*format, &mut last);
-                }
-            }
+        // A report that another thread is writing is enough.
+        if let Ok(mut last) = self.last.try_lock() {
+            self.report(&mut last);
         }
     }
 
@@ -225,29 +206,14 @@ impl Progress for Reporter<'_> {
     }
 }
 
-/// A bar whose end is at 1000.
+/// A bar whose end is at 1000, which is drawn at intervals, so that its time goes on.
 pub(crate) fn bar(template: &str) -> ProgressBar {
     let bar = ProgressBar::new(BAR_LENGTH);
     if let Ok(style) = ProgressStyle::with_template(template) {
         bar.set_style(style.progress_chars("━╸ "));
     }
-    keep_moving(&bar);
+    bar.enable_steady_tick(TICK);
     bar
-}
-
-/// Draws a bar at intervals, so that its time goes on; without a thread it moves with the samples.
-fn keep_moving(bar: &ProgressBar) {
-    let bar = bar.downgrade();
-    let draw = move || {
-        loop {
-            thread::sleep(TICK);
-            match bar.upgrade() {
-                Some(bar) if !bar.is_finished() => bar.tick(),
-                _ => return,
-            }
-        }
-    };
-    let _ = thread::Builder::new().name("bar".to_owned()).spawn(draw);
 }
 
 /// The progress of a render.
@@ -262,16 +228,6 @@ struct State {
     elapsed: Duration,
     /// None: it is unknown, before the first pass ends or without a limit of passes or time.
     left: Option<Duration>,
-}
-
-/// The same as JSON.
-#[derive(Serialize)]
-struct Line {
-    progress: f64,
-    pass: u64,
-    passes: Option<u64>,
-    seconds: f64,
-    left: f64,
 }
 
 impl State {
@@ -309,19 +265,29 @@ impl State {
         format!("Progress: {percent}% {pass}, {elapsed}{comma}{left}")
     }
 
-    fn json(&self) -> serde_json::Result<String> {
+    fn json(&self) -> String {
         let round = |number: f64| (number * 1e3).round() / 1e3;
-        serde_json::to_string(&Line {
-            progress: round(self.progress),
-            pass: self.pass,
-            passes: self.passes,
-            seconds: round(self.elapsed.as_secs_f64()),
-            left: round(
-                self.left
-                    .map_or(LONGEST_LEFT, |left| left.min(LONGEST_LEFT))
-                    .as_secs_f64(),
-            ),
-        })
+        let left = self.left.unwrap_or(LONGEST_LEFT).min(LONGEST_LEFT);
+        let line = json!({
+            "progress": round(self.progress),
+            "pass": self.pass,
+            "passes": self.passes,
+            "seconds": round(self.elapsed.as_secs_f64()),
+            "left": round(left.as_secs_f64()),
+        });
+        line.to_string()
+    }
+}
+
+impl Display {
+    /// Says that something happens while there is no progress.
+    pub(crate) fn say(self, text: &str) {
+        match self {
+            // Readers of NDJSON expect only objects with progress.
+            Self::Silent | Self::Lines(LineFormat::Ndjson) => {}
+            Self::Lines(LineFormat::OpenJd) => write_openjd("status", text),
+            Self::Bar | Self::Lines(LineFormat::Plain) => say(text),
+        }
     }
 }
 
@@ -329,11 +295,7 @@ impl LineFormat {
     fn write(self, state: &State) {
         match self {
             Self::Plain => say(state.plain()),
-            Self::Ndjson => {
-                if let Ok(line) = state.json() {
-                    say(line);
-                }
-            }
+            Self::Ndjson => say(state.json()),
             Self::OpenJd => {
                 write_openjd("progress", &format!("{:.1}", state.progress * 100.0));
                 write_openjd("status", &state.pass());
@@ -344,12 +306,9 @@ impl LineFormat {
 
 /// Reports a failure to a scheduler that reads Open Job Description.
 pub(crate) fn report_failure(args: TalkArgs, failure: &Failure) {
-    if args.progress != Some(Display::Lines(LineFormat::OpenJd)) {
-        return;
+    if args.progress == Some(Display::Lines(LineFormat::OpenJd)) {
+        write_openjd("fail", failure.message());
     }
-    let message = failure.as_diagnostic().map(ToString::to_string);
-    let message = message.or_else(|| Some(failure.message()?.0.to_owned()));
-    write_openjd("fail", &message.unwrap_or_default());
 }
 
 /// Writes a line of Open Job Description. The render goes on if it is lost, and the command fails at its end.
@@ -375,20 +334,20 @@ mod tests {
             STATE.plain(),
             "Progress: 45% pass 29 of 64, 12.3s, 14.9s left"
         );
-        let expected = r#"{"progress":0.453,"pass":29,"passes":64,"seconds":12.345,"left":14.899}"#;
-        assert_eq!(STATE.json().unwrap(), expected);
+        let expected = r#"{"left":14.899,"pass":29,"passes":64,"progress":0.453,"seconds":12.345}"#;
+        assert_eq!(STATE.json(), expected);
         let first = State {
             left: None,
             ..STATE
         };
         assert_eq!(first.plain(), "Progress: 45% pass 29 of 64, 12.3s");
-        assert!(first.json().unwrap().contains(r#""left":1073741824.0"#));
+        assert!(first.json().contains(r#""left":1073741824.0"#));
         let open = State {
             passes: None,
             ..STATE
         };
         assert_eq!(open.pass(), "pass 29");
-        assert!(open.json().unwrap().contains(r#""passes":null"#));
+        assert!(open.json().contains(r#""passes":null"#));
     }
 
     #[test]
@@ -438,7 +397,7 @@ mod tests {
         assert_eq!(bar.message(), "pass 1 of 100000");
         for (samples, pass, is_known) in [(50, 1, false), (60, 2, true), (2100, 23, true)] {
             // As after the time between two drawings.
-            reporter.drawn.store(0, Ordering::Relaxed);
+            reporter.last.lock().unwrap().at = start;
             reporter.advance(samples);
             assert_eq!(bar.message(), format!("pass {pass} of 100000"));
             assert_eq!(

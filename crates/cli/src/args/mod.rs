@@ -24,7 +24,6 @@ pub(crate) use farm::{FarmArgs, FarmCommand};
 pub(crate) use film::{FilmCommand, MergeArgs, MissingArgs};
 pub(crate) use help::command;
 pub(crate) use long::{LongArgs, Part};
-pub(crate) use mistakes::explained;
 pub(crate) use reference::ReferenceArgs;
 pub(crate) use render::{BudgetArgs, FilmArgs, RenderArgs, TalkArgs};
 pub(crate) use threads::ThreadsArgs;
@@ -32,6 +31,7 @@ pub(crate) use tonemap::TonemapArgs;
 pub(crate) use values::{Duration, PixelBounds, ReplayTarget, Size};
 pub(crate) use view::{ServeAddress, ViewArgs};
 
+use crate::console::{print, print_help};
 use crate::exit::{Exit, Failure};
 use bidir::ESTIMATOR_VERSION;
 use clap::error::ErrorKind;
@@ -58,19 +58,9 @@ pub(crate) struct Cli {
     pub(crate) renamed: Vec<String>,
 }
 
-/// The reason why a command line calls no command.
-pub(crate) enum Unread {
-    /// It asks for this help text, or is too short to be understood.
-    Help(clap::Error),
-    /// It asks for the [`version`].
-    Version,
-    /// It is wrong.
-    Wrong(Failure),
-}
-
 /// Returns the name of the program, its version, and that of its estimators, which decides which films belong
 /// together; and the commit, if `BIDIR_COMMIT` was set when the program was built.
-pub(crate) fn version() -> String {
+fn version() -> String {
     let commit = option_env!("BIDIR_COMMIT").filter(|commit| !commit.is_empty());
     let commit = commit.map_or_else(String::new, |commit| format!(", commit {commit}"));
     let program = formats::film::program();
@@ -79,15 +69,17 @@ pub(crate) fn version() -> String {
 
 impl Cli {
     /// Reads the command line and the environment.
-    pub(crate) fn read() -> Result<Self, Unread> {
+    ///
+    /// Errors: a command line that calls no command; the result of printing the text that it asks for.
+    pub(crate) fn read() -> Result<Self, Result<Exit, Failure>> {
         let arguments: Vec<_> = std::env::args_os().collect();
         let mut command = command();
         Self::parsed(&mut command, &arguments).map_err(|error| match error.kind() {
-            ErrorKind::DisplayVersion => Unread::Version,
+            ErrorKind::DisplayVersion => print(&version()),
             ErrorKind::DisplayHelp | ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand => {
-                Unread::Help(error)
+                print_help(&error)
             }
-            _ => Unread::Wrong(explained(&error, &command, &arguments)),
+            _ => Err(mistakes::explained(&error, &command, &arguments)),
         })
     }
 

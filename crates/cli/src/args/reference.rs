@@ -94,8 +94,7 @@ impl FromStr for EstimatorFlags {
         let flags = matches.and_then(|matches| Request::from_arg_matches(&matches));
         flags.map(Self).map_err(|error| {
             let failure = mistakes::explained(&error, &command, &[]);
-            let message = failure.message().map(|(message, _)| message.to_owned());
-            message.unwrap_or_default()
+            failure.message().to_owned()
         })
     }
 }
