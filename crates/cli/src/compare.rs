@@ -10,21 +10,20 @@ use crate::exit::{Exit, Failure};
 use crate::output;
 use crate::scene_io::{self, IMAGES, MetadataValue};
 use independence::Independence;
-use lab::image::{Pair, Pixels, resample};
+use lab::image::{Pair, identical, resample};
 use lab::metric::{ErrorMap, Metric, mean_ratio};
 use noise::{Noisy, Significance};
-use report::{Bits, Comparison, MEAN_RATIO, Number, Replicates};
+use report::{Comparison, MEAN_RATIO, Number, Replicates};
+use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
 /// Compares images with a reference.
 pub(crate) fn run(args: &CompareArgs, console: Console) -> Result<Exit, Failure> {
     let (images, reference) = files(args)?;
     if let Some(path) = &args.metrics.error_map {
-        scene_io::image_format(path, IMAGES)?;
         let reference = reference_files(reference);
         let inputs = images.iter().chain(&reference);
-        scene_io::check_apart(inputs, &[("--error-map", path)])?;
-        output::check_file("--error-map", path)?;
+        output::check_image("--error-map", path, IMAGES, inputs)?;
     }
     let comparisons = compare_all(args, images, reference, console)?;
     match &comparisons[..] {
@@ -39,7 +38,7 @@ pub(crate) fn run(args: &CompareArgs, console: Console) -> Result<Exit, Failure>
             }
         }
     };
-    if args.exact && Bits::of_all(&comparisons) == Bits::Different {
+    if args.exact && comparisons.iter().any(|one| !one.identical) {
         return Ok(Exit::Validation);
     }
     Ok(Exit::Done)
@@ -111,53 +110,32 @@ fn compare(
 ) -> Result<Comparison, Failure> {
     let significance = Significance::of(&image, reference);
     let (image, reference) = (image.pixels, &reference.pixels);
-    let identical = Bits::of(&image, reference);
-    let fitted = Fitted::new(args, image, reference);
-    let (numbers, size) = match fitted.pair(reference) {
-        Some(pair) => (numbers(&args.metrics, &pair)?, Some(pair.size())),
-        None if args.exact => (no_numbers(&args.metrics), None),
-        None => return Err(sizes_differ(names, [fitted.image.size, reference.size])),
+    let identical = identical(&image, reference);
+    let sizes = [image.size, reference.size];
+    let is_larger = image.data.len() > reference.data.len();
+    // The larger image is resampled to the size of the other.
+    let (image, reference, resampled) = if !args.resample || sizes[0] == sizes[1] {
+        (image, Cow::Borrowed(reference), None)
+    } else if is_larger {
+        (
+            resample(&image, sizes[1]),
+            Cow::Borrowed(reference),
+            Some("A"),
+        )
+    } else {
+        (image, Cow::Owned(resample(reference, sizes[0])), Some("B"))
     };
+    let pair = Pair::new(&image, &reference);
+    if pair.is_none() && !args.exact {
+        return Err(sizes_differ(names, sizes));
+    }
     Ok(Comparison {
-        numbers,
+        numbers: numbers(&args.metrics, pair.as_ref())?,
         identical,
-        size,
-        resampled: fitted.resampled,
+        size: pair.map(|pair| pair.size()),
+        resampled,
         significance,
     })
-}
-
-/// An image and a reference, resampled to one size if --resample is given.
-struct Fitted {
-    image: Pixels,
-    /// The resampled reference. None: it is not resampled.
-    reference: Option<Pixels>,
-    /// The one that was resampled to the size of the other: `A` or `B`.
-    resampled: Option<&'static str>,
-}
-
-impl Fitted {
-    fn new(args: &CompareArgs, image: Pixels, reference: &Pixels) -> Self {
-        let mut fitted = Self {
-            image,
-            reference: None,
-            resampled: None,
-        };
-        if args.resample && fitted.image.size != reference.size {
-            if fitted.image.data.len() > reference.data.len() {
-                fitted.image = resample(&fitted.image, reference.size);
-                fitted.resampled = Some("A");
-            } else {
-                fitted.reference = Some(resample(reference, fitted.image.size));
-                fitted.resampled = Some("B");
-            }
-        }
-        fitted
-    }
-
-    fn pair<'a>(&'a self, reference: &'a Pixels) -> Option<Pair<'a>> {
-        Pair::new(&self.image, self.reference.as_ref().unwrap_or(reference))
-    }
 }
 
 fn sizes_differ(names: [&Path; 2], [[aw, ah], [bw, bh]]: [[usize; 2]; 2]) -> Failure {
@@ -174,23 +152,19 @@ fn metrics(args: &MetricArgs) -> impl Iterator<Item = (&'static str, Metric)> {
     metrics.filter(move |(_, metric)| chosen(*metric))
 }
 
-/// Returns the names of the metrics without values, for images that differ in size.
-fn no_numbers(args: &MetricArgs) -> Vec<Number> {
-    let names = metrics(args).map(|(name, _)| name);
-    names.chain([MEAN_RATIO]).map(|name| (name, None)).collect()
-}
-
-/// Computes all metrics of a pair, and writes the error map if one is requested.
-fn numbers(args: &MetricArgs, pair: &Pair<'_>) -> Result<Vec<Number>, Failure> {
+/// Computes all metrics of a pair, without values if there is none as sizes differ, and writes the error map if one
+/// is requested.
+fn numbers(args: &MetricArgs, pair: Option<&Pair<'_>>) -> Result<Vec<Number>, Failure> {
     let mut numbers = Vec::new();
     for (name, metric) in metrics(args) {
-        let errors = metric.errors(pair);
-        numbers.push((name, Some(metric.pool(&errors))));
-        if let Some(path) = args.error_map.as_deref().filter(|_| args.metric == metric) {
-            write_map(path, name, &errors, args.error_max)?;
+        let errors = pair.map(|pair| metric.errors(pair));
+        let map = args.error_map.as_deref().filter(|_| args.metric == metric);
+        if let Some((path, errors)) = map.zip(errors.as_ref()) {
+            write_map(path, name, errors, args.error_max)?;
         }
+        numbers.push((name, errors.map(|errors| metric.pool(&errors))));
     }
-    numbers.push((MEAN_RATIO, Some(mean_ratio(pair))));
+    numbers.push((MEAN_RATIO, pair.map(mean_ratio)));
     Ok(numbers)
 }
 

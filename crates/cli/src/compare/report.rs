@@ -2,11 +2,9 @@
 
 use super::noise::{self, Significance};
 use crate::exit::{Exit, Failure};
-use lab::image::{Pixels, identical};
 use lab::statistics::{Interval, mean_interval};
 use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
-use std::fmt::Write;
 use std::path::PathBuf;
 
 /// A metric's name and value. None: the sizes differ.
@@ -18,53 +16,13 @@ pub(super) const MEAN_RATIO: &str = "mean_ratio";
 /// The probability that an interval contains the mean over infinitely many seeds.
 const CONFIDENCE: f64 = 0.95;
 
-/// The equality of two images in size and bits; a boolean in JSON.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(into = "bool")]
-pub(super) enum Bits {
-    Same,
-    Different,
-}
-
-impl Bits {
-    pub(super) fn of(image: &Pixels, reference: &Pixels) -> Self {
-        if identical(image, reference) {
-            Self::Same
-        } else {
-            Self::Different
-        }
-    }
-
-    /// Returns `Same` if all comparisons do.
-    pub(super) fn of_all(comparisons: &[Comparison]) -> Self {
-        let mut each = comparisons.iter().map(|comparison| comparison.identical);
-        if each.all(|bits| bits == Self::Same) {
-            Self::Same
-        } else {
-            Self::Different
-        }
-    }
-
-    fn text(self) -> &'static str {
-        match self {
-            Self::Same => "yes",
-            Self::Different => "no",
-        }
-    }
-}
-
-impl From<Bits> for bool {
-    fn from(bits: Bits) -> Self {
-        bits == Bits::Same
-    }
-}
-
 /// The results of one image. Numbers that are not finite become null in JSON, which has no such numbers.
 #[derive(Debug, Serialize)]
 pub(super) struct Comparison {
     #[serde(flatten, serialize_with = "as_map")]
     pub(super) numbers: Vec<Number>,
-    pub(super) identical: Bits,
+    /// The images have one size and the same bits.
+    pub(super) identical: bool,
     /// Width and height of the compared images. None: the sizes differ.
     pub(super) size: Option<[usize; 2]>,
     /// The image that was resampled to the size of the other: `A` or `B`.
@@ -80,7 +38,7 @@ pub(super) struct Replicates {
     #[serde(flatten, serialize_with = "as_map")]
     numbers: Vec<(&'static str, Option<Spread>)>,
     /// The equality of all images and the reference.
-    identical: Bits,
+    identical: bool,
     size: Option<[usize; 2]>,
     resampled: Option<&'static str>,
     /// The number of images.
@@ -149,7 +107,7 @@ impl Replicates {
         let names = names.iter().enumerate();
         Ok(Self {
             numbers: names.map(|(i, (name, _))| (*name, spread(i))).collect(),
-            identical: Bits::of_all(comparisons),
+            identical: comparisons.iter().all(|one| one.identical),
             size: sizes.first().copied().filter(|_| all_have_one),
             resampled: comparisons.iter().find_map(|one| one.resampled),
             images: comparisons.len(),
@@ -159,42 +117,48 @@ impl Replicates {
 
     /// Returns one number per line, with its interval.
     pub(super) fn text(&self) -> String {
-        let mut lines = Lines::default();
-        for (name, spread) in &self.numbers {
-            let number = |value| number_text(name, Some(value));
-            let value = spread.as_ref().map_or_else(
-                || number_text(name, None),
-                |Spread {
-                     mean, low, high, ..
-                 }| {
-                    format!("{}  {} to {}", number(*mean), number(*low), number(*high))
-                },
-            );
-            lines.add(name, &value);
-        }
-        lines.add("identical", self.identical.text());
+        let numbers = self.numbers.iter().map(|(name, spread)| {
+            let number = |value| number_text(name, value);
+            let interval = spread.as_ref().map_or_else(String::new, |spread| {
+                format!(
+                    "  {} to {}",
+                    number(Some(spread.low)),
+                    number(Some(spread.high))
+                )
+            });
+            let mean = spread.as_ref().map(|spread| spread.mean);
+            (*name, number(mean) + &interval)
+        });
         let percent = self.confidence * 100.0;
-        let images = format!("{}, with intervals of {percent} %", self.images);
-        lines.add("images", &images);
-        lines.add_resampled(self.resampled, self.size);
-        lines.text
+        let others = [
+            (
+                "identical",
+                ["no", "yes"][usize::from(self.identical)].to_owned(),
+            ),
+            (
+                "images",
+                format!("{}, with intervals of {percent} %", self.images),
+            ),
+        ];
+        columns(numbers.chain(others).collect(), self.resampled, self.size)
     }
 }
 
 impl Comparison {
     /// Returns one value per line.
     pub(super) fn text(&self) -> String {
-        let mut lines = Lines::default();
-        for (name, value) in &self.numbers {
-            lines.add(name, &number_text(name, *value));
-        }
-        lines.add("identical", self.identical.text());
-        lines.add_resampled(self.resampled, self.size);
-        if let Some(significance) = &self.significance {
-            lines.add("z_pixels", &noise::text(&significance.pixels));
-            lines.add("z_blocks", &noise::text(&significance.blocks));
-        }
-        lines.text
+        let numbers = self.numbers.iter();
+        let numbers = numbers.map(|(name, value)| (*name, number_text(name, *value)));
+        let tests = self.significance.as_ref().map(|found| {
+            let pixels = ("z_pixels", noise::text(&found.pixels));
+            [pixels, ("z_blocks", noise::text(&found.blocks))]
+        });
+        let identical = [(
+            "identical",
+            ["no", "yes"][usize::from(self.identical)].to_owned(),
+        )];
+        let lines = numbers.chain(identical).chain(tests.into_iter().flatten());
+        columns(lines.collect(), self.resampled, self.size)
     }
 }
 
@@ -208,23 +172,17 @@ fn number_text(name: &str, value: Option<f64>) -> String {
     }
 }
 
-/// Names and values in two columns.
-#[derive(Default)]
-struct Lines {
-    text: String,
-}
-
-impl Lines {
-    fn add(&mut self, name: &str, value: &str) {
-        // Writing to a string cannot fail.
-        let _ = writeln!(self.text, "{name:<12} {value}");
-    }
-
-    fn add_resampled(&mut self, which: Option<&str>, size: Option<[usize; 2]>) {
-        if let (Some(which), Some([width, height])) = (which, size) {
-            self.add("resampled", &format!("{which} to {width}x{height}"));
-        }
-    }
+/// Returns names and values in two columns.
+fn columns(
+    lines: Vec<(&str, String)>,
+    resampled: Option<&str>,
+    size: Option<[usize; 2]>,
+) -> String {
+    let resampled = resampled.zip(size);
+    let resampled = resampled.map(|(which, [w, h])| ("resampled", format!("{which} to {w}x{h}")));
+    let lines = lines.into_iter().chain(resampled);
+    let lines = lines.map(|(name, value)| format!("{name:<12} {value}\n"));
+    lines.collect()
 }
 
 #[cfg(test)]
@@ -235,7 +193,7 @@ mod tests {
     fn comparison(numbers: &[Number]) -> Comparison {
         Comparison {
             numbers: numbers.to_vec(),
-            identical: Bits::Different,
+            identical: false,
             size: Some([1, 1]),
             resampled: None,
             significance: None,
