@@ -7,7 +7,7 @@ use crate::args::{DenoiseArgs, ThreadsArgs};
 use crate::console::say;
 use crate::exit::{Exit, Failure};
 use crate::output;
-use crate::scene_io::{self, Developed, IMAGES, ImageFormat, Layers};
+use crate::scene_io::{Developed, IMAGES, ImageFormat, Layers};
 use bidir::driver::Threads;
 use bidir::film::LayerImage;
 use denoise::{DenoiseError, Denoiser, Input};
@@ -54,7 +54,11 @@ impl Filter {
     }
 
     /// Describes the denoiser: its name and version, and the names of the guides.
-    fn description(&self, guides: &str) -> String {
+    fn description(&self, guides: &[&str]) -> String {
+        let guides = match guides {
+            [] => "none".to_owned(),
+            guides => guides.join(", "),
+        };
         format!("Open Image Denoise {}, guides: {guides}", self.0.version())
     }
 
@@ -74,7 +78,7 @@ impl Filter {
             channels: &COLOR,
             data: noisy.into_flattened(),
         });
-        Ok(self.description("Albedo, Ns"))
+        Ok(self.description(&["Albedo", "Ns"]))
     }
 }
 
@@ -92,60 +96,29 @@ fn failure(error: &DenoiseError) -> Failure {
     }
 }
 
-/// The layers that guide the filter.
-struct Guides {
-    albedo: Option<Vec<[f32; 3]>>,
-    /// The name of the layer of normals, and its pixels.
-    normal: Option<(&'static str, Vec<[f32; 3]>)>,
-}
-
-impl Guides {
-    fn of(layers: &Layers) -> Self {
-        let mut normals = NORMALS
-            .iter()
-            .filter_map(|(name, channels)| Some((*name, layers.triples(*channels)?)));
-        let albedo = layers.triples(ALBEDO);
-        let normal = normals.next().filter(|_| albedo.is_some());
-        Self { albedo, normal }
-    }
-
-    /// Returns the names of the layers for messages and metadata.
-    fn names(&self) -> String {
-        let albedo = self.albedo.as_ref().map(|_| "Albedo");
-        let normal = self.normal.as_ref().map(|(name, _)| *name);
-        let names: Vec<_> = albedo.into_iter().chain(normal).collect();
-        if names.is_empty() {
-            "none".to_owned()
-        } else {
-            names.join(", ")
-        }
-    }
-
-    fn is_complete(&self) -> bool {
-        self.albedo.is_some() && self.normal.is_some()
-    }
-}
-
 /// Denoises an image file.
 pub(crate) fn run(args: &DenoiseArgs) -> Result<Exit, Failure> {
     let default = || output::named_after(&args.image, "-clean.exr");
     let written = &args.output.clone().unwrap_or_else(default);
-    let format = scene_io::image_format(written, IMAGES)?;
-    scene_io::check_apart([&args.image], &[("--output", written)])?;
-    output::check_file("--output", written)?;
+    let format = output::check_image("--output", written, IMAGES, [&args.image])?;
     let mut layers = formats::image::read_layers(&args.image)?;
     let noisy = noisy(&layers, &args.image)?;
-    let guides = Guides::of(&layers);
-    let names = guides.names();
-    if !guides.is_complete() {
+    let albedo = layers.triples(ALBEDO);
+    let mut normals = NORMALS
+        .iter()
+        .filter_map(|(name, channels)| Some((*name, layers.triples(*channels)?)));
+    let normal = normals.next().filter(|_| albedo.is_some());
+    let names = albedo.iter().map(|_| "Albedo");
+    let names: Vec<_> = names.chain(normal.iter().map(|(name, _)| *name)).collect();
+    if names.len() < 2 {
         say(format_args!(
             "note: `bidir render --aov albedo,shading-normal` gives an image the layers Albedo and Ns, which \
              keep textures and edges sharp"
         ));
     }
     let filter = Filter::load(args.threads)?;
-    let normal = guides.normal.as_ref().map(|(_, normal)| normal.as_slice());
-    let clean = filter.apply(layers.size(), &noisy, guides.albedo.as_deref(), normal)?;
+    let normal = normal.as_ref().map(|(_, normal)| normal.as_slice());
+    let clean = filter.apply(layers.size(), &noisy, albedo.as_deref(), normal)?;
     let by = filter.description(&names);
     if format == ImageFormat::Png {
         formats::image::write_png(written, layers.size(), &clean)?;

@@ -8,7 +8,7 @@ use crate::output;
 use crate::scene_io::{self, Developed, FilmFile, FilmHeader, IMAGES};
 use bidir::film::PassSet;
 use formats::printable;
-use serde::Serialize;
+use serde_json::json;
 use std::path::{Path, PathBuf};
 
 /// Describes, develops or verifies film files.
@@ -53,9 +53,7 @@ fn print_header(header: &FilmHeader) -> Result<Exit, Failure> {
 }
 
 fn develop(file: &PathBuf, output: &Path) -> Result<Exit, Failure> {
-    scene_io::image_format(output, IMAGES)?;
-    scene_io::check_apart([file], &[("--output", output)])?;
-    output::check_file("--output", output)?;
+    output::check_image("--output", output, IMAGES, [file])?;
     let FilmFile { header, film } = scene_io::read_film(file)?;
     if film.passes().is_empty() {
         let message = format!("{}: the film has no passes", file.display());
@@ -174,34 +172,27 @@ fn is_held(held: Option<&PassSet>, film: &FilmFile) -> bool {
 /// Checks before films are read that the outputs can be written and replace no file of another kind. The
 /// output may be one of the films.
 fn check_outputs(args: &MergeArgs) -> Result<(), Failure> {
-    let MergeArgs {
-        output,
-        image,
-        files,
-    } = args;
+    let (output, image) = (&args.output, &args.image);
     if let Some(image) = image {
         scene_io::image_format(image, IMAGES)?;
-        let written = [("--output", output), ("--image", image)];
-        let others = files.iter().filter(|file| !scene_io::is_same(file, output));
-        scene_io::check_apart(others, &written.map(|(flag, file)| (flag, file.as_path())))?;
     }
-    output::check_file("--output", output)?;
+    let image = image.as_deref().map(|image| ("--image", image));
+    let written: Vec<_> = [("--output", &**output)].into_iter().chain(image).collect();
+    let others = args.files.iter();
+    let others = others.filter(|file| !scene_io::is_same(file, output));
+    scene_io::check_apart(others, &written)?;
+    for (flag, file) in written {
+        output::check_file(flag, file)?;
+    }
     if output.is_file() && !scene_io::is_film(output) {
         return Err(not_a_film(output, "--output"));
     }
-    let Some(image) = image else {
-        return Ok(());
-    };
-    output::check_file("--image", image)?;
-    // The image must not replace a film file.
-    if scene_io::is_film(image) {
-        let message = format!(
-            "{} is a film file, and is not replaced by an image",
-            image.display()
-        );
-        return Err(Failure::usage(message).with_hint("name another file with --image"));
-    }
-    Ok(())
+    let film = image.filter(|(_, image)| scene_io::is_film(image));
+    film.map_or(Ok(()), |(flag, image)| {
+        let name = image.display();
+        let message = format!("{name} is a film file, and is not replaced by an image");
+        Err(Failure::usage(message).with_hint(format!("name another file with {flag}")))
+    })
 }
 
 /// Refuses to replace the film file `output` if it has passes that `all`, the header of the result, lacks.
@@ -242,15 +233,6 @@ fn add(all: &mut FilmFile, other: &FilmFile) -> Result<(), String> {
     Ok(())
 }
 
-/// The passes and parts that no film file has.
-#[derive(Serialize)]
-struct Missing {
-    /// Ranges of passes in the format of `--passes`.
-    passes: Vec<String>,
-    /// Parts in the format of `--part`.
-    parts: Vec<String>,
-}
-
 /// Returns the passes of all files. Reports files that cannot be read, which have none.
 fn held(files: &[PathBuf], console: Console) -> Result<PassSet, Failure> {
     let mut first: Option<FilmHeader> = None;
@@ -286,20 +268,14 @@ pub(crate) fn missing(args: &MissingArgs, console: Console) -> Result<Exit, Fail
         let is_missing = !part.intersection(&lacking).is_empty();
         is_missing.then(|| format!("{index}/{of}"))
     });
+    let parts: Vec<_> = parts.collect();
     let ranges = lacking.ranges().iter();
-    let missing = Missing {
-        parts: parts.collect(),
-        passes: ranges
-            .map(|range| format!("{}..{}", range.start, range.end))
-            .collect(),
-    };
-    let lines = if args.parts.is_some() {
-        &missing.parts
-    } else {
-        &missing.passes
-    };
+    let passes: Vec<_> = ranges
+        .map(|range| format!("{}..{}", range.start, range.end))
+        .collect();
+    let lines = args.parts.map_or(&passes, |_| &parts);
     if args.json {
-        print_json(&missing)?;
+        print_json(&json!({"passes": passes, "parts": parts}))?;
     } else if !lines.is_empty() {
         print(&(lines.join("\n") + "\n"))?;
     }

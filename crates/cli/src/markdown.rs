@@ -2,7 +2,7 @@
 
 use crate::args::command;
 use crate::exit::Exit;
-use clap::builder::StyledStr;
+use clap::builder::{PossibleValue, StyledStr};
 use clap::{Arg, Command};
 use std::collections::BTreeMap;
 
@@ -71,52 +71,55 @@ fn all(command: &Command) -> Vec<(String, &Command)> {
     with_its_own.collect()
 }
 
-/// Returns the section of a command. A table that another command has becomes a link to it; `tables` has the
-/// written ones by heading and rows.
-fn section<'a>(
-    path: &'a str,
-    command: &Command,
-    tables: &mut BTreeMap<(String, String), &'a str>,
-) -> String {
-    let mut text = format!("\n## bidir {path}\n");
+/// The commands of the written tables, by heading and rows.
+type Tables<'a> = BTreeMap<(String, String), &'a str>;
+
+/// Returns the section of a command.
+fn section<'a>(path: &'a str, command: &Command, tables: &mut Tables<'a>) -> String {
     let long = command.get_long_about().or(command.get_about());
     let long = long.map(ToString::to_string).unwrap_or_default();
-    for paragraph in long.split("\n\n") {
-        let paragraph = match paragraph.strip_prefix("For example: ") {
-            Some(example) => format!("For example: {}", code(example)),
-            None => ended(paragraph),
-        };
-        text += &format!("\n{paragraph}\n");
-    }
+    let paragraphs = long.split("\n\n").map(|paragraph| {
+        let example = paragraph.strip_prefix("For example: ").map(code);
+        let text = example.map_or_else(|| ended(paragraph), |code| format!("For example: {code}"));
+        format!("\n{text}\n")
+    });
     let usage = command.clone().render_usage().to_string();
     let usages = usage
         .lines()
         .map(|line| code(line.trim_start_matches("Usage:").trim()));
-    text += &format!("\nUsage: {}\n", usages.collect::<Vec<_>>().join(" or "));
+    let usages = usages.collect::<Vec<_>>().join(" or ");
+    let mut parts = vec![format!("\n## bidir {path}\n")];
+    parts.extend(paragraphs);
+    parts.push(format!("\nUsage: {usages}\n"));
     for (heading, args) in by_heading(command) {
-        let rows = args.iter().map(|arg| {
-            let (meaning, default) = meaning(arg);
-            let variable = arg.get_env().map(|name| code(&name.to_string_lossy()));
-            row(&[
-                &name(arg),
-                &default,
-                &variable.unwrap_or_default(),
-                &meaning,
-            ])
-        });
-        let rows: String = rows.collect();
-        let head = "Default | Environment | Meaning |\n|---|---|---|---|";
-        let table = format!("\n| {heading} | {head}\n{rows}");
-        text += &match tables.get(&(heading.to_owned(), rows.clone())) {
-            Some(other) if args.len() > 1 => format!("\n{heading}: as for {}\n", link(other)),
-            _ => table,
-        };
-        tables.entry((heading.to_owned(), rows)).or_insert(path);
+        parts.push(table(path, heading, &args, tables));
     }
-    if let Some(examples) = command.get_after_long_help().or(command.get_after_help()) {
-        text += &format!("\n```text\n{}\n```\n", examples.to_string().trim_end());
+    let examples = command.get_after_long_help().or(command.get_after_help());
+    let examples = examples.map(ToString::to_string);
+    parts.extend(examples.map(|text| format!("\n```text\n{}\n```\n", text.trim_end())));
+    parts.concat()
+}
+
+/// Returns the table of arguments of the command `path`, or a link to the command that has the same.
+fn table<'a>(path: &'a str, heading: &str, args: &[&Arg], tables: &mut Tables<'a>) -> String {
+    let rows = args.iter().map(|arg| {
+        let (meaning, default) = meaning(arg);
+        let variable = arg.get_env().map(|name| code(&name.to_string_lossy()));
+        row(&[
+            &name(arg),
+            &default,
+            &variable.unwrap_or_default(),
+            &meaning,
+        ])
+    });
+    let rows: String = rows.collect();
+    let first = *tables
+        .entry((heading.to_owned(), rows.clone()))
+        .or_insert(path);
+    if first != path && args.len() > 1 {
+        return format!("\n{heading}: as for {}\n", link(first));
     }
-    text
+    format!("\n| {heading} | Default | Environment | Meaning |\n|---|---|---|---|\n{rows}")
 }
 
 /// Returns the arguments of a command under their headings, those without a heading first. Flags of every command
@@ -151,7 +154,7 @@ fn variables(commands: &[(String, &Command)]) -> BTreeMap<String, String> {
             if let (Some(variable), Some(flag)) = (arg.get_env(), arg.get_long()) {
                 variables
                     .entry(variable.to_string_lossy().into_owned())
-                    .and_modify(|text| *text += &format!(", `{path}`"))
+                    .and_modify(|text| text.extend([", `", path, "`"]))
                     .or_insert_with(|| format!("`--{flag}` of `{path}`"));
             }
         }
@@ -163,9 +166,9 @@ fn variables(commands: &[(String, &Command)]) -> BTreeMap<String, String> {
 fn name(arg: &Arg) -> String {
     let names = arg.get_value_names().unwrap_or_default();
     let names = names.iter().filter(|_| arg.get_action().takes_values());
-    let value: String = names.map(|name| format!(" <{name}>")).collect();
+    let values: Vec<_> = names.map(|name| format!(" <{name}>")).collect();
     let long = arg.get_long().map(|long| format!("--{long}"));
-    let name = code((long.unwrap_or_default() + &value).trim());
+    let name = code((long.unwrap_or_default() + &values.concat()).trim());
     let short = arg.get_short().map(|short| format!("`-{short}`, "));
     short.unwrap_or_default() + &name
 }
@@ -173,25 +176,34 @@ fn name(arg: &Arg) -> String {
 /// Returns the meaning of an argument, and its default, which the help text has in brackets.
 fn meaning(arg: &Arg) -> (String, String) {
     let text = one_line(arg.get_long_help().or(arg.get_help()));
-    let bracket = text.split_once(" [default: ").and_then(|(before, rest)| {
+    let bracket = text.split_once(" [default: ");
+    let bracket = bracket.and_then(|(before, rest)| {
         let (default, after) = rest.split_once(']')?;
         Some((format!("{before}{after}"), default.to_owned()))
     });
-    let takes_values = arg.get_action().takes_values();
-    let (meaning, default) = bracket.unwrap_or_else(|| {
-        let is_shown = takes_values && !arg.is_hide_default_value_set();
-        let values = arg.get_default_values().iter().filter(|_| is_shown);
-        let values: Vec<_> = values.map(|value| code(&value.to_string_lossy())).collect();
-        (text, values.join(", "))
-    });
-    let values = arg.get_possible_values();
-    let values = values.iter().filter(|_| takes_values);
-    let values: Vec<_> = values.map(|value| code(value.get_name())).collect();
+    let is_shown = !arg.is_hide_default_value_set();
+    let defaults = arg.get_default_values().iter().filter(|_| is_shown);
+    let defaults = in_code(arg, defaults.map(|value| value.to_string_lossy()));
+    let (meaning, default) = bracket.unwrap_or((text, defaults));
+    let values = in_code(
+        arg,
+        arg.get_possible_values()
+            .iter()
+            .map(PossibleValue::get_name),
+    );
     let meaning = ended(&meaning);
-    if values.is_empty() {
-        return (meaning, default);
-    }
-    (format!("{meaning} Values: {}.", values.join(", ")), default)
+    let values = Some(values).filter(|values| !values.is_empty());
+    let values = values.map(|values| format!(" Values: {values}."));
+    (meaning + &values.unwrap_or_default(), default)
+}
+
+/// Returns the values of an argument, if it takes any.
+fn in_code<T: AsRef<str>>(arg: &Arg, values: impl Iterator<Item = T>) -> String {
+    let values = values.filter(|_| arg.get_action().takes_values());
+    values
+        .map(|value| code(value.as_ref()))
+        .collect::<Vec<_>>()
+        .join(", ")
 }
 
 /// Returns paragraphs in one line.

@@ -129,6 +129,20 @@ pub(crate) fn check_file(flag: &str, file: &Path) -> Result<(), Failure> {
         .map_err(|error| Failure::from(error).with_hint(hint(flag, scene_io::folder_of(file))))
 }
 
+/// Checks that the image named by `flag` has one of these formats, can be written, and replaces no input. Returns
+/// its format.
+pub(crate) fn check_image<'a>(
+    flag: &'static str,
+    image: &Path,
+    formats: &[ImageFormat],
+    inputs: impl IntoIterator<Item = &'a PathBuf>,
+) -> Result<ImageFormat, Failure> {
+    let format = scene_io::image_format(image, formats)?;
+    scene_io::check_apart(inputs, &[(flag, image)])?;
+    check_file(flag, image)?;
+    Ok(format)
+}
+
 /// Returns the EXR, if any, and the PNG for the name of an image.
 fn images(image: PathBuf) -> Result<[Option<PathBuf>; 2], Failure> {
     Ok(match scene_io::image_format(&image, IMAGES)? {

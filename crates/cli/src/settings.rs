@@ -40,31 +40,28 @@ pub(crate) fn check_strategies(
     settings: &Settings,
     console: Console,
 ) -> Result<usize, Failure> {
-    let path = &settings.path;
-    let Some(lost) = lost_light(
-        &loaded.subject.scene,
-        &loaded.subject.view,
-        settings.integrator,
-        path,
-    ) else {
+    let (path, subject) = (&settings.path, &loaded.subject);
+    let lost = lost_light(&subject.scene, &subject.view, settings.integrator, path);
+    let Some(lost) = lost else {
         return Ok(0);
     };
     let message = format!("{flag} {} {lost}", path.strategies);
     match lost {
         LostLight::All { max_vertices } => {
-            let failure = Failure::usage(message);
-            Err(match max_vertices {
-                Some(most) if most < MAX_VERTICES => failure.with_hint(format!(
+            let hint = match max_vertices {
+                Some(most) if most < MAX_VERTICES => format!(
                     "raise --max-depth: paths of {} bounces have {most} vertices, and no path has more \
                      than {MAX_VERTICES}",
                     most - 2
-                )),
-                Some(_) => failure.with_hint("no path has more vertices"),
-                None => failure.with_hint(
-                    "strategy sNtM has N light vertices and M camera vertices: M is at least 1, \
-                     N + M at least 2",
                 ),
-            })
+                Some(_) => "no path has more vertices".to_owned(),
+                None => {
+                    "strategy sNtM has N light vertices and M camera vertices: M is at least 1, \
+                         N + M at least 2"
+                        .to_owned()
+                }
+            };
+            Err(Failure::usage(message).with_hint(hint))
         }
         LostLight::Lengths(_) | LostLight::Specular(_) => {
             console.warning(message);
@@ -76,13 +73,8 @@ pub(crate) fn check_strategies(
 /// Warns of light that all strategies of the estimator miss, and names its lamps. Returns the number of
 /// warnings.
 pub(crate) fn warn_missing(loaded: &LoadedScene, settings: &Settings, console: Console) -> usize {
-    let integrator = settings.integrator;
-    let missing = missing_light(
-        &loaded.subject.scene,
-        &loaded.subject.view,
-        integrator,
-        &settings.path,
-    );
+    let (integrator, subject) = (settings.integrator, &loaded.subject);
+    let missing = missing_light(&subject.scene, &subject.view, integrator, &settings.path);
     for &spot in &missing {
         let (paths, remedy) = (spot.description(), spot.remedy());
         let lamps = lamps(loaded, spot);

@@ -49,9 +49,7 @@ pub(crate) fn run(args: &TonemapArgs) -> Result<Exit, Failure> {
     let default = || output::named_after(&args.image, ".png");
     let written = &args.output.clone().unwrap_or_else(default);
     // The output is always a PNG.
-    scene_io::image_format(written, &[ImageFormat::Png])?;
-    scene_io::check_apart([&args.image], &[("--output", written)])?;
-    output::check_file("--output", written)?;
+    output::check_image("--output", written, &[ImageFormat::Png], [&args.image])?;
     let mut image = scene_io::read_image(&args.image)?;
     let scale = libm::exp2f(args.exposure);
     for color in &mut image.data {

@@ -3,13 +3,12 @@
 use crate::args::ViewArgs;
 use crate::console::{Console, say};
 use crate::exit::{Exit, Failure};
-use crate::scene_io::{self, LoadedScene};
+use crate::scene_io;
 use crate::serve;
 use crate::settings;
 use crate::signals::Signals;
 use crate::threads;
-use bidir::driver::Settings;
-use std::net::{SocketAddr, TcpListener};
+use std::net::SocketAddr;
 use std::path::PathBuf;
 use std::time::Duration;
 use viewer::Status;
@@ -27,7 +26,8 @@ pub(crate) fn run(args: &ViewArgs, console: Console) -> Result<Exit, Failure> {
     let signals = Signals::watch()?;
     threads::start(args.threads.count, console);
     // Errors that need no scene come before one is read.
-    let listener = listen(args)?;
+    let (port, more) = args.port.map_or((PORT, MORE_PORTS), |port| (port, 0));
+    let listener = serve::bind(SocketAddr::new(args.bind, port), more)?;
     let Some(loaded) = scene_io::load_until(&signals, &args.scene, Some(&args.film))? else {
         return Ok(signals.exit().unwrap_or(Exit::Interrupted));
     };
@@ -39,7 +39,14 @@ pub(crate) fn run(args: &ViewArgs, console: Console) -> Result<Exit, Failure> {
     let name = args.scene.scene.display().to_string();
     let first = Status::interactive(&name, loaded.subject.view.film());
     let (server, queue) = serve::start(listener, first, &loaded.warnings)?;
-    let render = interactive_settings(args, loaded, settings);
+    let render = InteractiveSettings {
+        subject: loaded.subject,
+        settings,
+        roulette: args.estimator.path_roulette,
+        threads: args.threads.count.into(),
+        target: args.spp,
+        folder: PathBuf::from("."),
+    };
     let render = InteractiveRender::open(render, queue).map_err(|error| serve::failed(&error))?;
     if !args.quiet {
         say("open it in a browser; Ctrl-C ends");
@@ -77,28 +84,4 @@ fn say_saved(args: &ViewArgs, saved: Option<Vec<String>>) -> Result<(), Failure>
         });
     }
     Ok(())
-}
-
-fn interactive_settings(
-    args: &ViewArgs,
-    loaded: LoadedScene,
-    settings: Settings,
-) -> InteractiveSettings {
-    InteractiveSettings {
-        subject: loaded.subject,
-        settings,
-        roulette: args.estimator.path_roulette,
-        threads: args.threads.count.into(),
-        target: args.spp,
-        folder: PathBuf::from("."),
-    }
-}
-
-fn listen(args: &ViewArgs) -> Result<TcpListener, Failure> {
-    let (port, more) = match args.port {
-        Some(port) => (port, 0),
-        None => (PORT, MORE_PORTS),
-    };
-    let address = SocketAddr::new(args.bind, port);
-    serve::bind(address, more)
 }

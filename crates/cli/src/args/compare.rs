@@ -72,12 +72,8 @@ pub(crate) struct MetricArgs {
     #[arg(value_parser = named(Metric::NAMES))]
     pub(crate) metric: Metric,
     /// Error that is brightest in the .png of --error-map.
-    #[arg(
-        long,
-        value_name = "ERROR",
-        default_value_t = 1.0,
-        requires = "error_map"
-    )]
+    #[arg(long, value_name = "ERROR", default_value_t = 1.0)]
+    #[arg(requires = "error_map")]
     #[arg(value_parser = positive_number)]
     pub(crate) error_max: f64,
 }

@@ -11,58 +11,7 @@ use std::path::PathBuf;
 
 /// The description of the experiment, and the folder for its results.
 #[derive(Args, Debug)]
-#[command(after_long_help = "\
-A description:
-  title = \"One ray for each pair\"        # description = \"…\" says more
-  seeds = 10                             # first-seed = 0
-  size = \"320x240\"                       # of all images; else the scenes' own
-  threads = 2                            # of each render; else one per processor
-  metrics = [\"relmse\", \"relmse_trim\"]    # beside rmse; names are those of `bidir compare`
-  pyramid = \"all\"                        # shows each strategy (s, t) of this method, once in each
-  # pyramid-spp = 64                     # scene; it is in no figure of the comparison
-
-  [settings]                             # of all methods: flags of `bidir render` under Integrator
-  integrator = \"bdpt\"                    # (but --seed), Shadow rays, Shared light subpaths
-  max-depth = 16                         # defaults: the scene's settings
-
-  [[scene]]
-  file = \"room.pbrt\"                     # relative to the description; name and size are optional
-  reference = \"references/room\"          # a folder of `bidir reference`, or an image; or
-  # reference-spp = 4096                 # made first, with reference-strategies = \"all\"
-  # reference-cross-check = \"lvc\"        # the estimator that it must agree with [path]
-
-  [[method]]                             # ratios are relative to the first
-  name = \"all\"
-  [[method]]
-  name = \"one\"
-  shadow-rays = \"per-pair\"
-
-  [[budget]]                             # one of
-  rays = 500                             # rays per pixel, those of training too
-  # samples = 64                         # samples per pixel
-  # seconds = 10                         # of training and passes
-
-  [[claim]]                              # optional: a statement that gets a verdict
-  id = \"one-is-better\"
-  claim = \"One ray for each pair has a lower error.\"
-  measure = \"rmse at equal rays\"        # of this method, over that of the other
-  scene = \"room\"
-  method = \"one\"
-  over = \"all\"
-  below = 1
-
-  docs/reference/experiments.md explains tables, repetition and all measures.
-
-Examples:
-  bidir experiment experiments/shadow-rays.toml -o out/shadow-rays
-      every method under every budget and seed; repeat the command to continue
-  bidir experiment room.toml -o out/quick --quick
-      small and coarse, to try a description
-  bidir experiment paper --quick -o out/paper
-      the statements of the 1995 paper, each with a verdict
-  bidir experiment beyond --quick -o out/beyond
-      all integrators and each idea behind them, against targets; BIDIR_SCENES names a folder
-      with pbrt-v4/, the scenes made by others, which are left out without it")]
+#[command(after_long_help = include_str!("experiment.txt").trim_end())]
 #[command(mut_arg("threads", |threads| threads
     .help("Threads of each render [default: the description's, or one per processor]")
     .long_help("Threads of each render [default: the description's, or one per processor]")))]
@@ -93,9 +42,10 @@ pub(crate) struct ExperimentArgs {
     /// Run on the nodes of a Ray cluster: auto, local, or HOST:PORT.
     ///
     /// auto finds the cluster that runs here, local starts one on this machine. Each node uses all of its
-    /// threads: --threads is an error, and BIDIR_THREADS has no effect. Needs the Python package;
-    /// BIDIR_PYTHON names the interpreter that has it (python3).
+    /// threads: --threads is an error, as are flags of the extent, and BIDIR_THREADS has no effect. Needs the
+    /// Python package; BIDIR_PYTHON names the interpreter that has it (python3).
     #[arg(long, value_name = "ADDRESS")]
+    #[arg(conflicts_with_all = ["scenes", "size", "seconds", "rays", "seeds", "reference_spp"])]
     pub(crate) ray: Option<String>,
     /// The number of threads.
     #[command(flatten)]
@@ -115,31 +65,15 @@ impl ExperimentArgs {
         self.output.clone().unwrap_or_else(default)
     }
 
-    /// Refuses --threads and the flags of the extent beside --ray.
-    ///
-    /// The nodes choose their own number of threads, and the Python package has no flags for the extent. A
-    /// conflict declared in clap would also refuse BIDIR_THREADS, which applies to all commands.
+    /// Refuses --threads beside --ray: the nodes choose their own number of threads. A conflict declared in clap would
+    /// also refuse BIDIR_THREADS, which applies to all commands.
     pub(super) fn check(command: &mut Command, matches: &ArgMatches) -> Result<(), clap::Error> {
         let is_given = |name| matches.value_source(name) == Some(ValueSource::CommandLine);
         if is_given("ray") && is_given("threads") {
             let message = "--ray cannot be used with --threads: each node uses all of its threads";
             return Err(command.error(ErrorKind::ArgumentConflict, message));
         }
-        let extent = [
-            "scenes",
-            "size",
-            "seconds",
-            "rays",
-            "seeds",
-            "reference_spp",
-        ];
-        let given = extent.into_iter().find(|name| is_given(name));
-        let Some(name) = given.filter(|_| is_given("ray")) else {
-            return Ok(());
-        };
-        let flag = name.replace('_', "-");
-        let message = format!("--ray cannot be used with --{flag}: write it into the description");
-        Err(command.error(ErrorKind::ArgumentConflict, message))
+        Ok(())
     }
 }
 

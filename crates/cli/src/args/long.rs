@@ -19,12 +19,8 @@ pub(crate) struct LongArgs {
     #[arg(long, value_name = "FILE.film", value_hint = ValueHint::FilePath)]
     pub(crate) checkpoint: Option<PathBuf>,
     /// Time between checkpoints.
-    #[arg(
-        long,
-        value_name = "DURATION",
-        default_value = "5m",
-        requires = "checkpoint"
-    )]
+    #[arg(long, value_name = "DURATION", default_value = "5m")]
+    #[arg(requires = "checkpoint")]
     pub(crate) checkpoint_every: Duration,
     /// Continue from the checkpoint if it exists.
     ///

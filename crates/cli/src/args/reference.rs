@@ -10,18 +10,7 @@ use std::str::FromStr;
 
 /// The scene that gets a reference, and its estimators.
 #[derive(Args, Debug)]
-#[command(after_long_help = "\
-Examples:
-  bidir reference scenes/cornell.pbrt --spp 4096
-      512x512 pixels by bdpt, cross-checked by path, into cornell.reference
-  bidir reference scenes/cornell.pbrt --extend 4096
-      4096 more samples per pixel
-  bidir compare cornell.exr --reference cornell.reference
-      the error of an image
-  bidir reference room.pbrt --spp 1024 -o room-inner.reference \\
-    --estimator 'bdpt --strategies all,-s0,-t1 --light-point shared' \\
-    --against 'bdpt --strategies s1,-t1'
-      for estimators without some of the strategies")]
+#[command(after_long_help = include_str!("reference.txt").trim_end())]
 pub(crate) struct ReferenceArgs {
     /// Folder of the reference [default: NAME.reference, in the current folder].
     ///

@@ -18,20 +18,7 @@ Examples:
   bidir render room.pbrt --integrator auto --time 10m -o room.exr
   bidir render room.glb --spp 64 --denoise
   bidir render room.pbrt --spp 65536 --checkpoint room.film --resume")]
-#[command(after_long_help = "\
-Examples:
-  bidir render room.pbrt --integrator auto --time 10m -o room.exr
-      as many passes as fit into ten minutes, into room.exr and room.png
-  bidir render room.glb --spp 64 --denoise
-      a scene exported from Blender; glTF files are rendered with auto
-  bidir render room.pbrt --spp 65536 --checkpoint room.film --resume
-      repeat the command to continue an interrupted render
-  bidir render room.pbrt --shadow-rays per-pair --stats room.json
-      one connection ray per pair of subpaths; the JSON has the ray counts
-  bidir render room.pbrt --strategies all,-s0
-      without light that camera subpaths hit by chance
-  bidir render room.pbrt --replay 17,4,3 --svg sample.svg
-      sample 3 of the pixel in column 17, row 4: its terms as text, its paths as a drawing")]
+#[command(after_long_help = include_str!("render.txt").trim_end())]
 pub(crate) struct RenderArgs {
     /// The files to write, and messages.
     #[command(flatten)]
@@ -41,23 +28,15 @@ pub(crate) struct RenderArgs {
     /// Prints the URL on stdout. Without ADDRESS the page can be reached from this machine only;
     /// otherwise the URL carries a random token. The server ends with the render. `bidir view` can
     /// also change the render.
-    #[arg(
-        long,
-        value_name = "[ADDRESS:]PORT",
-        conflicts_with = "replay",
-        help_heading = "Output"
-    )]
+    #[arg(long, value_name = "[ADDRESS:]PORT", conflicts_with = "replay")]
+    #[arg(help_heading = "Output")]
     pub(crate) serve: Option<ServeAddress>,
     /// Show progress in the image viewer tev [default port: 14158].
     ///
     /// The render never waits for tev, which may be started later, except for at most two seconds at
     /// the end.
-    #[arg(
-        long,
-        value_name = "HOST[:PORT]",
-        conflicts_with = "replay",
-        help_heading = "Output"
-    )]
+    #[arg(long, value_name = "HOST[:PORT]", conflicts_with = "replay")]
+    #[arg(help_heading = "Output")]
     pub(crate) display_server: Option<TevAddress>,
     /// The image's geometry.
     #[command(flatten)]
@@ -96,12 +75,8 @@ pub(crate) struct RenderArgs {
     /// Also draw the replayed sample in plan and elevation.
     ///
     /// Shows both subpaths, the candidates, the traced shadow rays, and the blocked ones among them.
-    #[arg(
-        long,
-        value_name = "FILE.svg",
-        requires = "replay",
-        help_heading = "Debugging"
-    )]
+    #[arg(long, value_name = "FILE.svg", requires = "replay")]
+    #[arg(help_heading = "Debugging")]
     #[arg(value_hint = ValueHint::FilePath)]
     pub(crate) svg: Option<PathBuf>,
 }

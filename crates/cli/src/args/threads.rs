@@ -12,12 +12,8 @@ pub(crate) struct ThreadsArgs {
     ///
     /// 0 is the default. At most 4 per processor are used, or as many as the system starts, with a
     /// warning. The number never changes the image. pbrt's spelling --nthreads is accepted.
-    #[arg(
-        id = "threads",
-        long = "threads",
-        env = "BIDIR_THREADS",
-        value_name = "N"
-    )]
+    #[arg(id = "threads", long = "threads", env = "BIDIR_THREADS")]
+    #[arg(value_name = "N")]
     #[arg(default_value_t = 0, hide_default_value = true)]
     #[arg(value_parser = count::<u16>(0..=Threads::MOST as u64))]
     pub(crate) count: u16,

@@ -62,11 +62,7 @@ pub(crate) fn isa(name: &str) -> Result<accel::Isa, String> {
         .parse::<accel::Isa>()
         .map_err(|error| error.to_string())?;
     let missing = || format!("this machine does not have the instruction set `{isa}`");
-    if isa.is_supported() {
-        Ok(isa)
-    } else {
-        Err(missing())
-    }
+    isa.is_supported().then_some(isa).ok_or_else(missing)
 }
 
 /// Width and height, written `1920x1080`.
@@ -77,32 +73,19 @@ impl FromStr for Size {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let side = |side: &str| side.trim().parse::<u64>().ok();
+        let side = |side: &str| side.trim().parse::<u32>().ok();
         let sides = text
             .split_once(['x', 'X'])
             .and_then(|(width, height)| Some([side(width)?, side(height)?]));
-        let [width, height] = sides.ok_or_else(|| expected_size(text))?;
-        let side = |side| u32::try_from(side).ok().filter(|side| SIDES.contains(side));
-        let size = side(width).and_then(|width| Some([width, side(height)?]));
-        size.map(Self).ok_or_else(|| {
-            format!(
-                "each side has 1 to {} pixels, such as 1920x1080",
-                SIDES.end()
-            )
+        let valid = sides.filter(|sides| sides.iter().all(|side| (1..=MOST).contains(side)));
+        valid.map(Self).ok_or_else(|| {
+            format!("expected WIDTHxHEIGHT of 1 to {MOST} pixels each, such as 1920x1080")
         })
     }
 }
 
-/// Describes the form of a size; if `text` is a number, the example has it as its width.
-fn expected_size(text: &str) -> String {
-    let width = text.trim().parse::<u16>().ok();
-    let width = width.filter(|width| *width > 0).map(u32::from);
-    let size = width.map_or([1920, 1080], |width| [width, (width * 3).div_ceil(4)]);
-    format!("expected WIDTHxHEIGHT, such as {}x{}", size[0], size[1])
-}
-
-/// The valid sides of a film. Unit: pixels.
-const SIDES: RangeInclusive<u32> = 1..=1 << 16;
+/// The most pixels of a side of a film.
+const MOST: u32 = 1 << 16;
 
 /// Reads a finite number above zero.
 pub(crate) fn positive_number(text: &str) -> Result<f64, String> {
@@ -208,35 +191,24 @@ impl FromStr for Duration {
 
     fn from_str(text: &str) -> Result<Self, String> {
         let expected = || "expected a time such as 90, 90s, 10m or 1h30m".to_owned();
-        let mut seconds = 0.0;
-        let mut rest = text.trim();
-        let mut largest = f64::INFINITY;
-        while !rest.is_empty() {
-            let end = rest
-                .find(|c: char| !c.is_ascii_digit() && c != '.')
-                .unwrap_or(rest.len());
-            let (number, after) = rest.split_at(end);
-            let mut letters = after.chars();
-            let unit = match letters.next() {
-                // A single number without a unit is in seconds.
-                None if largest.is_infinite() => 1.0,
-                Some('s') => 1.0,
-                Some('m') => 60.0,
-                Some('h') => 3600.0,
-                _ => return Err(expected()),
-            };
-            if unit >= largest {
-                return Err(expected());
+        let text = text.trim();
+        let is_known = |c: char| c.is_ascii_digit() || ".hms".contains(c);
+        // A single number without a unit is in seconds.
+        let (mut seconds, mut rest) = text.parse().map_or((0.0, text), |seconds| (seconds, ""));
+        for (unit, length) in [('h', 3600.0), ('m', 60.0), ('s', 1.0)] {
+            if let Some((count, after)) = rest.split_once(unit) {
+                seconds += count.parse::<f64>().map_err(|_| expected())? * length;
+                rest = after;
             }
-            seconds += number.parse::<f64>().map_err(|_| expected())? * unit;
-            (largest, rest) = (unit, letters.as_str());
+        }
+        if text.is_empty() || !text.chars().all(is_known) || !rest.is_empty() {
+            return Err(expected());
         }
         let time = std::time::Duration::try_from_secs_f64(seconds).map_err(|_| expected())?;
-        if time.is_zero() {
-            Err("must be above 0, such as 90s".to_owned())
-        } else {
-            Ok(Self(time))
-        }
+        let positive = Some(time).filter(|time| !time.is_zero());
+        positive
+            .map(Self)
+            .ok_or_else(|| "must be above 0, such as 90s".to_owned())
     }
 }
 

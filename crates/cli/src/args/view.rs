@@ -9,14 +9,7 @@ use std::str::FromStr;
 
 /// The scene and its settings, and the address of the page.
 #[derive(Args, Debug)]
-#[command(after_long_help = "\
-Examples:
-  bidir view scenes/room-indirect.pbrt
-      prints a URL to open; Ctrl-C ends
-  bidir view room.glb --size 640x360
-      a smaller image is clear sooner
-  bidir view room.pbrt --bind 0.0.0.0 --port 9000
-      for other machines too, which need the token in the URL")]
+#[command(after_long_help = include_str!("view.txt").trim_end())]
 pub(crate) struct ViewArgs {
     /// Port; 0 is any free one [default: 8080, or one of the next ten].
     #[arg(long, value_name = "N", help_heading = "Server")]
@@ -26,12 +19,8 @@ pub(crate) struct ViewArgs {
     ///
     /// For any other address than the loopback, the URL carries a random token that every request
     /// needs. The connection is not encrypted: use a tunnel across networks that are not yours.
-    #[arg(
-        long,
-        value_name = "ADDRESS",
-        default_value = "127.0.0.1",
-        help_heading = "Server"
-    )]
+    #[arg(long, value_name = "ADDRESS", default_value = "127.0.0.1")]
+    #[arg(help_heading = "Server")]
     pub(crate) bind: IpAddr,
     /// The image's geometry.
     #[command(flatten)]

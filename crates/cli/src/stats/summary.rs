@@ -1,6 +1,7 @@
 //! The lines that a render ends with.
 
 use super::Course;
+use crate::args;
 use bidir::driver::{Budget, Plan, Session};
 use bidir::integrator::{CandidateCount, IntegratorKind};
 use std::time::Duration;
@@ -70,7 +71,7 @@ impl Summary {
     }
 
     fn samples(&self) -> String {
-        let time = took(self.time);
+        let time = args::Duration(self.time);
         let count = match self.wanted.filter(|wanted| self.passes < *wanted) {
             Some(wanted) => format!("{} of {wanted} samples per pixel", self.passes),
             None if self.passes == 1 => "1 sample per pixel".to_owned(),
@@ -127,19 +128,6 @@ pub(crate) fn listed(names: &[String]) -> String {
     }
 }
 
-/// A time as people write it: `0.7 s`, `12 s`, `1 min 30 s`, `2 h 05 min`.
-fn took(time: Duration) -> String {
-    let seconds = time.as_secs_f64();
-    let whole = seconds.round() as u64;
-    match whole {
-        0 if seconds < 0.095 => format!("{seconds:.2} s"),
-        0..10 => format!("{seconds:.1} s"),
-        10..60 => format!("{whole} s"),
-        60..3600 => format!("{} min {:02} s", whole / 60, whole % 60),
-        _ => format!("{} h {:02} min", whole / 3600, whole / 60 % 60),
-    }
-}
-
 /// A positive number with two significant digits.
 fn two_digits(number: f64) -> String {
     // 0.0996 has the digits of 0.10.
@@ -177,7 +165,7 @@ mod tests {
     #[test]
     fn a_line_has_samples_time_and_error() {
         let all = summary();
-        check(&all, "64 samples per pixel in 0.7 s, relative error 0.21");
+        check(&all, "64 samples per pixel in 0.70s, relative error 0.21");
         let one = Summary {
             passes: 1,
             rendered: 1,
@@ -185,7 +173,7 @@ mod tests {
             error: None,
             ..summary()
         };
-        check(&one, "1 sample per pixel in 0.7 s");
+        check(&one, "1 sample per pixel in 0.70s");
         let asked = Summary {
             passes: 8,
             rendered: 8,
@@ -196,7 +184,7 @@ mod tests {
         };
         check(
             &asked,
-            "8 samples per pixel in 0.7 s, no relative error below 16 samples",
+            "8 samples per pixel in 0.70s, no relative error below 16 samples",
         );
         let denoised = Summary {
             is_denoised: true,
@@ -204,7 +192,7 @@ mod tests {
         };
         check(
             &denoised,
-            "64 samples per pixel in 0.7 s, relative error 0.21 before denoising",
+            "64 samples per pixel in 0.70s, relative error 0.21 before denoising",
         );
     }
 
@@ -215,12 +203,12 @@ mod tests {
             error: None,
             ..summary()
         };
-        check(&stopped, "64 of 100 samples per pixel in 0.7 s");
+        check(&stopped, "64 of 100 samples per pixel in 0.70s");
         let resumed = Summary {
             rendered: 24,
             ..stopped.clone()
         };
-        check(&resumed, "64 of 100 samples per pixel, 24 of them in 0.7 s");
+        check(&resumed, "64 of 100 samples per pixel, 24 of them in 0.70s");
         let there = Summary {
             rendered: 0,
             wanted: Some(64),
@@ -238,7 +226,7 @@ mod tests {
         };
         check(
             &part,
-            "64 samples per pixel (passes 64..128) of a crop of 8x4 pixels in 0.7 s",
+            "64 samples per pixel (passes 64..128) of a crop of 8x4 pixels in 0.70s",
         );
     }
 
@@ -257,12 +245,6 @@ mod tests {
 
     #[test]
     fn numbers_are_short() {
-        let time = |seconds| took(Duration::from_secs_f64(seconds));
-        assert_eq!(time(0.014), "0.01 s");
-        assert_eq!(time(0.714), "0.7 s");
-        assert_eq!(time(12.34), "12 s");
-        assert_eq!(time(90.0), "1 min 30 s");
-        assert_eq!(time(7500.0), "2 h 05 min");
         assert_eq!(two_digits(0.2123), "0.21");
         assert_eq!(two_digits(0.00316), "0.0032");
         assert_eq!(two_digits(0.0996), "0.10");
