@@ -92,24 +92,6 @@ fn results_of_a_description_are_not_replaced_by_those_of_a_built_in_experiment()
 }
 
 #[test]
-fn an_extent_is_checked() {
-    let place = Workplace::new();
-    let run = |arguments: &str| -> Ran { place.run(&format!("experiment {arguments} -o out")) };
-    run("beyond --scenes room-dirct")
-        .expect(2)
-        .says("--scenes: unknown name `room-dirct`: did you mean `room-direct`?");
-    run("beyond --seconds 0").expect(2).says("a number above 0");
-    run("beyond --seeds 0").expect(2).says("--seeds");
-    run("a.toml --ray local --seeds 3")
-        .expect(2)
-        .says("--ray cannot be used with --seeds: write it into the description");
-    run("beyond --scenes coffee,living-room")
-        .expect(4)
-        .says("there is no scene to render: BIDIR_SCENES is not set")
-        .says("hint: BIDIR_SCENES names the folder that has pbrt-v4/");
-}
-
-#[test]
 fn flags_replace_the_extent_of_a_description() {
     let place = Workplace::new();
     place.write("test.toml", OTHER);

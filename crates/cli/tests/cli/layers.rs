@@ -85,15 +85,6 @@ fn parts_with_layers_equal_the_whole() {
 }
 
 #[test]
-fn a_film_of_other_layers_is_not_continued() {
-    let workplace = workplace();
-    let render = format!("{ROOM} --spp 2 -o a.exr --checkpoint a.film --resume");
-    workplace.run(&format!("{render} --aov depth")).expect(0);
-    let ran = workplace.run(&format!("{render} --aov albedo"));
-    ran.expect(5).says("aov");
-}
-
-#[test]
 fn the_picture_does_not_depend_on_layers() {
     let workplace = workplace();
     workplace
@@ -172,36 +163,6 @@ fn a_pyramid_is_continued() {
     for name in whole.names() {
         assert_eq!(whole.channel(&name), resumed.channel(&name), "{name}");
     }
-}
-
-#[test]
-fn a_pyramid_needs_a_folder() {
-    let workplace = workplace();
-    let ran = workplace.run(&format!("{ROOM} --spp 1 --pyramid no/such"));
-    ran.expect(4).says("no/such");
-    workplace.write("taken", "");
-    let ran = workplace.run(&format!("{ROOM} --spp 1 --pyramid taken"));
-    ran.expect(4).says("taken");
-}
-
-#[test]
-fn layers_that_a_png_cannot_hold_are_an_error() {
-    let workplace = workplace();
-    let ran = workplace.run(&format!("{ROOM} --aov depth -o a.png"));
-    ran.expect(2).says("a PNG cannot hold layers");
-    let ran = workplace.run(&format!("{ROOM} --aov depht"));
-    ran.expect(2).says("depth");
-    workplace
-        .run(&format!("{ROOM} --strategy-layers 17"))
-        .expect(2);
-    workplace.write(
-        "bad.pbrt",
-        "WorldBegin LightSource \"point\" \"string lightgroup\" \"a.b\"",
-    );
-    workplace
-        .run("render bad.pbrt")
-        .expect(3)
-        .says("bad.pbrt:1:");
 }
 
 #[test]

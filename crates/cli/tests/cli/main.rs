@@ -13,7 +13,6 @@ mod failures;
 mod farm;
 mod film;
 mod help;
-mod info;
 mod layers;
 mod means;
 mod messages;

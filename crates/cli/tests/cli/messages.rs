@@ -1,9 +1,9 @@
 //! The messages of command lines, as the files of the folder `messages` have them.
 //!
 //! `$ FLAGS` runs `bidir FLAGS`, where words with `=` before the first command are variables; below it
-//! stand the exit code and the output. Of the messages of a command that succeeds, only warnings and notes
+//! stand, indented, the exit code and the output. Of the messages of a command that succeeds, only warnings and notes
 //! are kept, as others have times. `# TEXT` begins a group with an empty folder and a scene, room.pbrt, and
-//! `+ FILE TEXT` adds a file to it. `UPDATE_EXPECT=1` rewrites the outputs.
+//! `+ FILE TEXT` adds a file to it. A command that fails changes no file. `UPDATE_EXPECT=1` rewrites the outputs.
 
 use crate::common::{Ran, Workplace};
 use expect_test::{ExpectFile, expect_file};
@@ -23,7 +23,7 @@ fn run(place: &Workplace, line: &str) -> Ran {
 }
 
 /// Returns the exit code and the output, without what differs from run to run.
-fn report(ran: &Ran) -> String {
+fn report(ran: &Ran, folder: &str) -> String {
     let is_kept = |line: &&str| {
         let mut labels = ["warning: ", "note: "].into_iter();
         ran.code != Some(0) || labels.any(|label| line.starts_with(label))
@@ -33,9 +33,10 @@ fn report(ran: &Ran) -> String {
         .stdout
         .lines()
         .chain(kept)
-        .map(|line| format!("{}\n", line.trim_end()))
+        .map(|line| format!("  {line}").trim_end().to_owned() + "\n")
         .collect();
-    format!("exit {}\n{lines}\n", ran.code.unwrap())
+    let lines = lines.replace(folder, "");
+    format!("  exit {}\n{lines}\n", ran.code.unwrap())
 }
 
 /// Runs the cases of a file, and compares their outputs.
@@ -47,16 +48,19 @@ fn check(file: &ExpectFile) {
         let Some((kind @ ("#" | "+" | "$"), rest)) = line.split_once(' ') else {
             continue;
         };
-        actual += &format!("{line}\n");
+        actual.extend([line, "\n"]);
         match (kind, rest.split_once(' ')) {
             ("#", _) => place = Workplace::new(),
             ("+", Some((name, text))) => {
                 fs::create_dir_all(place.path(name).parent().unwrap()).unwrap();
-                place.write(name, text);
+                place.write(name, &text.replace("\\n", "\n"));
             }
             ("+", None) => fs::create_dir_all(place.path(rest)).unwrap(),
             _ => {
-                actual += &report(&run(&place, rest.trim()));
+                let before = place.contents();
+                let ran = run(&place, rest.trim());
+                assert!(ran.code == Some(0) || place.contents() == before, "{line}");
+                actual += &report(&ran, &place.path("").display().to_string());
                 count += 1;
             }
         }

@@ -143,14 +143,6 @@ fn splats_have_their_pixels() {
 }
 
 #[test]
-fn json_needs_replay() {
-    Workplace::new()
-        .run("render room.pbrt --json")
-        .expect(2)
-        .says("--replay");
-}
-
-#[test]
 fn a_sample_is_drawn() {
     let place = Workplace::new();
     let command = "render room.pbrt --replay 12,12,1 --svg sample.svg";
@@ -179,18 +171,4 @@ fn a_sample_is_drawn() {
         "the same sample has the same bytes"
     );
     assert_eq!(place.names(), ["room.pbrt", "sample.svg"]);
-}
-
-#[test]
-fn a_drawing_that_cannot_be_written_is_refused_before_a_scene_is_read() {
-    let place = Workplace::new();
-    let run = |arguments: &str| place.run(&format!("render missing.pbrt {arguments}"));
-    run("--svg a.svg").expect(2).says("--replay");
-    run("--replay 1,1,1 --svg a.png")
-        .expect(2)
-        .says("drawings are .svg")
-        .says("NAME.svg");
-    run("--replay 1,1,1 --svg none/a.svg")
-        .expect(4)
-        .says("hint: make the folder `none`, or write elsewhere with --svg");
 }

@@ -34,28 +34,6 @@ fn errors_of_damaged_files_name_the_previous_file() {
 }
 
 #[test]
-fn other_files_are_not_replaced_by_a_film() {
-    let place = Workplace::new();
-    let scene = place.read("room.pbrt");
-    let render = "render room.pbrt -q --spp 1 --restart --checkpoint";
-    place
-        .run(&format!("{render} room.pbrt"))
-        .expect(4)
-        .says("cannot write `room.pbrt`: it would replace the input `room.pbrt`");
-    place
-        .run(&format!("{render} a.exr -o ./a.exr"))
-        .expect(4)
-        .says("cannot write `a.exr`: it would replace the other output `./a.exr`");
-    fs::write(place.path("copy.pbrt"), &scene).unwrap();
-    place
-        .run(&format!("{render} copy.pbrt"))
-        .expect(2)
-        .says("not a film file");
-    assert_eq!(place.read("copy.pbrt"), scene);
-    assert_eq!(place.read("room.pbrt"), scene);
-}
-
-#[test]
 fn a_damaged_file_never_replaces_the_previous_one() {
     let place = Workplace::new();
     place.render_share("0..1", "a.film");
@@ -80,7 +58,6 @@ fn a_film_file_is_replaced_only_with_a_flag() {
     let place = Workplace::new();
     place.render_share("0..1", "a.film");
     let render = "render room.pbrt -q --spp 2 --checkpoint a.film";
-    place.run(render).expect(2).says("--resume");
     place.run(&format!("{render} --restart")).expect(0);
     let info = place.run("film info a.film --json").expect(0).json();
     assert_eq!(info["passes"], "0..2");
@@ -102,27 +79,4 @@ fn a_film_has_the_version_of_the_estimators() {
         .expect(0)
         .prints(&format!("  estimator-version    {version}\n"))
         .prints("  rays.connection      ");
-}
-
-#[test]
-fn checks_without_a_scene_come_before_reading_it() {
-    let place = Workplace::new();
-    place.render_share("0..1", "a.film");
-    let render = "render no-such-scene.pbrt --checkpoint";
-    place
-        .run(&format!("{render} a.film"))
-        .expect(2)
-        .says("exists already");
-    place.write("b.film", "BIDIRFLM and then nothing");
-    place
-        .run(&format!("{render} b.film --resume"))
-        .expect(4)
-        .says("b.film");
-    place.run(&format!("{render} c.film -o a.jpg")).expect(2);
-    place
-        .run(&format!("{render} c.film -o no/such/folder.exr"))
-        .expect(4)
-        .says("folder");
-    place.run(&format!("{render} c.film")).expect(4);
-    assert_eq!(place.names(), ["a.film", "b.film", "room.pbrt"]);
 }

@@ -1,6 +1,6 @@
 //! Parts of a render: merged, missing, refused and continued.
 
-use crate::common::{SCENE, Workplace};
+use crate::common::Workplace;
 use std::fs;
 
 #[test]
@@ -34,144 +34,9 @@ fn parts_merged_in_any_order_equal_the_whole() {
 }
 
 #[test]
-fn missing_passes_are_printed() {
-    let place = Workplace::new();
-    place.render_share("0..2", "a.film");
-    place.render_share("3..5", "b.film");
-    let missing = "missing a.film b.film --spp 8";
-    place.run(missing).expect(6).prints("2..3\n5..8\n");
-    place
-        .run(&format!("{missing} --parts 4"))
-        .expect(6)
-        .prints("1/4\n2/4\n3/4\n");
-    let json = place
-        .run(&format!("{missing} --parts 4 --json"))
-        .expect(6)
-        .json();
-    assert_eq!(json["passes"][1], "5..8");
-    place.run("missing a.film --spp 2").expect(0);
-    // A missing file has no passes; one that cannot be merged is refused.
-    place
-        .run("missing a.film none.film --spp 2")
-        .expect(0)
-        .says("none.film");
-    place.render_share("2..4 --seed 5", "seed.film");
-    place
-        .run("missing a.film seed.film --spp 4")
-        .expect(5)
-        .says("seed is 5");
-}
-
-#[test]
-fn films_of_different_renders_are_refused() {
-    let place = Workplace::new();
-    place.render_share("0..2", "a.film");
-    place.render_share("1..3", "overlap.film");
-    place.render_share("2..4 --seed 5", "seed.film");
-    place.render_share("2..4 --crop 0,0,8,8", "crop.film");
-    place.render_share("2..4 --integrator auto", "auto.film");
-    place.write(
-        "room.pbrt",
-        &place.read("room.pbrt").replace("[9 8 7]", "[9 8 6]"),
-    );
-    place.render_share("2..4", "scene.film");
-    for (film, reason) in [
-        ("a", "both have the passes 0..2"),
-        ("overlap", "both have the passes 1..2"),
-        ("seed", "seed is 5 here and 0 there"),
-        ("crop", "crop is 0,0,8,8 here and 0,0,24,16 there"),
-        ("auto", "integrator is auto here and bdpt there"),
-        ("scene", "scene-digest is "),
-    ] {
-        place
-            .run(&format!("merge a.film {film}.film -o all.film"))
-            .expect(5)
-            .says(reason);
-    }
-    assert!(!place.path("all.film").exists());
-    let resumed = "render room.pbrt --spp 8 --checkpoint a.film --resume";
-    place
-        .run(resumed)
-        .expect(5)
-        .says("the film of another render");
-    place.write("room.pbrt", SCENE);
-    place
-        .run(&(resumed.to_owned() + " --seed 3"))
-        .expect(5)
-        .says("another render: seed is 3 in this render and 0 in the film");
-}
-
-#[test]
-fn merging_replaces_only_films_whose_passes_it_has() {
-    let place = Workplace::new();
-    place.render_share("0..1", "a.film");
-    place.render_share("1..2", "b.film");
-    place.render_share("2..3", "c.film");
-    place.render_share("1..3 --seed 5", "seed.film");
-    place.write("image.exr", "an image");
-    place.write("damaged.film", "BIDIRFLM and then nothing");
-    for (output, code, says, hint) in [
-        (
-            "image.exr",
-            2,
-            "is not a film file, and is not replaced by one",
-            "name another file with --output",
-        ),
-        (
-            "room.pbrt",
-            2,
-            "not a film file",
-            "name another file with --output",
-        ),
-        (
-            "damaged.film",
-            4,
-            "damaged.film",
-            "name another file with --output",
-        ),
-        (
-            "a.film",
-            5,
-            "a.film has the passes 0..1, which would be lost",
-            "list this one among the files",
-        ),
-        (
-            "seed.film",
-            5,
-            "the film of another render, and is not replaced: seed is 5",
-            "name another file",
-        ),
-        (
-            "d.exr --image ./d.exr",
-            4,
-            "cannot write `./d.exr`: it would replace the other output `d.exr`",
-            "name another file with --image",
-        ),
-    ] {
-        let names = place.names();
-        let file = place.path(output.split(' ').next().unwrap());
-        let before = fs::read(&file).ok();
-        place
-            .run(&format!("merge -o {output} b.film c.film"))
-            .expect(code)
-            .says(says)
-            .says(hint);
-        assert_eq!(fs::read(&file).ok(), before, "{output}");
-        assert_eq!(place.names(), names);
-    }
-    // A film whose passes are in the result may be replaced repeatedly.
-    let whole = "merge -o whole.film a.film b.film";
-    place.run(whole).expect(0);
-    place.run(whole).expect(0);
-    let more = "merge -o whole.film whole.film c.film";
-    place.run(more).expect(0).says("passes 0..3 of 2 files; ");
-    place.run("merge -o b.film a.film b.film c.film").expect(0);
-}
-
-#[test]
 fn a_merge_into_one_of_its_films_can_be_repeated() {
     let place = Workplace::new();
-    for (passes, film) in [("0..1", "a"), ("1..2", "b"), ("2..3", "c"), ("2..4", "d")] {
+    for (passes, film) in [("0..1", "a"), ("1..2", "b"), ("2..3", "c")] {
         place.render_share(passes, &format!("{film}.film"));
     }
     place.run("merge -o whole.film a.film b.film").expect(0);
@@ -195,27 +60,6 @@ fn a_merge_into_one_of_its_films_can_be_repeated() {
         .run("render room.pbrt -q --spp 3 -o undivided.exr")
         .expect(0);
     place.expect_same("whole.exr", "undivided.exr");
-    // A film with some of the passes was not merged before.
-    let part = place.run("merge -o whole.film whole.film d.film");
-    part.expect(5).says("both have the passes 2..3");
-    // If the output is not one of them, no film is skipped.
-    let twice = place.run("merge -o other.film a.film c.film c.film");
-    twice.expect(5).says("both have the passes 2..3");
-}
-
-#[test]
-fn a_film_with_passes_outside_the_render_is_not_continued() {
-    let place = Workplace::new();
-    place.render_share("0..4", "a.film");
-    let before = fs::read(place.path("a.film")).unwrap();
-    let resume = "render room.pbrt -q --checkpoint a.film --resume";
-    for fewer in ["--spp 2", "--passes 4..6", "--part 1/2 --spp 8"] {
-        let ran = place.run(&format!("{resume} {fewer}")).expect(5);
-        ran.says("which this render does not include");
-    }
-    // If nothing is left to do, the file stays as it is.
-    place.run(&format!("{resume} --spp 4")).expect(0);
-    assert_eq!(fs::read(place.path("a.film")).unwrap(), before);
 }
 
 /// Training takes at most a tenth of the time, and no part of the passes: those of a render can be split.
