@@ -6,7 +6,7 @@ use super::inspect::check_strategies;
 use super::query::{Asked, OfLane};
 use crate::status::LaneId;
 use axum::extract::State;
-use axum::http::{StatusCode, header};
+use axum::http::header;
 use axum::response::{IntoResponse, Response};
 use bidir::path::Strategy;
 use formats::film::{Developed, metadata};
@@ -14,9 +14,9 @@ use formats::image::encode_png;
 use lab::image::Pixels;
 use lab::pyramid::{self, Kind};
 use serde::Deserialize;
+use std::fmt::Display;
 use std::sync::Arc;
-use std::thread;
-use tokio::sync::oneshot;
+use tokio::task::spawn_blocking;
 
 /// The most that a tile is made brighter or darker. Unit: stops.
 const MOST_STOPS: f32 = 40.0;
@@ -27,7 +27,7 @@ pub(super) async fn png(
     Asked(OfLane { lane }): Asked<OfLane>,
 ) -> Result<Response, Refusal> {
     let shown = site.frame(lane).await?;
-    encode(&site, "image/png", move || {
+    encode("image/png", move || {
         let crop = shown.frame.film.crop;
         encode_png([crop.width(), crop.height()], &shown.frame.pixels)
     })
@@ -58,7 +58,7 @@ pub(super) async fn exr(
     let empty = || Refusal::now("no pass is done yet");
     let (developed, film, header) = developed.await?.ok_or_else(empty)?;
     let name = file_name(&header.scene_name());
-    let mut response = encode(&site, "image/x-exr", move || {
+    let mut response = encode("image/x-exr", move || {
         developed.encode_exr(&film, &metadata(&header))
     })
     .await?;
@@ -131,7 +131,7 @@ pub(super) async fn strategies(
     });
     let pixels = pixels.await??;
     let encode_pixels = move || encode_pixels(pixels, asked.exposure);
-    encode(&site, "image/png", encode_pixels).await
+    encode("image/png", encode_pixels).await
 }
 
 /// Returns a picture, so many stops brighter.
@@ -143,27 +143,13 @@ fn encode_pixels(mut pixels: Pixels, stops: f32) -> formats::Result<Vec<u8>> {
     encode_png(pixels.size.map(|side| side as u32), &pixels.data)
 }
 
-/// An answer of this type that takes a while to make, in a thread of its own.
+/// An answer of this type that takes a while to make, in another thread.
 async fn encode(
-    site: &Site,
     kind: &'static str,
     encode: impl FnOnce() -> formats::Result<Vec<u8>> + Send + 'static,
 ) -> Result<Response, Refusal> {
-    let encoder = Arc::clone(&site.encoders).acquire_owned().await;
-    let encoder = encoder.map_err(|error| Refusal::bug(error.to_string()))?;
-    let (sender, encoded) = oneshot::channel();
-    let encode = move || {
-        // Nobody waits for it where the client has gone.
-        let _ = sender.send(encode());
-        drop(encoder);
-    };
-    let started = thread::Builder::new().name("encoder".into()).spawn(encode);
-    started.map_err(|error| {
-        let message = format!("the system starts no thread for the image: {error}");
-        Refusal::new(StatusCode::SERVICE_UNAVAILABLE, message)
-    })?;
-    let encoded = encoded.await;
-    let encoded = encoded.map_err(|error| Refusal::bug(error.to_string()))?;
-    let encoded = encoded.map_err(|error| Refusal::bug(error.to_string()))?;
-    Ok(([(header::CONTENT_TYPE, kind)], encoded).into_response())
+    let bug = |error: &dyn Display| Refusal::bug(error.to_string());
+    let encoded = spawn_blocking(encode).await.map_err(|error| bug(&error))?;
+    let bytes = encoded.map_err(|error| bug(&error))?;
+    Ok(([(header::CONTENT_TYPE, kind)], bytes).into_response())
 }

@@ -11,12 +11,13 @@ mod error;
 mod images;
 mod inspect;
 mod live;
-mod places;
 mod query;
 mod routes;
 
 use crate::shared::ClientHandle;
 use access::Access;
+use connection::Limited;
+use std::future::IntoFuture;
 use std::io;
 use std::net::{SocketAddr, TcpListener};
 use std::sync::Arc;
@@ -34,8 +35,6 @@ pub(crate) struct Site {
     live: live::Clients,
     /// Answers at once that take the memory of a film.
     large: Semaphore,
-    /// Images that are encoded at once.
-    encoders: Arc<Semaphore>,
 }
 
 /// A server that runs.
@@ -57,18 +56,32 @@ impl Server {
         let runtime = Builder::new_current_thread()
             .enable_io()
             .enable_time()
+            .max_blocking_threads(ENCODERS)
             .build()?;
         let site = Arc::new(Site {
             client,
             access,
             live: live::Clients::default(),
             large: Semaphore::new(ENCODERS),
-            encoders: Arc::new(Semaphore::new(ENCODERS)),
         });
-        let (stop, stopped) = watch::channel(false);
+        let listener = {
+            let _runtime = runtime.enter();
+            Limited::new(tokio::net::TcpListener::from_std(listener)?)
+        };
+        let server = axum::serve(listener, routes::router(&site));
+        let (stop, mut stopped) = watch::channel(false);
         let thread = std::thread::Builder::new()
             .name("server".to_owned())
-            .spawn(move || runtime.block_on(connection::serve(listener, &site, stopped)))?;
+            .spawn(move || {
+                runtime.block_on(async {
+                    tokio::select! {
+                        _ = server.into_future() => {}
+                        _ = stopped.changed() => {}
+                    }
+                });
+                // Images that are still encoded are for nobody.
+                runtime.shutdown_background();
+            })?;
         Ok(Self {
             thread: Some(thread),
             url,

@@ -10,8 +10,6 @@ use axum::response::{IntoResponse, Response};
 use axum::routing::get;
 use std::sync::Arc;
 
-/// The longest path with its query. Unit: bytes.
-const LONGEST_URI: usize = 2048;
 /// The page is of modules and styles of this server, and of nothing else.
 const POLICY: &str = "default-src 'self'; base-uri 'none'; form-action 'none'; \
                       frame-ancestors 'none'; object-src 'none'";
@@ -39,24 +37,12 @@ pub(super) fn router(site: &Arc<Site>) -> Router {
         .with_state(Arc::clone(site))
 }
 
-/// Refuses what is too long or comes from others.
+/// Refuses what comes from others.
 async fn guard(State(site): State<Arc<Site>>, request: Request, next: Next) -> Response {
-    let (uri, headers) = (request.uri(), request.headers());
-    let length = uri.path_and_query().map_or(0, |path| path.as_str().len());
-    if length > LONGEST_URI {
-        return Refusal::new(StatusCode::URI_TOO_LONG, "the request is too long").into_response();
+    match site.access.check(request.uri(), request.headers()) {
+        Ok(()) => next.run(request).await,
+        Err(refusal) => refusal.into_response(),
     }
-    let has_body = headers
-        .get(header::CONTENT_LENGTH)
-        .is_some_and(|length| length != "0");
-    if has_body || headers.contains_key(header::TRANSFER_ENCODING) {
-        let message = "requests have no body here";
-        return Refusal::new(StatusCode::PAYLOAD_TOO_LARGE, message).into_response();
-    }
-    if let Err(refusal) = site.access.check(uri, headers) {
-        return refusal.into_response();
-    }
-    next.run(request).await
 }
 
 /// Gives an answer the headers of all.

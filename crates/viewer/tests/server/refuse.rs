@@ -1,6 +1,7 @@
-use crate::common::Place;
+use crate::common::{DEADLINE, Place};
 use std::io::{ErrorKind, Read, Write};
 use std::net::TcpStream;
+use std::time::Duration;
 use tungstenite::Message;
 use tungstenite::protocol::frame::Frame;
 use tungstenite::protocol::frame::coding::{Data, OpCode};
@@ -36,18 +37,7 @@ fn nothing_is_answered_but_what_there_is() {
         )),
         405
     );
-    assert_eq!(
-        code(&format!(
-            "GET /status HTTP/1.1\r\nHost: {host}\r\nContent-Length: 9"
-        )),
-        413
-    );
-    let long = "a".repeat(3000);
-    assert_eq!(
-        code(&format!("GET /pixel?x={long} HTTP/1.1\r\nHost: {host}")),
-        414
-    );
-    let longer = "a".repeat(40_000);
+    let longer = "a".repeat(1 << 20);
     assert_eq!(
         code(&format!(
             "GET /status HTTP/1.1\r\nHost: {host}\r\nCookie: {longer}"
@@ -81,20 +71,8 @@ fn all_answers_have_the_headers_that_keep_pages_apart() {
 fn pages_of_others_are_refused() {
     let place = Place::new();
     let port = place.address.port();
-    let code = |host: &str, origin: &str| {
-        let head =
-            format!("GET /status HTTP/1.1\r\nHost: {host}\r\nConnection: close{origin}\r\n\r\n");
-        place.raw(&head).code
-    };
-    assert_eq!(code(&format!("localhost:{port}"), ""), 200);
-    assert_eq!(code("example.org", ""), 403);
-    assert_eq!(
-        code(
-            &format!("localhost:{port}"),
-            "\r\nOrigin: http://example.org"
-        ),
-        403
-    );
+    let request = "GET /status HTTP/1.1\r\nHost: example.org\r\nConnection: close\r\n\r\n";
+    assert_eq!(place.raw(request).code, 403);
     let url = format!("ws://127.0.0.1:{port}/live");
     assert_eq!(
         place.try_client(&url, Some("http://example.org")).err(),
@@ -116,13 +94,9 @@ fn elsewhere_than_on_this_machine_a_token_is_asked_for() {
     let wrong: String = token.chars().rev().collect();
     for path in ["/", "/status", "/render.png", "/log", "/pixel?x=0&y=0"] {
         assert_eq!(place.get(path).code, 403, "{path}");
-        let and = if path.contains('?') { '&' } else { '?' };
-        assert_eq!(
-            place.get(&format!("{path}{and}token={wrong}")).code,
-            403,
-            "{path}"
-        );
     }
+    let wrong = place.get(&format!("/status?token={wrong}"));
+    assert_eq!(wrong.code, 403);
     place.json(&format!("/status?token={token}"));
     let live = format!("ws://{}/live", place.address);
     assert_eq!(place.try_client(&live, None).err(), Some(403));
@@ -172,26 +146,26 @@ fn what_is_no_command_closes_the_conversation() {
     place.close();
 }
 
-/// True if the server has closed a connection.
-fn is_closed(mut stream: &TcpStream) -> bool {
-    stream.set_nonblocking(true).unwrap();
-    let read = stream.read(&mut [0]);
-    !matches!(read, Err(error) if error.kind() == ErrorKind::WouldBlock)
-}
-
 #[test]
-fn connections_that_only_wait_make_room() {
+fn there_is_an_end_to_connections() {
     let place = Place::new();
     let mut watching = place.client();
-    let connect = |_| TcpStream::connect(place.address).unwrap();
-    let idle: Vec<_> = (0..150).map(connect).collect();
-    for mut stream in idle.iter().step_by(2) {
-        stream.write_all(b"GET /status HTTP/1.1\r\n").unwrap();
-    }
-    assert_eq!(place.get("/status").code, 200);
-    // With the one that watches and the one that asked, 24 more than one address may have.
-    assert!(idle[..23].iter().all(is_closed));
+    let connect = || TcpStream::connect(place.address).unwrap();
+    let idle: Vec<_> = std::iter::repeat_with(connect).take(127).collect();
+    let mut next = connect();
+    let request = format!("GET /status HTTP/1.1\r\nHost: {}\r\n\r\n", place.address);
+    next.write_all(request.as_bytes()).unwrap();
+    next.set_read_timeout(Some(Duration::from_millis(200)))
+        .unwrap();
+    let waits = next.read(&mut [0]).unwrap_err();
+    assert!(matches!(
+        waits.kind(),
+        ErrorKind::WouldBlock | ErrorKind::TimedOut
+    ));
     watching.frame(|frame| frame.passes > 0);
+    drop(idle);
+    next.set_read_timeout(Some(DEADLINE)).unwrap();
+    assert_eq!(next.read(&mut [0]).unwrap(), 1);
     place.close();
 }
 
@@ -208,7 +182,7 @@ fn there_is_an_end_to_clients() {
             place.close();
             return;
         }
-        std::thread::sleep(std::time::Duration::from_millis(10));
+        std::thread::sleep(Duration::from_millis(10));
     }
     panic!("no place became free");
 }
