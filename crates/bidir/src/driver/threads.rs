@@ -1,10 +1,10 @@
 //! Threads: how many there are, and a pool that works with as many as the system gives.
 //!
-//! A system limits the threads of a user and the memory for their stacks. So every thread of a pool is
-//! started before the pool is made of those that were; without any, the calling thread does all work.
+//! A system limits the threads of a user and the memory for their stacks. A pool has as many as it starts
+//! at once; without any, the calling thread does all work.
 
-use rayon::{ThreadBuilder, ThreadPool, ThreadPoolBuilder};
-use std::sync::mpsc::{Sender, channel};
+use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
+use std::sync::{Mutex, PoisonError};
 use std::thread;
 use std::{fmt, io};
 
@@ -87,65 +87,49 @@ impl fmt::Display for Shortage {
     }
 }
 
-/// Threads that wait to become those of a pool.
-struct Recruits {
-    waiting: Vec<Sender<ThreadBuilder>>,
-    shortage: Option<Shortage>,
-}
-
-impl Recruits {
-    /// Starts threads, up to the first that cannot be.
-    fn start(threads: Threads) -> Self {
-        let wanted = threads.count();
-        let mut waiting = Vec::new();
-        let mut shortage = None;
-        for started in 0..wanted {
-            match recruit() {
-                Ok(sender) => waiting.push(sender),
-                Err(error) => {
-                    shortage = Some(Shortage {
-                        started,
-                        wanted,
-                        error,
-                    });
-                    break;
-                }
+/// Returns how many threads the system starts at once, up to so many, and why no more.
+fn startable(wanted: usize) -> (usize, Option<io::Error>) {
+    let gate = Mutex::new(());
+    let wait = || drop(gate.lock());
+    thread::scope(|scope| {
+        let closed = gate.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut started = Vec::new();
+        let error = loop {
+            if started.len() == wanted {
+                break None;
             }
-        }
-        Self { waiting, shortage }
-    }
-
-    /// Makes `build` a pool of them. None: there are none.
-    fn join<T, E>(
-        self,
-        build: impl FnOnce(&mut dyn FnMut(ThreadBuilder) -> io::Result<()>, usize) -> Result<T, E>,
-    ) -> (Option<T>, Option<Shortage>) {
-        let Self { waiting, shortage } = self;
-        let count = waiting.len();
-        if count == 0 {
-            return (None, shortage);
-        }
-        let mut waiting = waiting.into_iter();
-        let mut hand_over = |work| match waiting.next() {
-            Some(sender) => sender
-                .send(work)
-                .map_err(|_| io::ErrorKind::BrokenPipe.into()),
-            None => Err(io::ErrorKind::WouldBlock.into()),
+            match thread::Builder::new().spawn_scoped(scope, wait) {
+                Ok(thread) => started.push(thread),
+                Err(error) => break Some(error),
+            }
         };
-        (build(&mut hand_over, count).ok(), shortage)
-    }
+        drop(closed);
+        let count = started.len();
+        // Each has ended before others take its place.
+        started.into_iter().for_each(|thread| drop(thread.join()));
+        (count, error)
+    })
 }
 
-/// Returns a thread that does what it is sent; without anything it ends with its sender.
-fn recruit() -> io::Result<Sender<ThreadBuilder>> {
-    let (sender, receiver) = channel();
-    let wait = move || {
-        if let Ok(work) = receiver.recv() {
-            ThreadBuilder::run(work);
-        }
+/// Makes a pool of as many threads as the system starts. None: it starts none.
+fn build_pool<T>(
+    threads: Threads,
+    build: impl FnOnce(ThreadPoolBuilder) -> Result<T, ThreadPoolBuildError>,
+) -> (Option<T>, Option<Shortage>) {
+    let wanted = threads.count();
+    let short = |started, error| Shortage {
+        started,
+        wanted,
+        error,
     };
-    thread::Builder::new().name("worker".into()).spawn(wait)?;
-    Ok(sender)
+    let (started, error) = startable(wanted);
+    if started == 0 {
+        return (None, error.map(|error| short(0, error)));
+    }
+    match build(ThreadPoolBuilder::new().num_threads(started)) {
+        Ok(pool) => (Some(pool), error.map(|error| short(started, error))),
+        Err(error) => (None, Some(short(0, io::Error::other(error)))),
+    }
 }
 
 /// Makes the pool that everything outside of a session runs on; once in a process, before anything
@@ -153,12 +137,8 @@ fn recruit() -> io::Result<Sender<ThreadBuilder>> {
 ///
 /// None: there are as many threads as were asked for.
 pub fn start_pool(threads: Threads) -> Option<Shortage> {
-    // It fails where there is a pool already, which then is the one that is used.
-    let (_, shortage) = Recruits::start(threads).join(|spawn, count| {
-        let builder = ThreadPoolBuilder::new().num_threads(count);
-        builder.spawn_handler(spawn).build_global()
-    });
-    if shortage.as_ref().is_some_and(Shortage::is_total) {
+    let (pool, shortage) = build_pool(threads, ThreadPoolBuilder::build_global);
+    if pool.is_none() {
         stand_alone();
     }
     shortage
@@ -185,10 +165,7 @@ pub(super) struct Workers {
 
 impl Workers {
     pub(super) fn start(threads: Threads) -> Self {
-        let (pool, shortage) = Recruits::start(threads).join(|spawn, count| {
-            let builder = ThreadPoolBuilder::new().num_threads(count);
-            builder.spawn_handler(spawn).build()
-        });
+        let (pool, shortage) = build_pool(threads, ThreadPoolBuilder::build);
         Self { pool, shortage }
     }
 
@@ -228,16 +205,15 @@ mod tests {
 
     /// Returns the workers of a system that starts no thread.
     fn refused() -> Workers {
-        let (pool, shortage) = Recruits {
-            waiting: Vec::new(),
-            shortage: Some(Shortage {
-                started: 0,
-                wanted: 2,
-                error: io::ErrorKind::WouldBlock.into(),
-            }),
+        let shortage = Shortage {
+            started: 0,
+            wanted: 2,
+            error: io::ErrorKind::WouldBlock.into(),
+        };
+        Workers {
+            pool: None,
+            shortage: Some(shortage),
         }
-        .join(|_, _| -> Result<ThreadPool, io::Error> { unreachable!("there is no thread") });
-        Workers { pool, shortage }
     }
 
     #[test]
@@ -274,17 +250,12 @@ mod tests {
     }
 
     #[test]
-    fn a_pool_has_the_threads_that_were_started() {
-        let mut recruits = Recruits::start(Threads {
+    fn a_pool_has_the_threads_that_the_system_starts() {
+        assert!(matches!(startable(3), (3, None)));
+        let workers = Workers::start(Threads {
             asked: 3,
             processors: 1,
         });
-        assert_eq!(recruits.waiting.len(), 3);
-        recruits.waiting.pop();
-        let (pool, _) = recruits.join(|spawn, count| {
-            let builder = ThreadPoolBuilder::new().num_threads(count);
-            builder.spawn_handler(spawn).build()
-        });
-        assert_eq!(pool.unwrap().broadcast(|context| context.index()), [0, 1]);
+        assert!(workers.count() == 3 && workers.shortage().is_none());
     }
 }
