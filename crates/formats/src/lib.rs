@@ -4,6 +4,8 @@
 //! Counts are checked before memory is reserved for them.
 
 mod bytes;
+#[cfg(test)]
+mod cases;
 mod error;
 mod files;
 mod foreign;
