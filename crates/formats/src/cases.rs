@@ -1,25 +1,41 @@
-//! Cases of tests in files: a line of input, and below it, indented, what the code says to it.
+//! Cases of tests in text files: inputs, each with what comes of it.
 //!
-//! The input is the inside of a string of JSON, of which each character is a byte.
+//! Empty lines separate cases. The outcome of a case are its lines after `=> `, which `UPDATE_EXPECT=1` writes anew;
+//! blocks that begin with `##` are headings.
 
+use crate::error::Result;
 use expect_test::ExpectFile;
 
-/// Checks that `say` says to each input what the file has.
-pub(crate) fn check(file: &ExpectFile, say: impl Fn(&str) -> String) {
+const MARK: &str = "=> ";
+
+/// Checks the outcome of every case of a file.
+#[track_caller]
+pub(crate) fn check(file: &ExpectFile, outcome: impl Fn(&str) -> String) {
     let text = file.data();
-    let mut said = String::new();
-    for line in text.lines().filter(|line| !line.starts_with(' ')) {
-        said += &format!("{line}\n");
-        if !line.is_empty() {
-            let input: String = serde_json::from_str(&format!("\"{line}\"")).unwrap();
-            said += &format!("    {}\n", say(&input).replace('\n', "\n    "));
+    let is_case = |block: &&str| !block.starts_with("##");
+    assert!(text.split("\n\n").any(|block| is_case(&block)), "no case");
+    let run = |block: &str| {
+        if !is_case(&block) {
+            return block.to_owned();
         }
-    }
-    assert!(!said.is_empty(), "there is no case");
-    file.assert_eq(&said);
+        let input: Vec<_> = block
+            .lines()
+            .filter(|line| !line.starts_with(MARK))
+            .collect();
+        let outcome = outcome(&input.join("\n"));
+        let outcome = outcome.lines().map(|line| format!("{MARK}{line}"));
+        let lines = input.iter().map(|&line| line.to_owned()).chain(outcome);
+        lines.collect::<Vec<_>>().join("\n")
+    };
+    let blocks: Vec<_> = text.trim_end().split("\n\n").map(run).collect();
+    file.assert_eq(&(blocks.join("\n\n") + "\n"));
 }
 
-/// Returns each character as a byte.
-pub(crate) fn bytes(text: &str) -> Vec<u8> {
-    text.chars().map(|c| u8::try_from(c).unwrap()).collect()
+/// Returns the outcome of reading: its error with the kind, or the warnings.
+pub(crate) fn of_reading(read: Result<Vec<String>>) -> String {
+    match read {
+        Err(error) => format!("{:?}: {error}", error.kind()),
+        Ok(warnings) if warnings.is_empty() => "accepted".into(),
+        Ok(warnings) => warnings.join("\n"),
+    }
 }

@@ -5,6 +5,8 @@
 
 mod bytes;
 #[cfg(test)]
+mod byte_cases;
+#[cfg(test)]
 mod cases;
 mod error;
 mod files;

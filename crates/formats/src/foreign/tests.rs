@@ -1,4 +1,4 @@
-use crate::cases;
+use crate::byte_cases as cases;
 use crate::scene::{LoadOptions, load};
 use expect_test::expect_file;
 use std::path::Path;

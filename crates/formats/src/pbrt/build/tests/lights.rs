@@ -1,4 +1,4 @@
-use super::{STRICT, load_text, refusal, world};
+use super::{STRICT, load_text, world};
 use crate::error::ErrorKind;
 use crate::pbrt::load;
 use bidir::light::{Light, LightPoint};
@@ -194,76 +194,6 @@ fn any_number_of_lights_names_its_group_in_one_block() {
 fn lights_without_a_group_are_grouped_by_kind() {
     let scene = world("LightSource \"distant\" LightSource \"point\" LightSource \"infinite\"");
     assert_eq!(scene.group_names(), ["environment", "default"]);
-}
-
-#[test]
-fn a_group_that_cannot_name_a_layer_is_refused() {
-    let light = "LightSource \"point\" \"string lightgroup\"";
-    for name in ["", "a.b", "a\tb", &"x".repeat(65)] {
-        let error = refusal(&format!("WorldBegin\n{light} \"{name}\""), &STRICT);
-        assert_eq!(
-            (error.line(), error.kind()),
-            (Some(2), ErrorKind::Scene),
-            "{name}"
-        );
-    }
-}
-
-#[test]
-fn lamps_that_give_no_light_cause_warnings() {
-    let emits = "AttributeBegin AreaLightSource \"diffuse\"";
-    let flat =
-        "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 1 1 2 2 2] \"integer indices\" [0 1 2]";
-    for (lamp, warning) in [
-        (
-            "LightSource \"point\" \"rgb I\" [0 0 0]",
-            "point light has no power",
-        ),
-        (
-            "LightSource \"spot\" \"float scale\" 0",
-            "spot light has no power",
-        ),
-        (
-            "LightSource \"distant\" \"rgb L\" [0 0 0]",
-            "distant light has no power",
-        ),
-        (
-            "LightSource \"infinite\" \"float scale\" 0",
-            "infinite light has no power",
-        ),
-        (
-            &format!("{emits} \"rgb L\" [0 0 0]\nShape \"sphere\" AttributeEnd"),
-            "area light has no power",
-        ),
-        (
-            &format!("{emits}\n{flat} AttributeEnd"),
-            "area light has no area",
-        ),
-        (
-            &format!("{emits} \"float power\" 5\n{flat} AttributeEnd"),
-            "area light has no area",
-        ),
-        (
-            &format!("{emits}\n{} AttributeEnd", flat.replace("[0 1 2]", "[]")),
-            "area light has no area",
-        ),
-    ] {
-        let light = "LightSource \"point\"";
-        let loaded = load_text(&format!("WorldBegin {light}\n{lamp}"), &STRICT);
-        let line = 1 + lamp.lines().count();
-        let column = if lamp.starts_with("Light") { 13 } else { 7 };
-        let expected =
-            format!("s.pbrt:{line}:{column}: the {warning}: it adds nothing to the image");
-        assert_eq!(loaded.warnings.last(), Some(&expected), "{lamp}");
-    }
-    // Only some triangles of a lamp with a given power have no area.
-    let partly = flat
-        .replace("2 2 2]", "2 2 2 0 1 0]")
-        .replace("[0 1 2]", "[0 1 2 0 1 3]");
-    let partly = format!("WorldBegin {emits} \"float power\" 5 {partly} AttributeEnd");
-    let warnings = load_text(&partly, &STRICT).warnings;
-    let has = |text: &str| warnings.iter().any(|warning| warning.contains(text));
-    assert!(has("1 faces have no area") && !has("adds nothing"));
 }
 
 #[test]

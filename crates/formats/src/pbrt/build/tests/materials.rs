@@ -1,4 +1,4 @@
-use super::{check_world, world};
+use super::world;
 use bidir::bsdf::{Bsdf, TransportMode};
 use bidir::material::Material;
 use bidir::math::{Vec2, Vec3};
@@ -233,51 +233,4 @@ fn an_index_of_refraction_is_a_number_or_any_spectrum() {
     check("\"spectrum eta\" \"glass-BK7\"", 1.5168);
     // The luminance of the colour; the spectrum has priority over the number.
     check("\"rgb eta\" [1.5 1.6 1.7] \"float eta\" 3", 1.5859);
-}
-
-#[test]
-fn mixtures_of_undefined_materials_are_refused() {
-    let mix = |parameters: &str| format!("{PARTS}Material \"mix\" {parameters} Shape \"sphere\"");
-    check_world(
-        &mix(""),
-        "s.pbrt:4:10: the parameter `string materials` is missing",
-    );
-    check_world(
-        &mix("\"string materials\" [\"a\" \"c\"]"),
-        "s.pbrt:4:35: unknown material `c`; did you mean `a`?",
-    );
-    check_world(
-        &mix("\"string materials\" [\"a\"]"),
-        "s.pbrt:4:35: `materials` has two names, found 1",
-    );
-    check_world(
-        "MakeNamedMaterial \"m\" \"string type\" \"mix\" \"string materials\" [\"m\" \"m\"] \
-         NamedMaterial \"m\" Shape \"sphere\"",
-        "s.pbrt:2:62: the mixture `m` is a part of itself",
-    );
-}
-
-#[test]
-fn misspelt_parameters_of_materials_are_refused() {
-    check_world(
-        "Material \"coateddiffuse\" \"float thicknes\" .1 Shape \"sphere\"",
-        "s.pbrt:2:26: unknown parameter `thicknes` of `coateddiffuse`; did you mean `thickness`?",
-    );
-    check_world(
-        "Material \"coatedconductor\" \"float interface.roughnes\" .1 Shape \"sphere\"",
-        "s.pbrt:2:28: unknown parameter `interface.roughnes` of `coatedconductor`; \
-         did you mean `interface.roughness`?",
-    );
-    check_world(
-        "Material \"coatedconductor\" \"float roughness\" .1 Shape \"sphere\"",
-        "s.pbrt:2:28: unknown parameter `roughness` of `coatedconductor`",
-    );
-    check_world(
-        "Material \"thindielectric\" \"float eta\" 0 Shape \"sphere\"",
-        "s.pbrt:2:10: the index of refraction `eta` is not positive",
-    );
-    check_world(
-        "Material \"diffusetransmission\" \"float scale\" -1 Shape \"sphere\"",
-        "s.pbrt:2:46: `scale` is -1, but must be at least 0",
-    );
 }

@@ -17,7 +17,6 @@ mod textures;
 mod views;
 
 use super::{LoadOptions, Loaded, build};
-use crate::error::Error;
 use crate::pbrt::parse_text;
 use bidir::scene::Scene;
 
@@ -42,23 +41,6 @@ fn load_text(text: &str, options: &LoadOptions) -> Loaded {
 #[track_caller]
 fn world(text: &str) -> Scene {
     load_text(&format!("WorldBegin {text}"), &STRICT).scene
-}
-
-/// Returns the error of a scene that can be parsed but not built.
-#[track_caller]
-fn refusal(text: &str, options: &LoadOptions) -> Error {
-    let description = parse_text("s.pbrt", text).unwrap_or_else(|error| panic!("{error}"));
-    build(&description, options).expect_err("the scene is wrong")
-}
-
-#[track_caller]
-fn check(text: &str, expected: &str) {
-    assert_eq!(refusal(text, &STRICT).to_string(), expected);
-}
-
-#[track_caller]
-fn check_world(text: &str, expected: &str) {
-    check(&format!("WorldBegin\n{text}"), expected);
 }
 
 #[test]

@@ -121,29 +121,3 @@ fn without_a_priority_the_file_names_media_and_index() {
     // Behind the inner ball, the file has the vacuum.
     check_light(&balls, left(1.0, 2.0));
 }
-
-#[test]
-fn shapes_that_enclose_nothing_have_no_priority() {
-    for shape in ["\"disk\"", "\"cylinder\"", "\"sphere\" \"float zmax\" .5"] {
-        let text = format!("Material \"dielectric\" \"integer priority\" 1 Shape {shape}");
-        let warnings = load_balls(&text).warnings;
-        let said = "the shapes of a material with `priority` enclose nothing: it has no effect";
-        assert!(warnings.iter().any(|it| it.contains(said)), "{warnings:?}");
-    }
-}
-
-#[test]
-fn mixtures_have_no_priority_and_other_materials_do_not_know_it() {
-    check_world(
-        "MakeNamedMaterial \"a\" \"string type\" \"dielectric\" \"integer priority\" 1\n\
-         MakeNamedMaterial \"b\" \"string type\" \"diffuse\"\n\
-         Material \"mix\" \"string materials\" [\"a\" \"b\"] Shape \"sphere\"",
-        "s.pbrt:4:35: a mixture with a material that has a `priority` is not supported; \
-         with --lenient, its part has none",
-    );
-    let error = refusal(
-        "WorldBegin Material \"diffuse\" \"integer priority\" 1 Shape \"sphere\"",
-        &STRICT,
-    );
-    assert!(error.to_string().contains("priority"), "{error}");
-}

@@ -1,7 +1,7 @@
 //! Scenes far from the origin of the world, or of an unusual size: their render space, and the rounding
 //! errors of vertices.
 
-use super::{LENIENT, STRICT, load_text, refusal};
+use super::{STRICT, load_text};
 use crate::import::Loaded;
 use bidir::camera::Camera;
 use bidir::light::Light;
@@ -123,40 +123,4 @@ fn shared_objects_far_from_their_origin_get_another_one() {
     let expected = [Vec3::new(-4.0, -1.0, 2.0), Vec3::new(1.0, 1.0, 4.0)];
     assert!(bounds.min.distance(expected[0]) < 1e-4, "{bounds:?}");
     assert!(bounds.max.distance(expected[1]) < 1e-4, "{bounds:?}");
-}
-
-/// Returns a quad, 2 units wide, whose coordinates begin at `at`.
-fn written(at: f64) -> String {
-    format!(
-        "LookAt {at} 1 -4 {at} 1 0 0 1 0 Camera \"perspective\" WorldBegin\n\
-         Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point3 P\" \
-         [{} 0 0 {} 2 0 {} 2 0 {} 0 0]",
-        at - 1.0,
-        at - 1.0,
-        at + 1.0,
-        at + 1.0
-    )
-}
-
-#[test]
-fn vertices_with_large_coordinates_cause_a_warning() {
-    assert!(load_text(&written(1e5), &STRICT).warnings.is_empty());
-    assert_eq!(
-        load_text(&written(1e6), &STRICT).warnings,
-        [
-            "s.pbrt:2:7: coordinates of 1.00e6 as 32-bit floats are off by up to 3.12e-2, 2 % of \
-             the mesh's size: use small coordinates and a transformation"
-        ]
-    );
-}
-
-#[test]
-fn vertices_with_too_large_coordinates_are_refused() {
-    for options in [STRICT, LENIENT] {
-        assert_eq!(
-            refusal(&written(1e8), &options).to_string(),
-            "s.pbrt:2:7: coordinates of 1.00e8 as 32-bit floats are off by up to 4.00e0: the whole \
-             scene is 4.00e0 wide; use small coordinates and a transformation"
-        );
-    }
 }

@@ -1,7 +1,7 @@
 //! Heights and normals of materials.
 
 use super::textures::material;
-use super::{STRICT, check_world, world};
+use super::{STRICT, world};
 use crate::pbrt::load;
 use bidir::material::Relief;
 use bidir::math::{Vec2, Vec3};
@@ -43,10 +43,6 @@ fn materials_have_heights_or_normals() {
     let missing = with_normals("Material \"diffuse\" \"string normalmap\" \"m.png\"");
     let error = missing.expect_err("there is no such file").to_string();
     assert!(error.contains("m.png`: no such file"), "{error}");
-    check_world(
-        "Material \"diffuse\" \"texture displacment\" \"h\"",
-        "s.pbrt:2:20: unknown parameter `displacment` of `diffuse`; did you mean `displacement`?",
-    );
 }
 
 /// Parts of a mixture have their own bump and normal maps.

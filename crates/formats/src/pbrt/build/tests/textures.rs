@@ -1,4 +1,5 @@
-use super::{LENIENT, STRICT, check_world, load_text, world};
+use super::refusals::outcome;
+use super::{STRICT, world};
 use crate::pbrt::load;
 use bidir::material::{ConductorIndex, Material};
 use bidir::math::{Vec2, Vec3};
@@ -72,29 +73,6 @@ fn a_constant_is_checked_for_each_purpose() {
     assert_eq!(
         [eta, k].map(|part| Vec3::from(part.eval(&at))),
         [Vec3::splat(2.0); 2]
-    );
-    // Also after a use for which the value is valid.
-    check_world(
-        &format!("{text}\nMaterial \"diffuse\" \"texture reflectance\" \"two\" Shape \"sphere\""),
-        "s.pbrt:2:49: the reflectance `value` is above 1",
-    );
-    check_world(
-        "Material \"diffuse\" \"spectrum reflectance\" \"metal-Al-k\" Shape \"sphere\"",
-        "s.pbrt:2:43: the reflectance `reflectance` is above 1",
-    );
-}
-
-#[test]
-fn a_substitute_is_counted_once_however_often_it_is_used() {
-    let loaded = load_text(
-        "WorldBegin\nTexture \"dots\" \"spectrum\" \"ptex\"\n\
-         Material \"diffuse\" \"texture reflectance\" \"dots\" Shape \"sphere\"\n\
-         Material \"conductor\" \"texture reflectance\" \"dots\" Shape \"sphere\"",
-        &LENIENT,
-    );
-    assert_eq!(
-        loaded.warnings,
-        ["s.pbrt:2:27: the texture class `ptex` is not supported: 0.5 is used instead"]
     );
 }
 
@@ -202,85 +180,28 @@ fn textures_are_made_of_textures_above_them() {
     let text = format!("{half} {board} {mix} {amount}");
     check_value(&text, &at(0.5), [0.625; 3]);
     check_value(&text, &at(1.5), [0.25; 3]);
-    check_world(
-        &format!("{half}\n{mix}\n{board} {amount}"),
-        "s.pbrt:3:45: the texture `b` is used before it is defined; \
-         only an `imagemap` may stand below the textures that use it",
-    );
-    check_world(
-        "Texture \"t\" \"float\" \"scale\" \"texture tex\" \"t\"",
-        "s.pbrt:2:43: the texture `t` is used before it is defined; \
-         only an `imagemap` may stand below the textures that use it",
-    );
-    check_world(
-        &format!("{half}\nTexture \"t\" \"spectrum\" \"dots\" \"texture inside\" \"hlaf\""),
-        "s.pbrt:3:48: unknown spectrum texture `hlaf`; did you mean `half`?",
-    );
-}
-
-#[test]
-fn wrong_textures_are_errors() {
-    for (text, expected) in [
-        (
-            "\"float\" \"marble\"",
-            "s.pbrt:2:21: a texture of class `marble` is of type `spectrum`",
-        ),
-        (
-            "\"spectrum\" \"windy\"",
-            "s.pbrt:2:24: a texture of class `windy` is of type `float`",
-        ),
-        (
-            "\"float\" \"checkerboard\" \"integer dimension\" 4",
-            "s.pbrt:2:21: a checkerboard has 2 or 3 dimensions, not 4",
-        ),
-        (
-            "\"float\" \"bilerp\" \"texture v00\" \"t\"",
-            "s.pbrt:2:30: `v00` is not of type `texture`; write `float v00`",
-        ),
-        (
-            "\"float\" \"dots\" \"string mapping\" \"sphericl\"",
-            "s.pbrt:2:45: unknown mapping `sphericl`; did you mean `spherical`?",
-        ),
-        (
-            "\"float\" \"fbm\" \"float roughnes\" 1",
-            "s.pbrt:2:27: unknown parameter `roughnes` of `fbm`; did you mean `roughness`?",
-        ),
-        (
-            "\"spectrum\" \"directionmix\" \"vector3 dir\" [0 0 0]",
-            "s.pbrt:2:24: the direction `dir` has no length",
-        ),
-    ] {
-        check_world(&format!("Texture \"t\" {text}"), expected);
-    }
 }
 
 /// Refuses a chain that is too long, and one that doubles at each step.
 #[test]
 fn nesting_has_limits() {
-    let chain = |class: &str, count: usize| {
-        let first = "Texture \"t0\" \"float\" \"fbm\"".to_owned();
-        (1..count).fold(first, |text, i| {
+    let used = |class: &str, count: usize| {
+        let first = "WorldBegin\nTexture \"t0\" \"float\" \"fbm\"".to_owned();
+        let chain = (1..count).fold(first, |text, i| {
             let part = class.replace('?', &format!("t{}", i - 1));
             format!("{text}\nTexture \"t{i}\" \"float\" {part}")
-        })
-    };
-    let used = |text: &str, count: usize| {
-        format!(
-            "{text}\nMaterial \"conductor\" \"texture roughness\" \"t{}\" Shape \"sphere\"",
-            count - 1
-        )
+        });
+        let last = count - 1;
+        let user = format!("Material \"conductor\" \"texture roughness\" \"t{last}\"");
+        outcome(&format!("{chain}\n{user} Shape \"sphere\""), &STRICT)
     };
     let scale = "\"scale\" \"texture tex\" \"?\"";
-    world(&used(&chain(scale, 30), 30));
-    check_world(
-        &used(&chain(scale, 40), 40),
-        "s.pbrt:9:22: textures are nested deeper than 32",
-    );
     let double = "\"mix\" \"texture tex1\" \"?\" \"texture tex2\" \"?\"";
-    check_world(
-        &used(&chain(double, 20), 20),
-        "s.pbrt:11:22: the texture is made of more than 1024",
-    );
+    assert_eq!(used(scale, 30), "accepted");
+    let too_deep = "Limit: s.pbrt:9:22: textures are nested deeper than 32";
+    assert_eq!(used(scale, 40), too_deep);
+    let too_large = "Limit: s.pbrt:11:22: the texture is made of more than 1024";
+    assert_eq!(used(double, 20), too_large);
 }
 
 /// A file that several textures use with different settings is stored once.
