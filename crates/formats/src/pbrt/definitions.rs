@@ -3,8 +3,14 @@
 use super::known;
 use super::lexer::shorten;
 use super::parser::Parser;
-use super::scene::{Entity, MaterialDescription, ObjectDescription, TextureKind};
+use super::scene::{Entity, MaterialDescription, ObjectDescription};
 use crate::source::{Fault, Span};
+
+/// Returns the fault of a second definition of a name.
+pub(super) fn defined_again(span: Span, what: &str, name: &str) -> Fault {
+    let message = format!("the {what} `{}` is defined a second time", shorten(name));
+    Fault::scene(span, message)
+}
 
 impl Parser {
     /// Returns the material of a name, which may be defined later.
@@ -14,10 +20,8 @@ impl Parser {
             .materials
             .entry(known::normalized(name))
             .or_insert_with_key(|name| {
-                materials.push(MaterialDescription {
-                    name: Some(name.clone()),
-                    entity: None,
-                });
+                let (name, entity) = (Some(name.clone()), None);
+                materials.push(MaterialDescription { name, entity });
                 (materials.len() - 1, Some(span))
             });
         index
@@ -32,8 +36,7 @@ impl Parser {
         let index = self.material_use(name, span);
         let material = &mut self.scene.materials[index];
         if material.entity.is_some() {
-            let message = format!("the material `{}` is defined a second time", shorten(name));
-            return Err(Fault::scene(span, message));
+            return Err(defined_again(span, "material", name));
         }
         material.entity = Some(entity);
         self.materials
@@ -64,24 +67,13 @@ impl Parser {
         }
         let name = known::normalized(name);
         if let Some((_, None)) = self.objects.get(&name) {
-            let message = format!("the object `{}` is defined a second time", shorten(&name));
-            return Err(Fault::scene(span, message));
+            return Err(defined_again(span, "object", &name));
         }
         let index = self.object_use(&name, span);
         self.scene.objects[index].span = span;
         self.objects.insert(name, (index, None));
         self.object = Some(index);
         Ok(())
-    }
-
-    /// Registers a texture's name. False: it is defined already.
-    pub(super) fn names_texture(&mut self, name: &str, kind: TextureKind) -> bool {
-        self.texture_names.insert((kind, name.to_owned()))
-    }
-
-    /// Registers a medium's name. False: it is defined already.
-    pub(super) fn names_medium(&mut self, name: &str) -> bool {
-        self.medium_names.insert(name.to_owned())
     }
 
     /// Refuses names that were used and never defined.
@@ -93,8 +85,8 @@ impl Parser {
                 .find_map(|(name, &(_, span))| Some((name, span?)));
             if let Some((name, span)) = undefined {
                 let defined = table.iter().filter(|(_, (_, span))| span.is_none());
-                let fault = Fault::scene(span, format!("unknown {what} `{}`", shorten(name)));
-                return Err(fault.with_nearest(name, defined.map(|(name, _)| name.as_str())));
+                let defined = defined.map(|(name, _)| name.as_str());
+                return Err(known::unknown(span, what, name, defined));
             }
         }
         Ok(())

@@ -1,6 +1,5 @@
 //! The files that a scene names, also in parts that are not used or that a substitute replaces.
 
-use super::parameters::Values;
 use super::scene::{Entity, SceneDescription, ShapeDescription};
 use std::collections::BTreeSet;
 use std::path::PathBuf;
@@ -39,9 +38,6 @@ fn of_shape(shape: &ShapeDescription) -> impl Iterator<Item = &Entity> {
 fn strings(entity: &Entity) -> impl Iterator<Item = &str> {
     let parameters = &entity.parameters;
     let all = parameters.explicit.iter().chain(&*parameters.defaults);
-    let texts = all.flat_map(|parameter| match &parameter.values {
-        Values::Strings(texts) => texts.as_slice(),
-        _ => &[],
-    });
+    let texts = all.flat_map(|parameter| parameter.values.strings());
     texts.map(String::as_str).filter(|text| text.contains('.'))
 }

@@ -90,13 +90,9 @@ impl<'t> Tokens<'t> {
 
     /// Takes the next token. None: the text has ended.
     pub(super) fn next(&mut self) -> Result<Option<Token<'t>>, Fault> {
-        let token = match self.ahead.take() {
-            Some(token) => Some(token),
-            None => self.read()?,
-        };
-        if let Some(token) = &token {
-            self.last = token.span;
-        }
+        self.peek()?;
+        let token = self.ahead.take();
+        self.last = token.as_ref().map_or(self.last, |token| token.span);
         Ok(token)
     }
 
@@ -110,19 +106,11 @@ impl<'t> Tokens<'t> {
 
     /// Takes the next token if it is a quoted string.
     pub(super) fn next_if_quoted(&mut self) -> Result<Option<(Cow<'t, str>, Span)>, Fault> {
-        if !matches!(
-            self.peek()?,
-            Some(Token {
-                kind: TokenKind::Quoted(_),
-                ..
-            })
-        ) {
-            return Ok(None);
+        let ahead = self.peek()?.map(|token| &token.kind);
+        if matches!(ahead, Some(TokenKind::Quoted(_))) {
+            return self.expect_quoted("a string").map(Some);
         }
-        Ok(self.next()?.and_then(|token| match token.kind {
-            TokenKind::Quoted(text) => Some((text, token.span)),
-            _ => None,
-        }))
+        Ok(None)
     }
 
     /// Takes the next token. Errors: the text has ended.
@@ -214,10 +202,10 @@ fn unescape(text: &str, span: Span) -> Result<Cow<'_, str>, Fault> {
 /// Reads a number in the syntax of the format: no `inf`, no `nan`, nothing after it.
 pub(super) fn parse_float(word: &str) -> Option<f64> {
     let digits = word.trim_start_matches(['+', '-']);
-    if let Some(hex) = digits
+    let hex = digits
         .strip_prefix("0x")
-        .or_else(|| digits.strip_prefix("0X"))
-    {
+        .or_else(|| digits.strip_prefix("0X"));
+    if let Some(hex) = hex {
         let value = u64::from_str_radix(hex, 16)
             .ok()
             .filter(|_| !hex.starts_with('+'))? as f64;
@@ -227,6 +215,18 @@ pub(super) fn parse_float(word: &str) -> Option<f64> {
         return None;
     }
     word.parse().ok()
+}
+
+/// Returns the fault of a token in the place of a number.
+pub(super) fn not_a_number(token: &Token<'_>) -> Fault {
+    let message = format!("expected a number, found {}", token.describe());
+    Fault::syntax(token.span, message)
+}
+
+/// Returns the fault of a number that its type does not have.
+pub(super) fn too_large(word: &str, span: Span) -> Fault {
+    let message = format!("the number `{}` is too large", shorten(word));
+    Fault::scene(span, message)
 }
 
 /// Reads an integer of 32 bits: a sign and digits only.
@@ -247,22 +247,12 @@ mod tests {
         let mut texts = Vec::new();
         loop {
             match tokens.next() {
-                Ok(Some(Token {
-                    kind: TokenKind::Quoted(text),
-                    ..
-                })) => texts.push(format!("<{text}>")),
-                Ok(Some(Token {
-                    kind: TokenKind::Word(word),
-                    ..
-                })) => texts.push(word.into()),
-                Ok(Some(Token {
-                    kind: TokenKind::Open,
-                    ..
-                })) => texts.push("[".into()),
-                Ok(Some(Token {
-                    kind: TokenKind::Close,
-                    ..
-                })) => texts.push("]".into()),
+                Ok(Some(token)) => texts.push(match token.kind {
+                    TokenKind::Quoted(text) => format!("<{text}>"),
+                    TokenKind::Word(word) => word.into(),
+                    TokenKind::Open => "[".into(),
+                    TokenKind::Close => "]".into(),
+                }),
                 Ok(None) => break,
                 Err(fault) => {
                     texts.push(format!("error {}", sources.error(fault)));

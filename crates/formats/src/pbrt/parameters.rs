@@ -1,7 +1,9 @@
 //! The `"type name" value` lists that follow most directives.
 
 use super::known;
-use super::lexer::{TokenKind, Tokens, parse_float, parse_integer, shorten};
+use super::lexer::{
+    Token, TokenKind, Tokens, not_a_number, parse_float, parse_integer, shorten, too_large,
+};
 use super::scene::ColorSpace;
 use super::v3;
 use crate::source::{Fault, Span};
@@ -39,39 +41,26 @@ pub enum ParameterType {
 }
 
 impl ParameterType {
-    const ALL: [Self; 13] = [
-        Self::Bool,
-        Self::Integer,
-        Self::Float,
-        Self::Point2,
-        Self::Vector2,
-        Self::Point3,
-        Self::Vector3,
-        Self::Normal,
-        Self::String,
-        Self::Texture,
-        Self::Rgb,
-        Self::Spectrum,
-        Self::Blackbody,
+    /// All types with their words in files, in the order of the types.
+    const ALL: [(Self, &'static str); 13] = [
+        (Self::Bool, "bool"),
+        (Self::Integer, "integer"),
+        (Self::Float, "float"),
+        (Self::Point2, "point2"),
+        (Self::Vector2, "vector2"),
+        (Self::Point3, "point3"),
+        (Self::Vector3, "vector3"),
+        (Self::Normal, "normal"),
+        (Self::String, "string"),
+        (Self::Texture, "texture"),
+        (Self::Rgb, "rgb"),
+        (Self::Spectrum, "spectrum"),
+        (Self::Blackbody, "blackbody"),
     ];
 
     /// Returns the word in files.
     pub const fn word(self) -> &'static str {
-        match self {
-            Self::Bool => "bool",
-            Self::Integer => "integer",
-            Self::Float => "float",
-            Self::Point2 => "point2",
-            Self::Vector2 => "vector2",
-            Self::Point3 => "point3",
-            Self::Vector3 => "vector3",
-            Self::Normal => "normal",
-            Self::String => "string",
-            Self::Texture => "texture",
-            Self::Rgb => "rgb",
-            Self::Spectrum => "spectrum",
-            Self::Blackbody => "blackbody",
-        }
+        Self::ALL[self as usize].1
     }
 
     /// Returns the number of numbers in one value.
@@ -114,6 +103,34 @@ impl Values {
             Self::Integers(values) => values.len(),
             Self::Floats(values) => values.len(),
             Self::Strings(values) => values.len(),
+        }
+    }
+
+    pub(super) fn bools(&self) -> &[bool] {
+        match self {
+            Self::Bools(values) => values,
+            _ => &[],
+        }
+    }
+
+    pub(super) fn integers(&self) -> &[i32] {
+        match self {
+            Self::Integers(values) => values,
+            _ => &[],
+        }
+    }
+
+    pub(super) fn floats(&self) -> &[f32] {
+        match self {
+            Self::Floats(values) => values,
+            _ => &[],
+        }
+    }
+
+    pub(super) fn strings(&self) -> &[String] {
+        match self {
+            Self::Strings(values) => values,
+            _ => &[],
         }
     }
 
@@ -195,17 +212,11 @@ fn parse_declaration(declaration: &str, span: Span) -> Result<(ParameterType, St
         return Err(Fault::syntax(span, message));
     };
     if let Some(hint) = v3::type_word(word) {
-        return Err(v3::fault(
-            span,
-            &format!("the parameter type `{word}`"),
-            hint,
-        ));
+        let mark = format!("the parameter type `{word}`");
+        return Err(v3::fault(span, &mark, hint));
     }
-    let Some(kind) = ParameterType::ALL
-        .into_iter()
-        .find(|kind| kind.word() == word)
-    else {
-        let words = ParameterType::ALL.map(ParameterType::word);
+    let Some(&(kind, _)) = ParameterType::ALL.iter().find(|(_, known)| *known == word) else {
+        let words = ParameterType::ALL.map(|(_, word)| word);
         let message = format!("unknown parameter type `{}`", shorten(word));
         return Err(Fault::syntax(span, message).with_nearest(word, words));
     };
@@ -224,31 +235,35 @@ fn parse_values(
     let mut values = kind.empty();
     let first = tokens.expect(&what)?;
     if first.kind != TokenKind::Open {
-        push(&mut values, kind, first.kind, first.span)?;
+        push(&mut values, kind, &first)?;
         return Ok((values, first.span));
     }
+    let inside = format!("{what} or `]`");
     loop {
-        let token = tokens.expect(&format!("{what} or `]`"))?;
+        let token = tokens.expect(&inside)?;
         if token.kind == TokenKind::Close {
             return Ok((values, first.span.to(token.span)));
         }
-        push(&mut values, kind, token.kind, token.span)?;
+        push(&mut values, kind, &token)?;
     }
 }
 
-fn push(
-    values: &mut Values,
-    kind: ParameterType,
-    token: TokenKind<'_>,
-    span: Span,
-) -> Result<(), Fault> {
+fn push(values: &mut Values, kind: ParameterType, token: &Token<'_>) -> Result<(), Fault> {
+    let span = token.span;
     // A spectrum has numbers or names, which its first value decides.
-    if kind == ParameterType::Spectrum && values.is_empty() && matches!(token, TokenKind::Quoted(_))
-    {
+    let is_quoted = matches!(token.kind, TokenKind::Quoted(_));
+    if kind == ParameterType::Spectrum && values.is_empty() && is_quoted {
         *values = Values::Strings(Vec::new());
     }
-    match (values, token) {
-        (Values::Floats(values), TokenKind::Word(word)) => values.push(float(word, span)?),
+    match (values, &token.kind) {
+        (_, TokenKind::Open) => return Err(Fault::syntax(span, "brackets do not nest")),
+        (Values::Floats(values), TokenKind::Word(word)) => {
+            let value = parse_float(word).ok_or_else(|| not_a_number(token))? as f32;
+            if !value.is_finite() {
+                return Err(too_large(word, span));
+            }
+            values.push(value);
+        }
         (Values::Integers(values), TokenKind::Word(word)) => values.push(integer(word, span)?),
         (Values::Bools(values), TokenKind::Word(word)) => {
             let expected = || format!("expected `true` or `false`, found `{}`", shorten(word));
@@ -256,42 +271,17 @@ fn push(
             values.push(value);
         }
         (Values::Bools(_), TokenKind::Quoted(_)) => {
-            return Err(v3::fault(
-                span,
-                "a quoted truth value",
-                "write true or false without quotes",
-            ));
+            let hint = "write true or false without quotes";
+            return Err(v3::fault(span, "a quoted truth value", hint));
         }
-        (Values::Strings(values), TokenKind::Quoted(text)) => values.push(text.into_owned()),
-        (_, TokenKind::Open) => return Err(Fault::syntax(span, "brackets do not nest")),
-        (values, token) => {
-            let found = super::lexer::Token { kind: token, span }.describe();
-            let expected = match values {
-                Values::Strings(_) => "a string in quotes",
-                _ => "a number",
-            };
-            let message = format!("expected {expected}, found {found}");
+        (Values::Strings(values), TokenKind::Quoted(text)) => values.push(text.to_string()),
+        (Values::Strings(_), _) => {
+            let message = format!("expected a string in quotes, found {}", token.describe());
             return Err(Fault::syntax(span, message));
         }
+        _ => return Err(not_a_number(token)),
     }
     Ok(())
-}
-
-fn float(word: &str, span: Span) -> Result<f32, Fault> {
-    let value = parse_float(word).ok_or_else(|| {
-        Fault::syntax(
-            span,
-            format!("expected a number, found `{}`", shorten(word)),
-        )
-    })? as f32;
-    if value.is_finite() {
-        Ok(value)
-    } else {
-        Err(Fault::scene(
-            span,
-            format!("the number `{}` is too large", shorten(word)),
-        ))
-    }
 }
 
 fn integer(word: &str, span: Span) -> Result<i32, Fault> {

@@ -3,7 +3,7 @@
 use super::decode::decode;
 use super::directives;
 use super::inclusion::Counts;
-use super::known::{self, Block, DIRECTIVES};
+use super::known::{self, Block};
 use super::lexer::{Token, TokenKind, Tokens, shorten};
 use super::parameters::{Parameter, parse_list};
 use super::scene::{Entity, MaterialDescription, SceneDescription, TextureKind};
@@ -63,6 +63,7 @@ fn parse(
 }
 
 /// The whole state of the parser.
+#[derive(Default)]
 pub(super) struct Parser {
     pub(super) scene: SceneDescription,
     pub(super) scope: Scope,
@@ -86,30 +87,14 @@ pub(super) struct Parser {
 
 impl Parser {
     fn new(folder: &Path, files: Files) -> Self {
-        let default_material = MaterialDescription {
-            name: None,
-            entity: None,
-        };
-        let materials = vec![default_material];
-        let folder = folder.to_owned();
         Self {
             scene: SceneDescription {
                 files,
-                folder,
-                materials,
+                folder: folder.to_owned(),
+                materials: vec![MaterialDescription::default()],
                 ..SceneDescription::default()
             },
-            scope: Scope::default(),
-            in_world: false,
-            object: None,
-            materials: BTreeMap::new(),
-            objects: BTreeMap::new(),
-            open: Vec::new(),
-            texts: BTreeMap::new(),
-            texture_names: BTreeSet::new(),
-            medium_names: BTreeSet::new(),
-            included: BTreeMap::new(),
-            counts: Counts::default(),
+            ..Self::default()
         }
     }
 
@@ -145,21 +130,17 @@ impl Parser {
         if let Some(hint) = v3::directive(word) {
             return Err(v3::fault(token.span, &format!("`{word}`"), hint));
         }
-        let Some((_, block)) = DIRECTIVES.iter().find(|(name, _)| *name == word) else {
+        let Some((_, block)) = known::directives().find(|(name, _)| *name == word) else {
             let fault = Fault::syntax(token.span, format!("unknown directive `{}`", shorten(word)));
-            return Err(fault.with_nearest(word, DIRECTIVES.iter().map(|(name, _)| *name)));
+            return Err(fault.with_nearest(word, known::directives().map(|(name, _)| name)));
         };
-        match (block, self.in_world) {
-            (Block::World, false) => {
-                let message = format!("`{word}` stands before `WorldBegin`");
-                Err(Fault::scene(token.span, message))
-            }
-            (Block::Options, true) => {
-                let message = format!("`{word}` stands after `WorldBegin`");
-                Err(Fault::scene(token.span, message))
-            }
-            _ => directives::apply(self, tokens, word, token.span),
-        }
+        let side = match (block, self.in_world) {
+            (Block::World, false) => "before",
+            (Block::Options, true) => "after",
+            _ => return directives::apply(self, tokens, word, token.span),
+        };
+        let message = format!("`{word}` stands {side} `WorldBegin`");
+        Err(Fault::scene(token.span, message))
     }
 
     /// Parses a list of parameters.

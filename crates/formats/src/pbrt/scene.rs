@@ -113,7 +113,7 @@ pub struct OptionDescription {
 }
 
 /// A material.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct MaterialDescription {
     /// The name. None: the material comes from a `Material` directive.
     pub name: Option<String>,
@@ -128,6 +128,16 @@ pub enum TextureKind {
     Float,
     /// Colours.
     Spectrum,
+}
+
+impl TextureKind {
+    /// Returns the word in files.
+    pub(super) fn word(self) -> &'static str {
+        match self {
+            Self::Float => "float",
+            Self::Spectrum => "spectrum",
+        }
+    }
 }
 
 /// A texture.

@@ -1,6 +1,6 @@
 //! The current transformation and the directives that change it.
 
-use glam::{DAffine3, DMat3, DVec3};
+use glam::{DAffine3, DMat3, DMat4, DVec3, DVec4};
 
 /// Transformations at the two ends of the shutter's interval: equal if nothing moves.
 ///
@@ -103,34 +103,24 @@ pub(super) fn look_at(eye: DVec3, target: DVec3, up: DVec3) -> Result<DAffine3, 
 
 /// Reads a matrix of sixteen numbers, column by column.
 pub(super) fn matrix(numbers: &[f64; 16]) -> Result<DAffine3, Reason> {
-    let [
-        ax,
-        ay,
-        az,
-        aw,
-        bx,
-        by,
-        bz,
-        bw,
-        cx,
-        cy,
-        cz,
-        cw,
-        tx,
-        ty,
-        tz,
-        tw,
-    ] = *numbers;
-    let is_affine = [aw, bw, cw].iter().all(|entry| *entry == 0.0) && tw != 0.0;
-    if !is_affine {
+    let matrix = DMat4::from_cols_array(numbers);
+    let bottom = matrix.row(3);
+    if bottom.truncate() != DVec3::ZERO || bottom.w == 0.0 {
         return Err(
             "the numbers 4, 8 and 12 of a matrix must be 0 and its last must not: perspective is \
              not allowed",
         );
     }
-    let column = |x, y, z| DVec3::new(x, y, z) / tw;
-    let linear = DMat3::from_cols(column(ax, ay, az), column(bx, by, bz), column(cx, cy, cz));
-    Ok(DAffine3::from_mat3_translation(linear, column(tx, ty, tz)))
+    let column = |column: DVec4| column.truncate() / bottom.w;
+    let linear = DMat3::from_cols(
+        column(matrix.x_axis),
+        column(matrix.y_axis),
+        column(matrix.z_axis),
+    );
+    Ok(DAffine3::from_mat3_translation(
+        linear,
+        column(matrix.w_axis),
+    ))
 }
 
 /// Returns true if a transformation has a finite inverse.

@@ -19,7 +19,7 @@ type Done = Result<(), Fault>;
 
 /// Applies the directive `word`, whose arguments follow in `tokens`.
 ///
-/// `word` is one of [`known::DIRECTIVES`] and stands in a valid block.
+/// `word` is one of [`known::directives`] and stands in a valid block.
 pub(super) fn apply(parser: &mut Parser, tokens: &mut Tokens<'_>, word: &str, span: Span) -> Done {
     match word {
         "Include" | "Import" => files(parser, tokens, word),
@@ -162,8 +162,8 @@ fn color_space(parser: &mut Parser, tokens: &mut Tokens<'_>) -> Done {
         .iter()
         .find(|(known, _)| name.eq_ignore_ascii_case(known))
     else {
-        let fault = Fault::scene(span, format!("unknown colour space `{}`", shorten(&name)));
-        return Err(fault.with_nearest(&name, spaces.map(|(known, _)| known)));
+        let known = spaces.map(|(known, _)| known);
+        return Err(known::unknown(span, "colour space", &name, known));
     };
     parser.scope.state.color_space = *space;
     Ok(())

@@ -2,7 +2,7 @@
 
 use super::Done;
 use crate::pbrt::known;
-use crate::pbrt::lexer::{Token, TokenKind, Tokens, parse_float, shorten};
+use crate::pbrt::lexer::{Token, TokenKind, Tokens, not_a_number, parse_float, shorten, too_large};
 use crate::pbrt::parser::Parser;
 use crate::pbrt::transform::{self, Active, Reason, Transforms};
 use crate::source::{Fault, Span};
@@ -20,10 +20,8 @@ pub(super) fn coordinate_system(parser: &mut Parser, tokens: &mut Tokens<'_>, wo
     } else if let Some(&system) = scope.coordinate_systems.get(&name) {
         scope.state.transforms = Transforms { times, ..system };
     } else {
-        parser.warn(
-            span,
-            format!("unknown coordinate system `{}` is ignored", shorten(&name)),
-        );
+        let message = format!("unknown coordinate system `{}` is ignored", shorten(&name));
+        parser.warn(span, message);
     }
     Ok(())
 }
@@ -45,35 +43,25 @@ pub(super) fn active_transform(parser: &mut Parser, tokens: &mut Tokens<'_>) -> 
 
 pub(super) fn change(parser: &mut Parser, tokens: &mut Tokens<'_>, word: &str, span: Span) -> Done {
     let because = |reason: Reason| Fault::scene(span, format!("`{word}`: {reason}"));
-    let (change, replaces) = match word {
-        "Identity" => (DAffine3::IDENTITY, true),
-        "Transform" => (
-            transform::matrix(&bracketed(tokens)?).map_err(because)?,
-            true,
-        ),
-        "ConcatTransform" => (
-            transform::matrix(&bracketed(tokens)?).map_err(because)?,
-            false,
-        ),
-        "Translate" => (
-            DAffine3::from_translation(DVec3::from(numbers(tokens)?)),
-            false,
-        ),
-        "Scale" => (DAffine3::from_scale(DVec3::from(numbers(tokens)?)), false),
+    let change = match word {
+        "Identity" => DAffine3::IDENTITY,
+        "Transform" | "ConcatTransform" => {
+            transform::matrix(&bracketed(tokens)?).map_err(because)?
+        }
+        "Translate" => DAffine3::from_translation(DVec3::from(numbers(tokens)?)),
+        "Scale" => DAffine3::from_scale(DVec3::from(numbers(tokens)?)),
         "Rotate" => {
             let [degrees, x, y, z] = numbers(tokens)?;
-            (
-                transform::rotate(degrees, DVec3::new(x, y, z)).map_err(because)?,
-                false,
-            )
+            transform::rotate(degrees, DVec3::new(x, y, z)).map_err(because)?
         }
         _ => {
             let [ex, ey, ez, tx, ty, tz, ux, uy, uz] = numbers(tokens)?;
             let (eye, target) = (DVec3::new(ex, ey, ez), DVec3::new(tx, ty, tz));
             let up = DVec3::new(ux, uy, uz);
-            (transform::look_at(eye, target, up).map_err(because)?, false)
+            transform::look_at(eye, target, up).map_err(because)?
         }
     };
+    let replaces = matches!(word, "Identity" | "Transform");
     let state = &mut parser.scope.state;
     let active = state.active;
     state.transforms.change(
@@ -113,22 +101,12 @@ fn expect_bracket(tokens: &mut Tokens<'_>, bracket: &TokenKind<'_>, what: &str) 
 }
 
 fn number(token: &Token<'_>) -> Result<f64, Fault> {
-    let expected = || {
-        Fault::syntax(
-            token.span,
-            format!("expected a number, found {}", token.describe()),
-        )
-    };
     let TokenKind::Word(word) = token.kind else {
-        return Err(expected());
+        return Err(not_a_number(token));
     };
-    let value = parse_float(word).ok_or_else(expected)?;
+    let value = parse_float(word).ok_or_else(|| not_a_number(token))?;
     if value.is_finite() {
-        Ok(value)
-    } else {
-        Err(Fault::scene(
-            token.span,
-            format!("the number `{}` is too large", shorten(word)),
-        ))
+        return Ok(value);
     }
+    Err(too_large(word, token.span))
 }

@@ -1,9 +1,10 @@
 //! The directives that define the world: objects, materials, textures, lights, shapes and media.
 
 use super::Done;
+use crate::pbrt::definitions::defined_again;
 use crate::pbrt::known;
-use crate::pbrt::lexer::{Token, TokenKind, Tokens, shorten};
-use crate::pbrt::parameters::{Parameter, ParameterList, ParameterType, Values};
+use crate::pbrt::lexer::{Token, TokenKind, Tokens};
+use crate::pbrt::parameters::{Parameter, ParameterList, ParameterType};
 use crate::pbrt::parser::Parser;
 use crate::pbrt::scene::{
     Entity, InstanceDescription, LightDescription, MaterialDescription, MediumDescription,
@@ -27,10 +28,8 @@ pub(super) fn object(parser: &mut Parser, tokens: &mut Tokens<'_>, word: &str, s
         return Ok(());
     }
     if parser.object.is_some() {
-        return Err(Fault::scene(
-            name_span,
-            "an object is placed within an object",
-        ));
+        let message = "an object is placed within an object";
+        return Err(Fault::scene(name_span, message));
     }
     let object = parser.object_use(&name, name_span);
     let transforms = placement(parser, span)?;
@@ -58,11 +57,8 @@ pub(super) fn material(parser: &mut Parser, tokens: &mut Tokens<'_>, word: &str)
     let defaults = Arc::clone(&parser.scope.state.defaults.material);
     match word {
         "Material" => {
-            let entity = parser.entity(tokens, &known::MATERIALS, &defaults)?;
-            let material = MaterialDescription {
-                name: None,
-                entity: Some(entity),
-            };
+            let entity = Some(parser.entity(tokens, &known::MATERIALS, &defaults)?);
+            let material = MaterialDescription { name: None, entity };
             parser.scene.materials.push(material);
             parser.scope.state.material = parser.scene.materials.len() - 1;
         }
@@ -91,16 +87,11 @@ fn typed_entity(
     let Some(parameter) = explicit.iter().rfind(|p| is_type(p)) else {
         return Err(Fault::scene(span, "the parameter `string type` is missing"));
     };
-    let kind = match &parameter.values {
-        Values::Strings(values) if values.len() == 1 => values[0].clone(),
-        _ => {
-            return Err(Fault::scene(
-                parameter.value_span,
-                "`string type` has one value",
-            ));
-        }
-    };
     let span = parameter.value_span;
+    let [kind] = parameter.values.strings() else {
+        return Err(Fault::scene(span, "`string type` has one value"));
+    };
+    let kind = kind.clone();
     names.check(&kind, span)?;
     explicit.retain(|p| !is_type(p));
     Ok(Entity {
@@ -122,9 +113,8 @@ pub(super) fn texture(parser: &mut Parser, tokens: &mut Tokens<'_>) -> Done {
     };
     let defaults = Arc::clone(&parser.scope.state.defaults.texture);
     let entity = parser.entity(tokens, &known::TEXTURES, &defaults)?;
-    if !parser.names_texture(&name, kind) {
-        let message = format!("the texture `{}` is defined a second time", shorten(&name));
-        return Err(Fault::scene(name_span, message));
+    if !parser.texture_names.insert((kind, name.clone())) {
+        return Err(defined_again(name_span, "texture", &name));
     }
     let transforms = placement(parser, entity.span)?;
     parser.scene.textures.push(TextureDescription {
@@ -188,9 +178,8 @@ pub(super) fn make_named_medium(parser: &mut Parser, tokens: &mut Tokens<'_>) ->
     let explicit = parser.parameters(tokens)?;
     let defaults = Arc::clone(&parser.scope.state.defaults.medium);
     let entity = typed_entity(explicit, defaults, span, &known::MEDIA)?;
-    if !parser.names_medium(&name) {
-        let message = format!("the medium `{}` is defined a second time", shorten(&name));
-        return Err(Fault::scene(span, message));
+    if !parser.medium_names.insert(name.clone()) {
+        return Err(defined_again(span, "medium", &name));
     }
     let transforms = placement(parser, span)?;
     parser.scene.media.push(MediumDescription {
