@@ -12,9 +12,7 @@ pub(crate) use color::{
     LUMINANCE_OF_ONE, Primaries, adapted, black_body, conductor, daylight_white, emission,
     planckian_white, reflectance, rgb_from_rgb,
 };
-pub(crate) use named::{named, names};
-
-use std::fmt;
+pub(crate) use named::{metal, named, names};
 
 /// The value of a sampled spectrum beyond its first and last wavelength.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -34,59 +32,31 @@ pub(crate) struct Spectrum {
 }
 
 /// The reason why numbers are not a spectrum.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum SpectrumError {
-    /// There are no samples.
-    Empty,
-    /// A wavelength has no value.
-    Odd,
-    /// A word in line number `.0` is not a number.
-    NotANumber(usize),
-    /// Wavelengths do not increase.
-    Order,
-}
-
-impl fmt::Display for SpectrumError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Empty => {
-                f.write_str("a spectrum needs at least one pair of wavelength and value")
-            }
-            Self::Odd => f.write_str("the last wavelength of the spectrum has no value"),
-            Self::NotANumber(line) => {
-                write!(
-                    f,
-                    "line {line} of the spectrum has something that is not a number"
-                )
-            }
-            Self::Order => f.write_str("the wavelengths of a spectrum must increase"),
-        }
-    }
-}
+type Reason = String;
 
 impl Spectrum {
     /// Returns the spectrum of samples: wavelength (nm) and value.
-    pub(crate) fn new(samples: Vec<[f64; 2]>, beyond: Beyond) -> Result<Self, SpectrumError> {
+    pub(crate) fn new(samples: Vec<[f64; 2]>, beyond: Beyond) -> Result<Self, Reason> {
         if samples.is_empty() {
-            return Err(SpectrumError::Empty);
+            return Err("a spectrum needs at least one pair of wavelength and value".into());
         }
         if samples.windows(2).any(|pair| pair[0][0] >= pair[1][0]) {
-            return Err(SpectrumError::Order);
+            return Err("the wavelengths of a spectrum must increase".into());
         }
         Ok(Self { samples, beyond })
     }
 
     /// Returns the spectrum of a flat list of wavelengths and values.
-    pub(crate) fn from_pairs(numbers: &[f64], beyond: Beyond) -> Result<Self, SpectrumError> {
+    pub(crate) fn from_pairs(numbers: &[f64], beyond: Beyond) -> Result<Self, Reason> {
         let (pairs, rest) = numbers.as_chunks::<2>();
         if !rest.is_empty() {
-            return Err(SpectrumError::Odd);
+            return Err("the last wavelength of the spectrum has no value".into());
         }
         Self::new(pairs.to_vec(), beyond)
     }
 
     /// Reads a text of pairs; `#` begins a comment.
-    pub(crate) fn parse(text: &str) -> Result<Self, SpectrumError> {
+    pub(crate) fn parse(text: &str) -> Result<Self, Reason> {
         let mut numbers = Vec::new();
         for (line, content) in text.lines().enumerate() {
             let content = content.split('#').next().unwrap_or_default();
@@ -94,12 +64,11 @@ impl Spectrum {
                 if word.is_empty() {
                     continue;
                 }
-                let number: f64 = word
-                    .parse()
-                    .ok()
-                    .filter(|number: &f64| number.is_finite())
-                    .ok_or(SpectrumError::NotANumber(line + 1))?;
-                numbers.push(number);
+                let number = word.parse().ok().filter(|number: &f64| number.is_finite());
+                let line = line + 1;
+                let wrong =
+                    || format!("line {line} of the spectrum has something that is not a number");
+                numbers.push(number.ok_or_else(wrong)?);
             }
         }
         Self::from_pairs(&numbers, Beyond::Zero)
@@ -135,6 +104,13 @@ impl Spectrum {
             },
             (None, None) => 0.0,
         }
+    }
+
+    /// Returns the index of refraction that a spectrum of indices stands for: that at the d line of helium, at which
+    /// glasses are specified.
+    pub(crate) fn index(&self) -> f32 {
+        const D_LINE: f64 = 587.56;
+        self.at(D_LINE) as f32
     }
 
     /// Returns true if no sample is negative.

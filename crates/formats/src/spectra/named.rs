@@ -1,7 +1,8 @@
 //! The spectra that pbrt-v4 knows by name.
 
 use super::table::{self, DAYLIGHT, FLUORESCENT, METALS};
-use super::{Beyond, Spectrum};
+use super::{Beyond, Spectrum, conductor};
+use bidir::spectrum::Rgb;
 
 /// Returns the wavelengths at which formulas of glasses and illuminants are tabulated. Unit: nm.
 fn visible(step: usize) -> impl Iterator<Item = f64> {
@@ -23,6 +24,12 @@ pub(crate) fn named(name: &str) -> Option<Spectrum> {
         "illum-acesD60" => Some(daylight([0.32168, 0.33767])),
         _ => FLUORESCENT.column(name.strip_prefix("stdillum-")?),
     }
+}
+
+/// Returns η and k of a metal by its chemical symbol, for each channel. None: it is not known.
+pub(crate) fn metal(symbol: &str) -> Option<(Rgb, Rgb)> {
+    let [eta, k] = ["eta", "k"].map(|part| named(&format!("metal-{symbol}-{part}")));
+    Some(conductor(&eta?, &k?))
 }
 
 /// Returns all names.
