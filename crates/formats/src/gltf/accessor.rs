@@ -28,9 +28,8 @@ impl Component {
             5125 => Self::U32,
             5126 => Self::F32,
             _ => {
-                return Err(place
-                    .key("componentType")
-                    .scene(format!("{code} is not a component type")));
+                let place = place.key("componentType");
+                return Err(place.scene(format!("{code} is not a component type")));
             }
         })
     }
@@ -43,15 +42,15 @@ impl Component {
         }
     }
 
-    /// Reads the number in `bytes`, of which there are [`size`](Self::size). The result is exact.
+    /// Reads the number at the beginning of `bytes`. The result is exact.
     fn read(self, bytes: &[u8]) -> f64 {
         match (self, bytes) {
             (Self::I8, &[a, ..]) => f64::from(a as i8),
             (Self::U8, &[a, ..]) => f64::from(a),
             (Self::I16, &[a, b, ..]) => f64::from(i16::from_le_bytes([a, b])),
             (Self::U16, &[a, b, ..]) => f64::from(u16::from_le_bytes([a, b])),
-            (Self::U32, &[a, b, c, d]) => f64::from(u32::from_le_bytes([a, b, c, d])),
-            (Self::F32, &[a, b, c, d]) => f64::from(f32::from_le_bytes([a, b, c, d])),
+            (Self::U32, &[a, b, c, d, ..]) => f64::from(u32::from_le_bytes([a, b, c, d])),
+            (Self::F32, &[a, b, c, d, ..]) => f64::from(f32::from_le_bytes([a, b, c, d])),
             _ => 0.0,
         }
     }
@@ -89,19 +88,12 @@ struct Layout<'a> {
 
 impl<'a> Layout<'a> {
     fn new(document: &'a Document, index: usize, user: &Place) -> Result<Self, GltfFault> {
-        let accessor = document.root.accessors.get(index).ok_or_else(|| {
-            let count = document.root.accessors.len();
-            user.scene(format!(
-                "there is no accessor {index}: the file has {count}"
-            ))
-        })?;
+        let accessor = user.find(&document.root.accessors, index, "accessor")?;
         let place = Place::of("accessors", index);
         let known = KINDS.iter().find(|(name, _)| *name == accessor.kind);
         let Some(&(_, components)) = known else {
-            let kind = &accessor.kind;
-            let fault = place
-                .key("type")
-                .scene(format!("`{kind}` is not an accessor type"));
+            let (kind, place) = (&accessor.kind, place.key("type"));
+            let fault = place.scene(format!("`{kind}` is not an accessor type"));
             return Err(fault.with_nearest(kind, KINDS.map(|(name, _)| name)));
         };
         let component = Component::of(accessor.component_type, &place)?;
@@ -159,8 +151,8 @@ impl<'a> Layout<'a> {
         let place = self.place.key("bufferView");
         let (bytes, stride) = document.view(view, &place)?;
         let size = self.value_size();
-        let stride =
-            stride.unwrap_or(size.next_multiple_of(if self.components > 4 { 4 } else { 1 }));
+        let alignment = if self.components > 4 { 4 } else { 1 };
+        let stride = stride.unwrap_or(size.next_multiple_of(alignment));
         let elements = Elements {
             offset: self.accessor.byte_offset,
             stride,
@@ -170,15 +162,13 @@ impl<'a> Layout<'a> {
         let range = elements.range(bytes.len(), &self.place)?;
         let bytes = &bytes[range];
         document.count_components(self.accessor.count * self.components, &self.place)?;
-        let at = |i: usize| &bytes[i * stride..i * stride + size];
-        let of_value = |value: &[u8], i: usize| {
-            let start = self.offset_of(i);
-            self.component
-                .read(&value[start..start + self.component.size()])
-        };
-        let values = (0..self.accessor.count)
-            .flat_map(|i| (0..self.components).map(move |k| of_value(at(i), k)));
-        Ok(values.collect())
+        let values = (0..self.accessor.count).map(|i| &bytes[i * stride..i * stride + size]);
+        Ok(values.flat_map(|value| self.numbers(value)).collect())
+    }
+
+    /// Returns the components of one value.
+    fn numbers(&self, value: &[u8]) -> impl Iterator<Item = f64> {
+        (0..self.components).map(|i| self.component.read(&value[self.offset_of(i)..]))
     }
 
     fn read_sparse(&self, document: &Document, values: &mut [f64]) -> Result<(), GltfFault> {
@@ -205,11 +195,10 @@ impl<'a> Layout<'a> {
                 let message = format!("index {index} is not below the count of {count}");
                 return Err(indices_place.scene(message));
             }
-            for k in 0..self.components {
-                let start = self.offset_of(k);
-                let bytes = &value[start..start + self.component.size()];
-                values[index * self.components + k] = self.component.read(bytes);
-            }
+            let replaced = values[index * self.components..].iter_mut();
+            replaced
+                .zip(self.numbers(value))
+                .for_each(|(old, new)| *old = new);
         }
         Ok(())
     }
@@ -262,9 +251,8 @@ impl Elements {
                     "{count} values of {size} bytes from byte {offset} end beyond the \
                      {available} bytes available"
                 );
-                Err(place
-                    .fault(ErrorKind::Data, message)
-                    .with_hint("the file is cut or its counts are wrong"))
+                let fault = place.fault(ErrorKind::Data, message);
+                Err(fault.with_hint("the file is cut or its counts are wrong"))
             }
         }
     }
@@ -316,14 +304,10 @@ impl Document {
             Component::U8 | Component::U16 | Component::U32
         );
         if layout.components != 1 || !whole {
-            return Err(user.scene(format!(
-                "accessor {index} has no indices, which are unsigned scalars"
-            )));
+            let message = format!("accessor {index} has no indices, which are unsigned scalars");
+            return Err(user.scene(message));
         }
-        Ok(layout
-            .read(self)?
-            .into_iter()
-            .map(|value| value as u32)
-            .collect())
+        let values = layout.read(self)?.into_iter();
+        Ok(values.map(|value| value as u32).collect())
     }
 }

@@ -105,7 +105,12 @@ impl Document {
         };
         let read = check_version(&document.root)
             .and_then(|()| check_extensions(&mut log, &document.root))
-            .and_then(|()| document.read_buffers(&mut log, &mut binary));
+            .and_then(|()| {
+                let indices = 0..document.root.buffers.len();
+                indices
+                    .map(|index| document.read_buffer(&mut log, index, &mut binary))
+                    .collect()
+            });
         document.buffers = read.map_err(|fault| document.error(fault))?;
         Ok((document, log))
     }
@@ -135,17 +140,6 @@ impl Document {
             place.fault(ErrorKind::Limit, message)
         })?);
         Ok(())
-    }
-
-    fn read_buffers(
-        &self,
-        log: &mut Log,
-        binary: &mut Option<Vec<u8>>,
-    ) -> Result<Vec<Vec<u8>>, GltfFault> {
-        let indices = 0..self.root.buffers.len();
-        indices
-            .map(|index| self.read_buffer(log, index, binary))
-            .collect()
     }
 
     fn read_buffer(
@@ -182,17 +176,9 @@ impl Document {
         index: usize,
         user: &Place,
     ) -> Result<(&[u8], Option<usize>), GltfFault> {
-        let view = self.root.buffer_views.get(index).ok_or_else(|| {
-            let count = self.root.buffer_views.len();
-            user.scene(format!(
-                "there is no buffer view {index}: the file has {count}"
-            ))
-        })?;
+        let view = user.find(&self.root.buffer_views, index, "buffer view")?;
         let place = Place::of("bufferViews", index);
-        let buffer = self.buffers.get(view.buffer).ok_or_else(|| {
-            let (buffer, count) = (view.buffer, self.buffers.len());
-            place.scene(format!("there is no buffer {buffer}: the file has {count}"))
-        })?;
+        let buffer = place.find(&self.buffers, view.buffer, "buffer")?;
         let end = view.byte_offset.checked_add(view.byte_length);
         let bytes = end.and_then(|end| buffer.get(view.byte_offset..end));
         let bytes = bytes.ok_or_else(|| {

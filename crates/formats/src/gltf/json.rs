@@ -6,6 +6,7 @@
 )]
 
 use serde::Deserialize;
+use serde::de::IgnoredAny;
 use std::collections::BTreeMap;
 
 /// An index into one of the file's arrays.
@@ -41,7 +42,7 @@ object!(
         samplers: Vec<Sampler>,
         cameras: Vec<Camera>,
         skins: Vec<Skin>,
-        animations: Vec<serde::de::IgnoredAny>,
+        animations: Vec<IgnoredAny>,
         extensions: RootExtensions,
     }
 );
@@ -220,34 +221,30 @@ object!(Pbr {
 });
 object!(MaterialExtensions {
     #[serde(rename = "KHR_materials_emissive_strength")]
-    emissive_strength: Option<EmissiveStrength>,
+    emissive_strength: EmissiveStrength,
     #[serde(rename = "KHR_materials_ior")]
-    ior: Option<Ior>,
+    ior: Ior,
     #[serde(rename = "KHR_materials_specular")]
-    specular: Option<Specular>,
+    specular: Specular,
     #[serde(rename = "KHR_materials_transmission")]
-    transmission: Option<Transmission>,
+    transmission: Transmission,
     #[serde(rename = "KHR_materials_volume")]
-    volume: Option<Volume>,
+    volume: Volume,
     #[serde(rename = "KHR_materials_clearcoat")]
-    clearcoat: Option<Clearcoat>,
+    clearcoat: Clearcoat,
     #[serde(rename = "KHR_materials_sheen")]
-    sheen: Option<Sheen>,
+    sheen: Sheen,
     #[serde(rename = "KHR_materials_anisotropy")]
     anisotropy: Option<Anisotropy>,
     #[serde(rename = "KHR_materials_diffuse_transmission")]
-    diffuse_transmission: Option<DiffuseTransmission>,
+    diffuse_transmission: DiffuseTransmission,
     #[serde(rename = "KHR_materials_unlit")]
-    unlit: Option<Empty>,
+    unlit: Option<IgnoredAny>,
     #[serde(rename = "KHR_materials_dispersion")]
-    dispersion: Option<Empty>,
+    dispersion: Option<IgnoredAny>,
     #[serde(rename = "KHR_materials_iridescence")]
-    iridescence: Option<Empty>,
+    iridescence: Option<IgnoredAny>,
 });
-object!(
-    /// An object whose contents are not read.
-    Empty {}
-);
 object!(EmissiveStrength { emissive_strength: Option<f32>, });
 object!(Ior { ior: Option<f32>, });
 object!(Specular {

@@ -69,12 +69,10 @@ impl Materials {
         let default = Described::default();
         let described = match index {
             None => &default,
-            Some(index) => context.document.root.materials.get(index).ok_or_else(|| {
-                let count = context.document.root.materials.len();
-                user.key("material").scene(format!(
-                    "there is no material {index}: the file has {count}"
-                ))
-            })?,
+            Some(index) => {
+                let place = user.key("material");
+                place.find(&context.document.root.materials, index, "material")?
+            }
         };
         let place = index.map_or(user.clone(), |index| Place::of("materials", index));
         let mut reader = Reader {
@@ -127,29 +125,24 @@ fn content_of(
 
 /// Returns the textures of a material, the one whose coordinates matter most first.
 fn infos(described: &Described) -> Vec<&TextureInfo> {
-    let extensions = &described.extensions;
-    let (pbr, specular) = (
-        &described.pbr_metallic_roughness,
-        extensions.specular.as_ref(),
-    );
-    let (coat, sheen) = (extensions.clearcoat.as_ref(), extensions.sheen.as_ref());
-    let transmission = extensions.transmission.as_ref();
-    let diffuse = extensions.diffuse_transmission.as_ref();
+    let (pbr, extensions) = (&described.pbr_metallic_roughness, &described.extensions);
+    let (coat, sheen) = (&extensions.clearcoat, &extensions.sheen);
+    let (specular, diffuse) = (&extensions.specular, &extensions.diffuse_transmission);
     let anisotropy = extensions.anisotropy.as_ref();
     let all = [
         pbr.base_color_texture.as_ref(),
         pbr.metallic_roughness_texture.as_ref(),
         described.normal_texture.as_ref(),
-        specular.and_then(|specular| specular.specular_texture.as_ref()),
-        specular.and_then(|specular| specular.specular_color_texture.as_ref()),
-        coat.and_then(|coat| coat.clearcoat_texture.as_ref()),
-        coat.and_then(|coat| coat.clearcoat_roughness_texture.as_ref()),
-        coat.and_then(|coat| coat.clearcoat_normal_texture.as_ref()),
-        sheen.and_then(|sheen| sheen.sheen_color_texture.as_ref()),
-        sheen.and_then(|sheen| sheen.sheen_roughness_texture.as_ref()),
-        transmission.and_then(|transmission| transmission.transmission_texture.as_ref()),
-        diffuse.and_then(|diffuse| diffuse.diffuse_transmission_texture.as_ref()),
-        diffuse.and_then(|diffuse| diffuse.diffuse_transmission_color_texture.as_ref()),
+        specular.specular_texture.as_ref(),
+        specular.specular_color_texture.as_ref(),
+        coat.clearcoat_texture.as_ref(),
+        coat.clearcoat_roughness_texture.as_ref(),
+        coat.clearcoat_normal_texture.as_ref(),
+        sheen.sheen_color_texture.as_ref(),
+        sheen.sheen_roughness_texture.as_ref(),
+        extensions.transmission.transmission_texture.as_ref(),
+        diffuse.diffuse_transmission_texture.as_ref(),
+        diffuse.diffuse_transmission_color_texture.as_ref(),
         anisotropy.and_then(|anisotropy| anisotropy.anisotropy_texture.as_ref()),
         described.emissive_texture.as_ref(),
     ];
@@ -179,10 +172,9 @@ fn map_of_tangents(described: &Described) -> Option<UvMap> {
     let first = uv_map(infos(described).first()?);
     let extensions = &described.extensions;
     let anisotropy = extensions.anisotropy.as_ref();
-    let coat = extensions.clearcoat.as_ref();
     let in_frames = [
         described.normal_texture.as_ref(),
-        coat.and_then(|coat| coat.clearcoat_normal_texture.as_ref()),
+        extensions.clearcoat.clearcoat_normal_texture.as_ref(),
         anisotropy.and_then(|anisotropy| anisotropy.anisotropy_texture.as_ref()),
     ];
     let own = in_frames.into_iter().flatten().map(uv_map).next();

@@ -99,18 +99,14 @@ impl Surface {
         let document = context.document;
         let attributes = place.key("attributes");
         let Some(&position) = primitive.attributes.get("POSITION") else {
-            context.warn(
-                place.clone(),
-                "the primitive has no POSITION and is left out",
-            );
+            let message = "the primitive has no POSITION and is left out";
+            context.warn(place.clone(), message);
             return Ok(None);
         };
         let mode = primitive.mode.unwrap_or(4);
         if mode < 4 {
-            context.warn(
-                place.clone(),
-                "points and lines have no surface and are left out",
-            );
+            let message = "points and lines have no surface and are left out";
+            context.warn(place.clone(), message);
             return Ok(None);
         }
         let mut surface = Self {
@@ -144,9 +140,8 @@ impl Surface {
             repairs.uvs += repair::replace_infinite(uvs, 0.0);
         }
         let tangents = self.tangents.iter();
-        repairs.tangents = tangents
-            .filter(|tangent| repair::has_no_direction(tangent))
-            .count();
+        let broken = tangents.filter(|tangent| repair::has_no_direction(tangent));
+        repairs.tangents = broken.count();
         if repairs.tangents > 0 {
             self.tangents.clear();
         }
@@ -176,12 +171,7 @@ impl Surface {
         (primitive, place): (&Primitive, &Place),
     ) -> Result<(), GltfFault> {
         let document = context.document;
-        let find = |name: &str| {
-            primitive
-                .attributes
-                .get(name)
-                .map(|&index| (index, place.key(name)))
-        };
+        let find = |name: &str| Some((*primitive.attributes.get(name)?, place.key(name)));
         if let Some((index, place)) = find("NORMAL") {
             self.normals = self.per_vertex(document.vectors(index, &place)?, &place)?;
         }
@@ -203,10 +193,8 @@ impl Surface {
         if let (Some(joints), Some(weights)) = (find("JOINTS_0"), find("WEIGHTS_0")) {
             self.joints = self.read_joints(document, joints, weights)?;
             if find("JOINTS_1").is_some() {
-                context.warn(
-                    place.clone(),
-                    "joints beyond the first four of a vertex have no effect",
-                );
+                let message = "joints beyond the first four of a vertex have no effect";
+                context.warn(place.clone(), message);
             }
         }
         Ok(())
@@ -249,17 +237,14 @@ impl Surface {
         };
         let is_near = |color: &[f32; 4]| color.iter().zip(first).all(|(a, b)| (a - b).abs() < 4e-3);
         let mean = |k: usize| {
-            let sum: f64 = colors
+            let channel = colors
                 .iter()
-                .map(|color| f64::from(color[k].clamp(0.0, 1.0)))
-                .sum();
-            (sum / colors.len() as f64) as f32
+                .map(|color| f64::from(color[k].clamp(0.0, 1.0)));
+            (channel.sum::<f64>() / colors.len() as f64) as f32
         };
         if !colors.iter().all(is_near) {
-            context.warn(
-                place.clone(),
-                "vertex colours are not interpolated: their mean is used",
-            );
+            let message = "vertex colours are not interpolated: their mean is used";
+            context.warn(place.clone(), message);
         }
         self.color = std::array::from_fn(mean);
         Ok(())

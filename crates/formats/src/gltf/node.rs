@@ -25,10 +25,7 @@ impl Nodes {
         let mut waiting = roots(root, render_from_world)?;
         waiting.reverse();
         while let Some((index, parent, named)) = waiting.pop() {
-            let Some(node) = root.nodes.get(index) else {
-                let count = root.nodes.len();
-                return Err(named.scene(format!("there is no node {index}: the file has {count}")));
-            };
+            let node = named.find(&root.nodes, index, "node")?;
             if nodes.render_from_node[index].is_some() {
                 let message =
                     format!("node {index} is reached twice: nodes have one parent, and no cycles");
@@ -61,13 +58,9 @@ fn roots(
         let named = |(i, &node)| (node, render_from_world, place.index(i));
         nodes.iter().enumerate().map(named).collect()
     };
-    if let Some(scene) = root.scenes.get(index) {
+    if root.scene.is_some() || !root.scenes.is_empty() {
+        let scene = Place::TOP.key("scene").find(&root.scenes, index, "scene")?;
         return Ok(from_top(&scene.nodes));
-    }
-    if root.scene.is_some() {
-        let count = root.scenes.len();
-        let message = format!("there is no scene {index}: the file has {count}");
-        return Err(Place::TOP.key("scene").scene(message));
     }
     let mut is_child = vec![false; root.nodes.len()];
     for &child in root.nodes.iter().flat_map(|node| &node.children) {

@@ -5,6 +5,7 @@
 //! background.
 
 use super::view::looking;
+use crate::import::box_corners;
 use bidir::light::InfiniteLight;
 use bidir::math::{Affine3A, Mat3, Vec2, Vec3, square_to_direction};
 use bidir::texture::Image;
@@ -19,28 +20,20 @@ pub(super) struct Viewpoint {
     pub(super) name: &'static str,
 }
 
+const fn viewpoint(to_viewer: DVec3, up: DVec3, name: &'static str) -> Viewpoint {
+    Viewpoint {
+        to_viewer,
+        up,
+        name,
+    }
+}
+
 /// The viewpoints in order of preference. Every plane is visible from one of the last three.
 const VIEWPOINTS: [Viewpoint; 4] = [
-    Viewpoint {
-        to_viewer: DVec3::Z,
-        up: DVec3::Y,
-        name: "in front of it",
-    },
-    Viewpoint {
-        to_viewer: DVec3::new(0.5, 0.7, 1.0),
-        up: DVec3::Y,
-        name: "above its front",
-    },
-    Viewpoint {
-        to_viewer: DVec3::Y,
-        up: DVec3::NEG_Z,
-        name: "above it",
-    },
-    Viewpoint {
-        to_viewer: DVec3::X,
-        up: DVec3::Y,
-        name: "beside it",
-    },
+    viewpoint(DVec3::Z, DVec3::Y, "in front of it"),
+    viewpoint(DVec3::new(0.5, 0.7, 1.0), DVec3::Y, "above its front"),
+    viewpoint(DVec3::Y, DVec3::NEG_Z, "above it"),
+    viewpoint(DVec3::X, DVec3::Y, "beside it"),
 ];
 
 /// The required projected area, relative to the largest of all viewpoints.
@@ -80,11 +73,8 @@ impl Extent {
     /// Adds another extent mapped by `map`. The box contains the mapped one; areas are exact if `map` is a
     /// similarity.
     pub(super) fn include(&mut self, other: &Self, map: &DAffine3) {
-        for i in 0..8_usize {
-            let corner = Vec3::from_array(std::array::from_fn(|axis| {
-                other.corners[i >> axis & 1][axis]
-            }));
-            let corner = map.transform_point3(corner.as_dvec3()).as_vec3();
+        for corner in box_corners(other.corners.map(Vec3::as_dvec3)) {
+            let corner = map.transform_point3(corner).as_vec3();
             if corner.is_finite() {
                 self.corners = [self.corners[0].min(corner), self.corners[1].max(corner)];
             }

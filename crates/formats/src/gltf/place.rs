@@ -46,6 +46,24 @@ impl Place {
         GltfFault::new(kind, self.clone(), message)
     }
 
+    /// Returns one of `all`, whose index stands at this place; `what` is their kind.
+    pub(super) fn find<'a, T>(
+        &self,
+        all: &'a [T],
+        index: usize,
+        what: &str,
+    ) -> Result<&'a T, GltfFault> {
+        all.get(index).ok_or_else(|| {
+            let count = all.len();
+            self.scene(format!("there is no {what} {index}: the file has {count}"))
+        })
+    }
+
+    /// Returns the place of an extension of this object.
+    pub(super) fn extension(&self, name: &str) -> Self {
+        self.key("extensions").key(name)
+    }
+
     /// A fault of a value that means nothing valid.
     pub(super) fn scene(&self, message: impl Into<String>) -> GltfFault {
         self.fault(ErrorKind::Scene, message)

@@ -45,11 +45,9 @@ pub(super) struct View {
 /// Finds the first camera of the scene.
 pub(super) fn find(context: &mut Context<'_>, nodes: &Nodes) -> Result<View, GltfFault> {
     let document = context.document;
-    let cameras: Vec<(usize, usize)> = nodes
-        .order
-        .iter()
-        .filter_map(|&node| Some((node, document.root.nodes[node].camera?)))
-        .collect();
+    let cameras = nodes.order.iter();
+    let cameras = cameras.filter_map(|&node| Some((node, document.root.nodes[node].camera?)));
+    let cameras: Vec<(usize, usize)> = cameras.collect();
     let Some(&(node, camera)) = cameras.first() else {
         return Ok(View {
             world_from_camera: None,
@@ -73,9 +71,7 @@ pub(super) fn find(context: &mut Context<'_>, nodes: &Nodes) -> Result<View, Glt
 
 fn read(document: &Document, index: usize, render_from_node: &DAffine3) -> Result<View, GltfFault> {
     let place = Place::of("cameras", index);
-    let count = document.root.cameras.len();
-    let missing = || place.scene(format!("there is no camera {index}: the file has {count}"));
-    let camera = document.root.cameras.get(index).ok_or_else(missing)?;
+    let camera = place.find(&document.root.cameras, index, "camera")?;
     let (screen, aspect) = match (
         camera.kind.as_str(),
         &camera.perspective,

@@ -55,7 +55,7 @@ impl Reader<'_, '_> {
         part: Part,
     ) -> Result<ScaledFloat, GltfFault> {
         let texture = info
-            .map(|info| self.channel(info, part, Change::Keep))
+            .map(|info| self.channel(info, part, Change::Scale(1.0)))
             .transpose()?;
         Ok(ScaledFloat { factor, texture })
     }
@@ -116,27 +116,18 @@ impl Reader<'_, '_> {
     /// Reads the index of refraction, specular reflectance and anisotropy.
     fn read_dielectric(&mut self, material: &mut PrincipledMaterial) -> Result<(), GltfFault> {
         let extensions = &self.described.extensions;
-        if let Some(ior) = &extensions.ior {
-            let ior = ior.ior.unwrap_or(1.5);
-            if !(ior == 0.0 || (1.0..=100.0).contains(&ior)) {
-                let ior = number(ior);
-                let message = format!("the index of refraction {ior} is neither 0 nor at least 1");
-                return Err(self
-                    .place
-                    .key("extensions")
-                    .key("KHR_materials_ior")
-                    .scene(message));
-            }
-            material.ior = ior;
+        let ior = extensions.ior.ior.unwrap_or(1.5);
+        if !(ior == 0.0 || (1.0..=100.0).contains(&ior)) {
+            let ior = number(ior);
+            let message = format!("the index of refraction {ior} is neither 0 nor at least 1");
+            return Err(self.place.extension("KHR_materials_ior").scene(message));
         }
-        if let Some(specular) = &extensions.specular {
-            let factor = specular.specular_factor.unwrap_or(1.0);
-            let texture = specular.specular_texture.as_ref();
-            material.specular = self.number(factor, texture, Part::Alpha)?;
-            let color = specular.specular_color_factor.unwrap_or([1.0; 3]);
-            let texture = specular.specular_color_texture.as_ref();
-            material.specular_color = self.color(color, texture)?;
-        }
+        material.ior = ior;
+        let specular = &extensions.specular;
+        let (factor, texture) = (specular.specular_factor, &specular.specular_texture);
+        material.specular = self.number(factor.unwrap_or(1.0), texture.as_ref(), Part::Alpha)?;
+        let color = specular.specular_color_factor.unwrap_or([1.0; 3]);
+        material.specular_color = self.color(color, specular.specular_color_texture.as_ref())?;
         if let Some(anisotropy) = &extensions.anisotropy {
             let texture = anisotropy.anisotropy_texture.as_ref();
             let texture = texture.map(|info| self.image(info, Encoding::Linear));
@@ -152,21 +143,19 @@ impl Reader<'_, '_> {
 
     fn read_transmission(&mut self, material: &mut PrincipledMaterial) -> Result<(), GltfFault> {
         let extensions = &self.described.extensions;
-        if let Some(transmission) = &extensions.transmission {
-            let texture = transmission.transmission_texture.as_ref();
-            let factor = transmission.transmission_factor;
-            material.transmission = self.number(factor, texture, Part::Red)?;
-        }
-        if let Some(diffuse) = &extensions.diffuse_transmission {
-            let factor = diffuse.diffuse_transmission_factor;
-            let texture = diffuse.diffuse_transmission_texture.as_ref();
-            material.diffuse_transmission = self.number(factor, texture, Part::Alpha)?;
-            let color = diffuse
-                .diffuse_transmission_color_factor
-                .unwrap_or([1.0; 3]);
-            let texture = diffuse.diffuse_transmission_color_texture.as_ref();
-            material.diffuse_transmission_color = self.color(color, texture)?;
-        }
+        let transmission = &extensions.transmission;
+        let texture = transmission.transmission_texture.as_ref();
+        material.transmission =
+            self.number(transmission.transmission_factor, texture, Part::Red)?;
+        let diffuse = &extensions.diffuse_transmission;
+        let factor = diffuse.diffuse_transmission_factor;
+        let texture = diffuse.diffuse_transmission_texture.as_ref();
+        material.diffuse_transmission = self.number(factor, texture, Part::Alpha)?;
+        let color = diffuse
+            .diffuse_transmission_color_factor
+            .unwrap_or([1.0; 3]);
+        let texture = diffuse.diffuse_transmission_color_texture.as_ref();
+        material.diffuse_transmission_color = self.color(color, texture)?;
         if self.volume().is_some() {
             material.thickness = Thickness::Solid;
         }
@@ -175,14 +164,13 @@ impl Reader<'_, '_> {
 
     /// The volume of a material that is no thin wall.
     fn volume(&self) -> Option<&Volume> {
-        let volume = self.described.extensions.volume.as_ref();
-        volume.filter(|volume| volume.thickness_factor > 0.0)
+        let volume = &self.described.extensions.volume;
+        (volume.thickness_factor > 0.0).then_some(volume)
     }
 
     /// The index of refraction of a volume.
     pub(super) fn index(&self) -> f32 {
-        let ior = self.described.extensions.ior.as_ref();
-        let ior = ior.and_then(|ior| ior.ior).unwrap_or(1.5);
+        let ior = self.described.extensions.ior.ior.unwrap_or(1.5);
         if ior > 0.0 { ior } else { 1.0 }
     }
 
@@ -191,14 +179,12 @@ impl Reader<'_, '_> {
     #[expect(clippy::option_option, reason = "a volume may be clear")]
     pub(super) fn inside(&self) -> Result<Option<Option<Medium>>, GltfFault> {
         let extensions = &self.described.extensions;
-        let clear = extensions.transmission.as_ref();
-        let diffuse = extensions.diffuse_transmission.as_ref();
-        let is_open = clear.is_some_and(|part| part.transmission_factor > 0.0)
-            || diffuse.is_some_and(|part| part.diffuse_transmission_factor > 0.0);
+        let is_open = extensions.transmission.transmission_factor > 0.0
+            || extensions.diffuse_transmission.diffuse_transmission_factor > 0.0;
         let Some(volume) = self.volume().filter(|_| is_open) else {
             return Ok(None);
         };
-        let place = self.place.key("extensions").key("KHR_materials_volume");
+        let place = self.place.extension("KHR_materials_volume");
         let color = volume.attenuation_color.unwrap_or([1.0; 3]);
         if !color.iter().all(|channel| (0.0..=1.0).contains(channel)) {
             let message = format!("the colour {color:?} is not within 0 and 1");
@@ -226,23 +212,20 @@ impl Reader<'_, '_> {
     /// Reads coat and sheen.
     fn read_layers(&mut self, material: &mut PrincipledMaterial) -> Result<(), GltfFault> {
         let extensions = &self.described.extensions;
-        if let Some(coat) = &extensions.clearcoat {
-            let texture = coat.clearcoat_texture.as_ref();
-            material.coat = self.number(coat.clearcoat_factor, texture, Part::Red)?;
-            let factor = coat.clearcoat_roughness_factor;
-            let texture = coat.clearcoat_roughness_texture.as_ref();
-            material.coat_roughness = self.number(factor, texture, Part::Green)?;
-            if let Some(info) = &coat.clearcoat_normal_texture {
-                material.coat_normal = Some(self.normal_map(info)?);
-            }
-        }
-        if let Some(sheen) = &extensions.sheen {
-            let texture = sheen.sheen_color_texture.as_ref();
-            material.sheen = self.color(sheen.sheen_color_factor, texture)?;
-            let texture = sheen.sheen_roughness_texture.as_ref();
-            material.sheen_roughness =
-                self.number(sheen.sheen_roughness_factor, texture, Part::Alpha)?;
-        }
+        let coat = &extensions.clearcoat;
+        let texture = coat.clearcoat_texture.as_ref();
+        material.coat = self.number(coat.clearcoat_factor, texture, Part::Red)?;
+        let factor = coat.clearcoat_roughness_factor;
+        let texture = coat.clearcoat_roughness_texture.as_ref();
+        material.coat_roughness = self.number(factor, texture, Part::Green)?;
+        let normals = coat.clearcoat_normal_texture.as_ref();
+        material.coat_normal = normals.map(|info| self.normal_map(info)).transpose()?;
+        let sheen = &extensions.sheen;
+        let texture = sheen.sheen_color_texture.as_ref();
+        material.sheen = self.color(sheen.sheen_color_factor, texture)?;
+        let texture = sheen.sheen_roughness_texture.as_ref();
+        material.sheen_roughness =
+            self.number(sheen.sheen_roughness_factor, texture, Part::Alpha)?;
         Ok(())
     }
 
@@ -250,37 +233,27 @@ impl Reader<'_, '_> {
     fn warn_of_departures(&mut self) {
         let extensions = &self.described.extensions;
         let departures = [
+            (&extensions.unlit, "an unlit material is lit like any other"),
             (
-                extensions.unlit.is_some(),
-                "an unlit material is lit like any other",
-            ),
-            (
-                extensions.dispersion.is_some(),
+                &extensions.dispersion,
                 "dispersion has no effect: glass refracts all colours alike",
             ),
-            (
-                extensions.iridescence.is_some(),
-                "iridescence has no effect",
-            ),
+            (&extensions.iridescence, "iridescence has no effect"),
         ];
-        for (is_there, message) in departures {
-            if is_there {
+        for (extension, message) in departures {
+            if extension.is_some() {
                 self.context.warn(self.place.clone(), message);
             }
         }
     }
 
     pub(super) fn emission(&mut self) -> Result<Option<Emission>, GltfFault> {
-        let strength = self.described.extensions.emissive_strength.as_ref();
-        let strength = strength
-            .and_then(|strength| strength.emissive_strength)
-            .unwrap_or(1.0);
+        let strength = &self.described.extensions.emissive_strength;
+        let strength = strength.emissive_strength.unwrap_or(1.0);
         let factor = self.described.emissive_factor.unwrap_or_default();
         let radiance = factor.map(|channel| channel * strength);
-        if radiance
-            .iter()
-            .any(|channel| !channel.is_finite() || *channel < 0.0)
-        {
+        let is_radiance = |channel: &f32| channel.is_finite() && *channel >= 0.0;
+        if !radiance.iter().all(is_radiance) {
             let message = format!("the emission {radiance:?} is invalid");
             return Err(self.place.key("emissiveFactor").scene(message));
         }
@@ -318,10 +291,8 @@ impl Reader<'_, '_> {
                 cutoff: self.described.alpha_cutoff.unwrap_or(0.5),
             },
             Some(other) => {
-                let fault = self
-                    .place
-                    .key("alphaMode")
-                    .scene(format!("unknown alpha mode `{other}`"));
+                let place = self.place.key("alphaMode");
+                let fault = place.scene(format!("unknown alpha mode `{other}`"));
                 return Err(fault.with_nearest(other, ["OPAQUE", "MASK", "BLEND"]));
             }
         };

@@ -5,7 +5,6 @@ use crate::gltf::json::Node;
 use crate::gltf::node::from_parts;
 use crate::gltf::place::{GltfFault, Place};
 use glam::DAffine3;
-use std::collections::BTreeMap;
 
 /// Returns the maps of a node's skin from the mesh to the render space, by joint.
 pub(in crate::gltf) fn joints(
@@ -14,10 +13,7 @@ pub(in crate::gltf) fn joints(
     skin: usize,
     user: &Place,
 ) -> Result<Vec<DAffine3>, GltfFault> {
-    let Some(of_skin) = document.root.skins.get(skin) else {
-        let count = document.root.skins.len();
-        return Err(user.scene(format!("there is no skin {skin}: the file has {count}")));
-    };
+    let of_skin = user.find(&document.root.skins, skin, "skin")?;
     let place = Place::of("skins", skin);
     let inverse = match of_skin.inverse_bind_matrices {
         Some(index) => {
@@ -55,29 +51,24 @@ pub(in crate::gltf) fn places(
     let Some(instancing) = &node.extensions.instancing else {
         return Ok(vec![DAffine3::IDENTITY]);
     };
-    let place = place
-        .key("extensions")
-        .key("EXT_mesh_gpu_instancing")
-        .key("attributes");
-    let attributes: &BTreeMap<String, usize> = &instancing.attributes;
-    let find = |name: &str| attributes.get(name).map(|&index| (index, place.key(name)));
-    let translations =
-        find("TRANSLATION").map(|(index, place)| document.finite_vectors::<3>(index, &place));
+    let place = place.extension("EXT_mesh_gpu_instancing").key("attributes");
+    let find = |name: &str| Some((*instancing.attributes.get(name)?, place.key(name)));
+    let triples = |name| {
+        let found = find(name).map(|(index, place)| document.finite_vectors::<3>(index, &place));
+        found.transpose()
+    };
+    let (translations, scales) = (triples("TRANSLATION")?, triples("SCALE")?);
     let rotations =
         find("ROTATION").map(|(index, place)| document.finite_vectors::<4>(index, &place));
-    let scales = find("SCALE").map(|(index, place)| document.finite_vectors::<3>(index, &place));
-    let (translations, rotations, scales) = (
-        translations.transpose()?,
-        rotations.transpose()?,
-        scales.transpose()?,
-    );
+    let rotations = rotations.transpose()?;
     let counts = [
         translations.as_ref().map(Vec::len),
         rotations.as_ref().map(Vec::len),
         scales.as_ref().map(Vec::len),
     ];
-    let count = counts.into_iter().flatten().max().unwrap_or(1);
-    if counts.into_iter().flatten().any(|other| other != count) {
+    let mut counts = counts.into_iter().flatten();
+    let count = counts.next().unwrap_or(1);
+    if counts.any(|other| other != count) {
         return Err(place.scene("the attributes have different counts"));
     }
     let at = |i: usize| {
