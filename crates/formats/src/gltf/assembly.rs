@@ -9,7 +9,7 @@ use super::outside::{self, Extent};
 use super::place::{GltfFault, Place};
 use super::{SETTINGS, light, mesh, view};
 use crate::error::ErrorKind;
-use crate::import::{self, Gathered, Size, Skin, VertexError};
+use crate::import::{self, Destination, Gathered, Group, Size, Skin, VertexError};
 use crate::limits;
 use bidir::light::Light;
 use bidir::math::Affine3A;
@@ -100,12 +100,9 @@ impl<'a> Builder<'a> {
             let node = &document.root.nodes[index];
             let Some(mesh) = node.mesh else { continue };
             let place = Place::of("nodes", index);
-            let Some(described) = document.root.meshes.get(mesh) else {
-                let count = document.root.meshes.len();
-                return Err(place
-                    .key("mesh")
-                    .scene(format!("there is no mesh {mesh}: the file has {count}")));
-            };
+            let described = place
+                .key("mesh")
+                .find(&document.root.meshes, mesh, "mesh")?;
             let weights = node.weights.as_ref().unwrap_or(&described.weights);
             if let Some(skin) = node.skin {
                 self.add_skinned(context, (mesh, skin, &place), weights)?;
@@ -143,10 +140,8 @@ impl<'a> Builder<'a> {
         let whole = context.layout.render_from_world();
         let render_from_node = self.nodes.render_from_node[index].unwrap_or(whole);
         let local = mesh::places(self.document, &self.document.root.nodes[index], place)?;
-        let mut places: Vec<_> = local
-            .into_iter()
-            .map(|map| render_from_node * map)
-            .collect();
+        let places = local.into_iter().map(|map| render_from_node * map);
+        let mut places: Vec<_> = places.collect();
         let count = places.len();
         places.retain(|map| map.matrix3.determinant() != 0.0);
         if places.len() < count {
@@ -163,36 +158,38 @@ impl<'a> Builder<'a> {
         of_mesh: &MeshUse<'_>,
     ) -> Result<(), GltfFault> {
         let places = &of_mesh.places;
-        let mut object = None;
+        let mut group = Group::new(places);
         for (surface, material, place) in self.surfaces(context, mesh, of_mesh.weights)? {
             if let Some(first) = places.first() {
                 self.measure(context, &surface, first, &place);
             }
-            if places.len() > 1 && material.emission.is_none() {
-                let object = *object.get_or_insert_with(|| self.assembly.begin_object(context));
-                let user = (&material.uv, self.assembly.object_survey());
-                let shape = surface.place(&object.kept_from_own(), user, &place)?;
-                self.count(context, &shape, &place)?;
-                self.include(&shape, places.iter().map(|map| object.place_kept(map)));
-                let (shape, skin) = (Shape::Mesh(shape), material.skin(self.families));
-                self.assembly.add_to_object(object, shape, &skin, &place);
-                continue;
-            }
-            for (i, map) in places.iter().enumerate() {
-                let user = (&material.uv, &mut self.assembly.survey);
-                let shape = surface.place(map, user, &place)?;
-                let skin = material.skin(self.families + i);
-                self.add_to_world(context, (shape, material.emission.clone()), &skin, &place)?;
+            let destination = match material.emission {
+                Some(_) => group.copied(),
+                None => self.assembly.shared(context, &mut group),
+            };
+            match destination {
+                Destination::World(copies) => {
+                    for (i, map) in copies.iter().enumerate() {
+                        let user = (&material.uv, &mut self.assembly.survey);
+                        let shape = surface.place(map, user, &place)?;
+                        let skin = material.skin(self.families + i);
+                        let emission = material.emission.clone();
+                        self.add_to_world(context, (shape, emission), &skin, &place)?;
+                    }
+                }
+                Destination::Object(object) => {
+                    let user = (&material.uv, self.assembly.object_survey());
+                    let shape = surface.place(&object.kept_from_own(), user, &place)?;
+                    self.count(context, &shape, &place)?;
+                    self.include(&shape, places.iter().map(|map| object.place_kept(map)));
+                    let (shape, skin) = (Shape::Mesh(shape), material.skin(self.families));
+                    self.assembly.add_to_object(object, shape, &skin, &place);
+                }
             }
         }
         self.families += places.len();
-        let Some(object) = object else {
-            return Ok(());
-        };
-        self.assembly.summary.instances += places.len();
-        for map in places {
-            self.assembly.add_instance(object, map, &of_mesh.node);
-        }
+        let name = |_| of_mesh.node.clone();
+        self.assembly.summary.instances += self.assembly.add_instances(context, &group, name)?;
         Ok(())
     }
 

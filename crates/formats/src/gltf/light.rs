@@ -5,6 +5,7 @@ use super::document::Context;
 use super::json::Light as Described;
 use super::node::Nodes;
 use super::place::{GltfFault, Place};
+use crate::import::check_point;
 use bidir::light::{DistantLight, Light, PointLight, SpotLight};
 use bidir::math::Vec3;
 use glam::{DAffine3, DVec3};
@@ -21,9 +22,7 @@ pub(super) fn all(
         let Some(light) = node.extensions.light.as_ref().and_then(|light| light.light) else {
             continue;
         };
-        let place = Place::of("nodes", index)
-            .key("extensions")
-            .key("KHR_lights_punctual");
+        let place = Place::of("nodes", index).extension("KHR_lights_punctual");
         let render_from_node = nodes.render_from_node[index].unwrap_or(DAffine3::IDENTITY);
         let light = build(context, (light, &place), &render_from_node)?;
         lights.push((place, light));
@@ -37,11 +36,10 @@ fn build(
     render_from_node: &DAffine3,
 ) -> Result<Light, GltfFault> {
     let all = context.document.root.extensions.lights.as_ref();
-    let described = all.and_then(|all| all.lights.get(index));
-    let described = described.ok_or_else(|| user.scene(format!("there is no light {index}")))?;
+    let all = all.map_or(&[][..], |all| &all.lights);
+    let described = user.find(all, index, "light")?;
     let place = Place::TOP
-        .key("extensions")
-        .key("KHR_lights_punctual")
+        .extension("KHR_lights_punctual")
         .key("lights")
         .index(index);
     let power = power(described, &place)?;
@@ -55,9 +53,7 @@ fn build(
     let position = render_from_node.translation.as_vec3();
     let ahead = render_from_node.transform_vector3(DVec3::NEG_Z);
     let axis = ahead.normalize_or(DVec3::NEG_Z).as_vec3();
-    if !position.is_finite() || position.abs().max_element() > 1e12 {
-        return Err(user.scene("the light is too far away"));
-    }
+    check_point(render_from_node.translation, user)?;
     match described.kind.as_str() {
         "directional" => Ok(Light::Distant(DistantLight {
             to_light: -axis,

@@ -2,18 +2,18 @@
 
 use super::container::Resource;
 use super::document::{Context, Document};
-use super::json::{self, ImageExtensions, Sampler, TextureInfo};
+use super::json::{self, Sampler, TextureInfo};
 use super::mesh::UvMap;
 use super::place::{GltfFault, Place};
 use crate::error::ErrorKind;
 use crate::image::{self, Encoding, Format, ImageData};
-use crate::import::Content;
+use crate::import::{Content, Images};
 use crate::text::printable;
 use bidir::math::sin_cos;
 use bidir::texture::{
     self, Beyond, ColorTexture, FloatTexture, Image, ImageFilter, ImageMap, Wrap,
 };
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 /// A channel of an image.
@@ -29,8 +29,6 @@ pub(super) enum Part {
 /// A change of the numbers of an image.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Change {
-    /// No change.
-    Keep,
     /// A factor.
     Scale(f32),
     /// A threshold: 1 if the number times `factor` is at least `cutoff`, else 0.
@@ -40,7 +38,6 @@ pub(super) enum Change {
 impl Change {
     pub(super) fn apply(self, value: f32) -> f32 {
         match self {
-            Self::Keep => value,
             Self::Scale(factor) => factor * value,
             Self::Cut { factor, cutoff } => f32::from(factor * value >= cutoff),
         }
@@ -50,8 +47,14 @@ impl Change {
 /// The decoded images of a file.
 #[derive(Default)]
 pub(super) struct Textures {
-    colors: BTreeMap<(usize, bool), Arc<Image<3>>>,
-    numbers: BTreeMap<(usize, String), Arc<Image<1>>>,
+    colors: Images<(usize, bool), 3>,
+    numbers: Images<(usize, String), 1>,
+    decoder: Decoder,
+}
+
+/// Decodes images.
+#[derive(Default)]
+struct Decoder {
     /// The last decoded image, as its channels are often requested in sequence.
     last: Option<((usize, bool), ImageData)>,
     /// Images that the log has.
@@ -94,17 +97,15 @@ impl Textures {
         lookup: Lookup<'_>,
         encoding: Encoding,
     ) -> Result<ColorTexture, GltfFault> {
-        let (source, sampler) = source(context.document, lookup)?;
+        let texture = Found::of(context.document, lookup)?;
+        let source = texture.source;
         let key = (source, encoding == Encoding::Srgb);
-        if !self.colors.contains_key(&key) {
-            let data = self.decode(context, source, encoding)?;
-            let image = Image::new(data.width, data.rgb().collect());
-            let image =
-                image.ok_or_else(|| Place::of("images", source).scene("it has no pixels"))?;
-            self.colors.insert(key, Arc::new(image));
-        }
-        let image = Arc::clone(&self.colors[&key]);
-        let map = map(context, image, &sampler, lookup)?;
+        let filter = (texture.filter(), &Place::of("images", source));
+        let image = self.colors.get(key, filter, || {
+            let data = self.decoder.decode(context, source, encoding)?;
+            Ok((data.width, data.rgb().collect()))
+        })?;
+        let map = texture.map(context, image, lookup)?;
         Ok(ColorTexture::Image(Arc::new(map)))
     }
 
@@ -115,21 +116,21 @@ impl Textures {
         lookup: Lookup<'_>,
         (part, change): (Part, Change),
     ) -> Result<FloatTexture, GltfFault> {
-        let (source, sampler) = source(context.document, lookup)?;
+        let texture = Found::of(context.document, lookup)?;
+        let source = texture.source;
         let key = (source, format!("{part:?} {change:?}"));
-        if !self.numbers.contains_key(&key) {
-            let data = self.decode(context, source, Encoding::Linear)?;
+        let filter = (texture.filter(), &Place::of("images", source));
+        let image = self.numbers.get(key, filter, || {
+            let data = self.decoder.decode(context, source, Encoding::Linear)?;
             let numbers = channel(data, part).map(|value| [change.apply(value)]);
-            let image = Image::new(data.width, numbers.collect());
-            let image =
-                image.ok_or_else(|| Place::of("images", source).scene("it has no pixels"))?;
-            self.numbers.insert(key.clone(), Arc::new(image));
-        }
-        let image = Arc::clone(&self.numbers[&key]);
-        let map = map(context, image, &sampler, lookup)?;
+            Ok((data.width, numbers.collect()))
+        })?;
+        let map = texture.map(context, image, lookup)?;
         Ok(FloatTexture::Image(Arc::new(map)))
     }
+}
 
+impl Decoder {
     fn decode(
         &mut self,
         context: &mut Context<'_>,
@@ -146,7 +147,7 @@ impl Textures {
             }
             let format = format_of(&bytes, &context.document.root.images[source], &place)?;
             let data = image::decode_stored(format, &bytes, encoding);
-            let data = data.and_then(|data| context.log.image(data));
+            let data = data.and_then(|data| context.log.reading.image(data));
             let data = data.map_err(|error| GltfFault::from_error(place, &error))?;
             self.last = Some((key, data));
         }
@@ -167,47 +168,76 @@ fn channel(data: &ImageData, part: Part) -> impl Iterator<Item = f32> + '_ {
         })
 }
 
-/// Returns the image and the sampler of a texture.
-fn source(document: &Document, lookup: Lookup<'_>) -> Result<(usize, Sampler), GltfFault> {
-    let root = &document.root;
-    let index = lookup.info.index;
-    let texture = root.textures.get(index).ok_or_else(|| {
-        let count = root.textures.len();
-        lookup
-            .place
-            .scene(format!("there is no texture {index}: the file has {count}"))
-    })?;
-    let place = Place::of("textures", index);
-    let webp = texture.extensions.webp.as_ref();
-    let source = texture.source.or(webp.and_then(|webp| webp.source));
-    let source = source.ok_or_else(|| {
-        let found = match &texture.extensions {
-            ImageExtensions {
-                basisu: Some(_), ..
-            } => "its only image is a KTX2 file",
-            ImageExtensions { avif: Some(_), .. } => "its only image is an AVIF file",
-            ImageExtensions { dds: Some(_), .. } => "its only image is a DDS file",
-            _ => "it has no image",
+/// The parts of a texture: the number of its image, and its sampler.
+struct Found<'a> {
+    source: usize,
+    sampler: Option<&'a Sampler>,
+}
+
+impl<'a> Found<'a> {
+    fn of(document: &'a Document, lookup: Lookup<'_>) -> Result<Self, GltfFault> {
+        let root = &document.root;
+        let index = lookup.info.index;
+        let texture = lookup.place.find(&root.textures, index, "texture")?;
+        let place = Place::of("textures", index);
+        let extensions = &texture.extensions;
+        let webp = extensions.webp.as_ref().and_then(|webp| webp.source);
+        let Some(source) = texture.source.or(webp) else {
+            let others = [
+                (&extensions.basisu, "its only image is a KTX2 file"),
+                (&extensions.avif, "its only image is an AVIF file"),
+                (&extensions.dds, "its only image is a DDS file"),
+            ];
+            let found = others.iter().find(|(other, _)| other.is_some());
+            let found = found.map_or("it has no image", |(_, found)| *found);
+            let fault = place.fault(ErrorKind::Unsupported, found);
+            return Err(fault.with_hint(IMAGES_TO_EXPORT));
         };
-        let fault = place.fault(ErrorKind::Unsupported, found);
-        fault.with_hint(IMAGES_TO_EXPORT)
-    })?;
-    if source >= root.images.len() {
-        let count = root.images.len();
-        return Err(place
-            .key("source")
-            .scene(format!("there is no image {source}: the file has {count}")));
+        place.key("source").find(&root.images, source, "image")?;
+        let sampler = texture.sampler.map(|sampler| {
+            place
+                .key("sampler")
+                .find(&root.samplers, sampler, "sampler")
+        });
+        Ok(Self {
+            source,
+            sampler: sampler.transpose()?,
+        })
     }
-    let Some(sampler) = texture.sampler else {
-        return Ok((source, Sampler::default()));
-    };
-    let known = root.samplers.get(sampler).ok_or_else(|| {
-        let count = root.samplers.len();
-        place.key("sampler").scene(format!(
-            "there is no sampler {sampler}: the file has {count}"
-        ))
-    })?;
-    Ok((source, known.clone()))
+
+    fn filter(&self) -> ImageFilter {
+        match self.sampler.and_then(|sampler| sampler.mag_filter) {
+            Some(9728) => ImageFilter::Point,
+            _ => ImageFilter::Bilinear,
+        }
+    }
+
+    /// Returns the texture of an image on the parameters of the mesh.
+    fn map<const N: usize>(
+        &self,
+        context: &mut Context<'_>,
+        image: Arc<Image<N>>,
+        lookup: Lookup<'_>,
+    ) -> Result<ImageMap<N>, GltfFault> {
+        let place = lookup.place;
+        let beyond = |wrap: fn(&Sampler) -> Option<u32>| beyond(self.sampler.and_then(wrap), place);
+        let wrap = Wrap::Axes([
+            beyond(|sampler| sampler.wrap_s)?,
+            beyond(|sampler| sampler.wrap_t)?,
+        ]);
+        let requested = uv_map(lookup.info);
+        if requested.set != lookup.baked.set {
+            let what = "a material with textures of several sets of coordinates";
+            context.unsupported(place.clone(), what, "one set is used for all")?;
+        }
+        Ok(ImageMap {
+            image,
+            wrap,
+            filter: self.filter(),
+            change: texture::Change::Scale(1.0),
+            mapping: requested.beyond(&lookup.baked),
+        })
+    }
 }
 
 /// Reads the bytes of an image.
@@ -249,36 +279,6 @@ fn format_of(bytes: &[u8], described: &json::Image, place: &Place) -> Result<For
 /// The hint for images in other formats.
 pub(super) const IMAGES_TO_EXPORT: &str =
     "export its images as png, jpg or webp; `ktx extract` makes png of KTX2";
-
-/// Returns an image texture on the parameters of the mesh.
-fn map<const N: usize>(
-    context: &mut Context<'_>,
-    image: Arc<Image<N>>,
-    sampler: &Sampler,
-    lookup: Lookup<'_>,
-) -> Result<ImageMap<N>, GltfFault> {
-    let place = lookup.place;
-    let filter = match sampler.mag_filter {
-        Some(9728) => ImageFilter::Point,
-        _ => ImageFilter::Bilinear,
-    };
-    let wrap = Wrap::Axes([
-        beyond(sampler.wrap_s, place)?,
-        beyond(sampler.wrap_t, place)?,
-    ]);
-    let requested = uv_map(lookup.info);
-    if requested.set != lookup.baked.set {
-        let what = "a material with textures of several sets of coordinates";
-        context.unsupported(place.clone(), what, "one set is used for all")?;
-    }
-    Ok(ImageMap {
-        image,
-        wrap,
-        filter,
-        change: texture::Change::Scale(1.0),
-        mapping: requested.beyond(&lookup.baked),
-    })
-}
 
 /// Returns the wrapping of a sampler in one coordinate.
 fn beyond(wrap: Option<u32>, place: &Place) -> Result<Beyond, GltfFault> {

@@ -1,7 +1,9 @@
 //! A scene in the making: shapes and lights, each with its place in the file.
 
 use super::lamp::{self, Placed};
+use super::placing::check_point;
 use super::precision::{self, VertexErrors};
+use super::space::box_corners;
 use super::volumes::{Content, Space, Volumes};
 use super::{Context, Document, Layout, SceneSettings, Summary, Survey, VertexError};
 use crate::error::ErrorKind;
@@ -75,6 +77,44 @@ impl SharedObject {
     }
 }
 
+/// The destination of a shape.
+#[derive(Clone, Copy)]
+pub(crate) enum Destination<'a> {
+    /// The space that is rendered in, once for each of these places of its own space.
+    World(&'a [DAffine3]),
+    /// An object that is shared.
+    Object(SharedObject),
+}
+
+impl Destination<'_> {
+    /// Returns the number of shapes that are kept.
+    pub(crate) fn copies(&self) -> u64 {
+        match self {
+            Self::World(places) => places.len() as u64,
+            Self::Object(_) => 1,
+        }
+    }
+}
+
+/// The places of several shapes. Where there are several, shapes are kept once, as an object that is shared, but for
+/// those that emit: these are lights of the world.
+pub(crate) struct Group<'a> {
+    places: &'a [DAffine3],
+    shared: Option<SharedObject>,
+}
+
+impl<'a> Group<'a> {
+    pub(crate) fn new(places: &'a [DAffine3]) -> Self {
+        let shared = None;
+        Self { places, shared }
+    }
+
+    /// Returns the destination of a shape that emits.
+    pub(crate) fn copied(&self) -> Destination<'a> {
+        Destination::World(self.places)
+    }
+}
+
 /// The kind of a shape's surface.
 #[derive(Clone, Copy)]
 pub(crate) struct Skin<'a> {
@@ -116,7 +156,7 @@ impl<P: Clone> Assembly<P> {
             settings,
             survey: Survey::new(eye),
             objects: Vec::new(),
-            vertex_errors: VertexErrors::default(),
+            vertex_errors: VertexErrors::NONE,
             vertices: 0,
             shapes: Vec::new(),
             instances: Vec::new(),
@@ -186,11 +226,24 @@ impl<P: Clone> Assembly<P> {
     }
 
     /// Begins an object that instances share.
-    pub(crate) fn begin_object<D: Document>(&mut self, context: &Context<'_, D>) -> SharedObject {
+    fn begin_object<D: Document>(&mut self, context: &Context<'_, D>) -> SharedObject {
         let origin = context.layout.object_origin(self.objects.len());
         self.objects.push(Survey::new(None));
         let id = self.builder.object();
         SharedObject { id, origin }
+    }
+
+    /// Returns the destination of the next shape of the last group, which does not emit.
+    pub(crate) fn shared<'a, D: Document>(
+        &mut self,
+        context: &Context<'_, D>,
+        group: &mut Group<'a>,
+    ) -> Destination<'a> {
+        if group.places.len() < 2 {
+            return group.copied();
+        }
+        let begin = || self.begin_object(context);
+        Destination::Object(*group.shared.get_or_insert_with(begin))
     }
 
     /// The survey of the last object.
@@ -214,14 +267,31 @@ impl<P: Clone> Assembly<P> {
         self.note_shape(number, (skin, Some(object)), place);
     }
 
-    /// Adds an instance of the last object, whose own space `map` takes to where it is rendered.
-    pub(crate) fn add_instance(&mut self, object: SharedObject, map: &DAffine3, place: &P) {
-        let map = object.place_kept(map);
-        if let Some(corners) = self.object_survey().corners() {
-            self.survey.include_box(corners, &map);
+    /// Adds the instances of the last group, and returns their number; `name` returns the place in the file of each. Errors:
+    /// one reaches too far.
+    pub(crate) fn add_instances<D: Document>(
+        &mut self,
+        context: &Context<'_, D>,
+        group: &Group<'_>,
+        name: impl Fn(usize) -> P,
+    ) -> Result<usize, Fault<P>> {
+        let Some(object) = group.shared else {
+            return Ok(0);
+        };
+        let world_from_render = context.layout.render_from_world().inverse();
+        for (i, map) in group.places.iter().enumerate() {
+            let (place, map) = (name(i), object.place_kept(map));
+            if let Some(corners) = self.object_survey().corners() {
+                let world_from_kept = world_from_render * map;
+                for corner in box_corners(corners) {
+                    check_point(world_from_kept.transform_point3(corner), &place)?;
+                }
+                self.survey.include_box(corners, &map);
+            }
+            self.builder.instance(object.id, map);
+            self.instances.push(place);
         }
-        self.builder.instance(object.id, map);
-        self.instances.push(place.clone());
+        Ok(group.places.len())
     }
 
     /// Adds a light that is no shape.

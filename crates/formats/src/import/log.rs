@@ -6,7 +6,6 @@ use super::reading::Reading;
 use crate::bytes::FileBytes;
 use crate::error::{ErrorKind, Result};
 use crate::files::Files;
-use crate::image::ImageData;
 use crate::limits::{FURTHER_WARNINGS, MOST_WARNINGS};
 use crate::source::{Fault, Span};
 use std::collections::BTreeSet;
@@ -39,38 +38,25 @@ pub(crate) fn warn<P>(warnings: &mut Vec<Warning<P>>, place: P, message: impl In
     }
 }
 
-/// The answer to a feature that is not supported.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Strictness {
-    /// A substitute, with a warning.
-    Lenient,
-    /// An error.
-    Strict,
-}
-
 /// Warnings with their places `P`, and the files that were read.
 #[derive(Clone)]
 pub(crate) struct Log<P> {
-    strictness: Strictness,
+    /// True where a substitute takes the place of what is not supported, with a warning.
+    pub(super) lenient: bool,
     pub(crate) warnings: Vec<Warning<P>>,
     /// The messages of those warnings that name a substitute.
     pub(super) substitutes: BTreeSet<String>,
     pub(super) digest: DigestBuilder,
     /// The names of the files that were read.
     pub(super) files: Vec<PathBuf>,
-    reading: Reading,
+    pub(crate) reading: Reading,
 }
 
 impl<P> Log<P> {
     /// The log of a scene whose `texts` take `stored` bytes on the disk.
     pub(crate) fn new(options: &LoadOptions, texts: Vec<PathBuf>, stored: u64) -> Self {
-        let strictness = if options.lenient {
-            Strictness::Lenient
-        } else {
-            Strictness::Strict
-        };
         Self {
-            strictness,
+            lenient: options.lenient,
             warnings: Vec::new(),
             substitutes: BTreeSet::new(),
             digest: DigestBuilder::new(),
@@ -89,7 +75,7 @@ impl<P> Log<P> {
         feature: &str,
         substitute: &str,
     ) -> Result<(), Fault<P>> {
-        if self.strictness == Strictness::Lenient {
+        if self.lenient {
             let message = format!("{feature} is not supported: {substitute}");
             self.substitutes.insert(message.clone());
             self.warn(place, message);
@@ -98,10 +84,6 @@ impl<P> Log<P> {
         let message = format!("{feature} is not supported");
         let fault = Fault::new(ErrorKind::Unsupported, place, message);
         Err(fault.with_hint(format!("with --lenient, {substitute}")))
-    }
-
-    pub(super) fn set_strictness(&mut self, strictness: Strictness) -> Strictness {
-        std::mem::replace(&mut self.strictness, strictness)
     }
 
     /// Bytes that all files take on the disk, each once.
@@ -116,16 +98,6 @@ impl<P> Log<P> {
         let counted = self.reading.file(files.identity(path), stored, length);
         counted.map_err(|error| error.in_file(path))?;
         Ok(bytes)
-    }
-
-    /// Counts an image. Errors: all images are too large for their files.
-    pub(crate) fn image(&mut self, image: ImageData) -> Result<ImageData> {
-        self.reading.image(image)
-    }
-
-    /// Counts the cells of a grid, before they are read. Errors: all grids are too large for their files.
-    pub(crate) fn cells(&mut self, count: u64) -> Result<()> {
-        self.reading.cells(count)
     }
 
     /// Adds bytes of the scene, and the names of the file that they are of.

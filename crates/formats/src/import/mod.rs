@@ -4,27 +4,34 @@
 //! hands a function to [`load`] that puts all of the document into an [`Assembly`], by means of a
 //! [`Context`]: the options, the [`Layout`] and the [`Log`] of warnings and files.
 //!
+//! What every format needs is here: [`Images`] are decoded once for each use, `placing` puts vertices in their place in
+//! `f64`, and a [`Group`] of places shares its shapes, but for copies of those that emit.
+//!
 //! A feature that the format has and the renderer lacks is refused where it stands. With
 //! [`LoadOptions::lenient`] a substitute takes its place, and a warning names it.
 
 mod assembly;
 mod digest;
 mod enclosure;
+mod images;
 mod lamp;
 mod log;
 mod options;
+mod placing;
 mod precision;
 mod reading;
 mod space;
 mod volumes;
 
-pub(crate) use assembly::{Assembly, SharedObject, Size, Skin};
+pub(crate) use assembly::{Assembly, Destination, Group, Size, Skin};
 pub(crate) use digest::Content;
 pub use digest::SceneDigest;
+pub(crate) use images::{Images, image, replace_invalid};
 pub use lamp::Lamp;
 pub use log::Warning;
 pub(crate) use log::{Log, warn};
 pub use options::{Crop, LoadOptions};
+pub(crate) use placing::{check_point, mirrored, place_vertices, unit, vector};
 pub(crate) use precision::VertexError;
 pub(crate) use space::{Layout, Survey, box_corners};
 pub(crate) use volumes::Content as VolumeContent;
@@ -41,7 +48,6 @@ use bidir::integrator::IntegratorKind;
 use bidir::sampler::SamplerKind;
 use bidir::scene::Scene;
 use bidir::view::View;
-use log::Strictness;
 use std::collections::BTreeSet;
 use std::path::PathBuf;
 
@@ -178,9 +184,9 @@ impl<D: Document> Context<'_, D> {
         &mut self,
         build: impl FnOnce(&mut Self) -> Result<T, Fault<D::Place>>,
     ) -> Result<Option<T>, Fault<D::Place>> {
-        let strictness = self.log.set_strictness(Strictness::Strict);
+        let lenient = std::mem::replace(&mut self.log.lenient, false);
         let built = build(self);
-        self.log.set_strictness(strictness);
+        self.log.lenient = lenient;
         match built {
             Err(fault) if fault.kind == ErrorKind::Unsupported => Ok(None),
             built => built.map(Some),

@@ -58,17 +58,13 @@ pub(crate) struct VertexErrors<P> {
     longest: Option<(P, VertexError)>,
 }
 
-impl<P> Default for VertexErrors<P> {
-    fn default() -> Self {
-        Self {
-            count: 0,
-            worst: None,
-            longest: None,
-        }
-    }
-}
-
 impl<P: Clone> VertexErrors<P> {
+    pub(crate) const NONE: Self = Self {
+        count: 0,
+        worst: None,
+        longest: None,
+    };
+
     pub(crate) fn add(&mut self, place: &P, error: Option<VertexError>) {
         let Some(error) = error else { return };
         self.count += 1;
@@ -143,7 +139,7 @@ mod tests {
         let scaled = DMat3::from_diagonal(DVec3::new(1.0, 4.0, 2.0));
         let error = VertexError::of(&quad(1e6), &scaled).unwrap();
         assert_eq!((error.part, error.distance), (0.03125, 0.125));
-        let mut errors = VertexErrors::default();
+        let mut errors = VertexErrors::NONE;
         errors.add(&1, Some(error));
         errors.add(&2, VertexError::of(&quad(4e6), &DMat3::IDENTITY));
         let (place, message) = errors.warning().unwrap();
@@ -157,7 +153,7 @@ mod tests {
 
     #[test]
     fn a_scene_with_large_errors_is_refused() {
-        let mut errors = VertexErrors::default();
+        let mut errors = VertexErrors::NONE;
         errors.add(&1, VertexError::of(&quad(1e7), &DMat3::IDENTITY));
         assert_eq!(errors.refusal(4.0), None);
         let (place, message) = errors.refusal(1.0).unwrap();

@@ -7,7 +7,7 @@ use std::collections::BTreeSet;
 use std::path::PathBuf;
 
 /// The size of the files of a scene, and the amounts that were read from them.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Reading {
     /// The size of all files on the disk, each counted once. Unit: bytes.
     stored: u64,
@@ -26,10 +26,7 @@ impl Reading {
     pub(crate) fn new(stored: u64) -> Self {
         Self {
             stored,
-            files: BTreeSet::new(),
-            again: 0,
-            numbers: 0,
-            cells: 0,
+            ..Self::default()
         }
     }
 

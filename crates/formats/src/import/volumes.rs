@@ -2,11 +2,11 @@
 //! out are turned.
 
 use super::enclosure::{self, Findings};
-use super::{Context, Document};
+use super::{Context, Document, placing};
 use bidir::math::Vec3;
 use bidir::medium::MediumSides;
 use bidir::scene::{MaterialId, SceneBuilder, Volume};
-use bidir::shape::{Mesh, Orientation, Shape};
+use bidir::shape::{Mesh, Shape};
 use std::collections::BTreeMap;
 
 const INSIDE_OUT: &str = "a mesh with a volume is inside out: it is turned";
@@ -222,10 +222,7 @@ impl<D: Document> Settling<'_, '_, '_, D> {
         }
         for &shape in &draft.shapes {
             if let Shape::Mesh(mesh) = self.builder.shape_mut(shape) {
-                mesh.orientation = match mesh.orientation {
-                    Orientation::Natural => Orientation::Reversed,
-                    Orientation::Reversed => Orientation::Natural,
-                };
+                mesh.orientation = placing::opposite(mesh.orientation);
                 if mesh.normals.is_empty() {
                     self.context.warn(self.places[shape].clone(), INSIDE_OUT);
                 }

@@ -1,15 +1,10 @@
 //! Places surfaces in the world, rigidly or by their joints.
 
 use super::{Surface, UvMap};
-use crate::error::ErrorKind;
 use crate::gltf::place::{GltfFault, Place};
-use crate::import::Survey;
-use bidir::math::Vec3;
+use crate::import::{Survey, mirrored, place_vertices, unit, vector};
 use bidir::shape::{Mesh, Orientation};
 use glam::{DAffine3, DVec3};
-
-/// Maximum distance from the origin, below which squared distances stay finite.
-const FARTHEST: f64 = 1e12;
 
 impl Surface {
     /// Returns the mesh placed by `world_from_mesh`, and adds it to `survey`. Errors: it extends too far.
@@ -25,12 +20,7 @@ impl Surface {
         let normals = self.normals.iter().map(|&n| normal_matrix * vector(n));
         let tangents = self.tangents.iter();
         let tangents = tangents.map(|&t| world_from_mesh.transform_vector3(vector(t)));
-        let is_mirrored = world_from_mesh.matrix3.determinant() < 0.0;
-        let orientation = if is_mirrored {
-            Orientation::Reversed
-        } else {
-            Orientation::Natural
-        };
+        let orientation = mirrored(Orientation::Natural, world_from_mesh);
         let vertices = (positions, normals, tangents);
         self.mesh(vertices, (orientation, uv, survey), place)
     }
@@ -71,19 +61,9 @@ impl Surface {
         (orientation, uv, survey): (Orientation, &UvMap, &mut Survey),
         place: &Place,
     ) -> Result<Mesh, GltfFault> {
-        let mut placed = Vec::with_capacity(self.positions.len());
-        for position in positions {
-            let is_near = position.abs().max_element() <= FARTHEST;
-            if !is_near {
-                let message = format!("a coordinate is beyond {FARTHEST:e}");
-                return Err(place.fault(ErrorKind::Limit, message));
-            }
-            survey.include(position);
-            placed.push(position.as_vec3());
-        }
         let uvs = self.uvs[uv.set.min(1)].iter();
         Ok(Mesh {
-            positions: placed,
+            positions: place_vertices(positions, survey, place)?,
             normals: normals.map(unit).collect(),
             tangents: tangents.map(unit).collect(),
             uvs: uvs.map(|&at| uv.apply(at)).collect(),
@@ -91,14 +71,6 @@ impl Surface {
             orientation,
         })
     }
-}
-
-fn vector(v: [f32; 3]) -> DVec3 {
-    DVec3::from(v.map(f64::from))
-}
-
-fn unit(v: DVec3) -> Vec3 {
-    v.normalize_or_zero().as_vec3()
 }
 
 /// Returns the map of normals up to scale: the matrix of cofactors, which exists for singular maps too.

@@ -2,7 +2,6 @@
 
 use super::context::Context;
 use super::reader::Reader;
-use crate::pbrt::lexer::shorten;
 use crate::pbrt::parameters::ParameterType;
 use crate::pbrt::transform::Transforms;
 use crate::source::{Fault, SourceMap, Span};
@@ -69,7 +68,11 @@ pub(super) fn read(context: &mut Context<'_>) -> Result<CameraSettings, Fault> {
         },
         "orthographic" => View::Orthographic(Screen::read(&mut reader)?),
         "spherical" => {
-            let mapping = mapping(&mut reader)?;
+            let mappings = [
+                ("equalarea", SphericalMapping::EqualArea),
+                ("equirectangular", SphericalMapping::Equirectangular),
+            ];
+            let mapping = reader.choice("mapping", "mapping", &mappings)?;
             // The format allows a screen, which has no effect.
             Screen::read(&mut reader)?;
             View::Spherical(mapping)
@@ -95,19 +98,7 @@ fn exposure_time(reader: &mut Reader<'_, '_>) -> Result<f32, Fault> {
     if close > open {
         return Ok(close - open);
     }
-    let message = "the shutter closes before it opens";
-    Err(Fault::scene(reader.span(), message))
-}
-
-fn mapping(reader: &mut Reader<'_, '_>) -> Result<SphericalMapping, Fault> {
-    match reader.string("mapping")? {
-        None | Some(("equalarea", _)) => Ok(SphericalMapping::EqualArea),
-        Some(("equirectangular", _)) => Ok(SphericalMapping::Equirectangular),
-        Some((name, span)) => {
-            let fault = Fault::scene(span, format!("unknown mapping `{}`", shorten(name)));
-            Err(fault.with_nearest(name, ["equalarea", "equirectangular"]))
-        }
-    }
+    Err(reader.fault("the shutter closes before it opens"))
 }
 
 impl Screen {

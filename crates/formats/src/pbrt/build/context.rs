@@ -58,8 +58,8 @@ impl Context<'_> {
     /// Reads a mesh, which `span` names.
     pub(super) fn read_mesh(&mut self, path: &Path, span: Span) -> Result<PlyMesh, Fault> {
         let bytes = self.read(path, limits::LARGEST_MESH, Content::Mesh, span)?;
-        let parsed = ply::parse(&bytes).map_err(|error| error.in_file(path));
-        parsed.map_err(|error| Fault::from_error(span, &error))
+        let parsed = ply::parse(&bytes);
+        parsed.map_err(|error| Fault::from_error(span, &error.in_file(path)))
     }
 
     /// Reads an image, which `span` names.
@@ -71,21 +71,17 @@ impl Context<'_> {
     ) -> Result<ImageData, Fault> {
         let bytes = self.read(path, limits::LARGEST_IMAGE, Content::Image, span)?;
         let decoded = image::decode_file(path, &bytes, encoding);
-        let counted =
-            decoded.and_then(|image| self.log.image(image).map_err(|error| error.in_file(path)));
-        counted.map_err(|error| Fault::from_error(span, &error))
+        let counted = decoded.and_then(|image| self.log.reading.image(image));
+        counted.map_err(|error| Fault::from_error(span, &error.in_file(path)))
     }
 
     /// Reads a spectrum, which `span` names.
     pub(super) fn read_spectrum(&mut self, path: &Path, span: Span) -> Result<Spectrum, Fault> {
         let bytes = self.read(path, limits::LARGEST_SPECTRUM, Content::Spectrum, span)?;
-        let refuse = |message: String| {
-            let message = format!("{}: {message}", path.display());
-            Fault::scene(span, message)
-        };
         // Comments may be in any encoding.
         let text = String::from_utf8_lossy(&bytes);
-        Spectrum::parse(&text).map_err(|error| refuse(error.to_string()))
+        let refuse = |error| Fault::scene(span, format!("{}: {error}", path.display()));
+        Spectrum::parse(&text).map_err(refuse)
     }
 
     /// Reads the bytes of a NanoVDB file, which `span` names.

@@ -51,8 +51,7 @@ impl AreaEmission {
         };
         let pattern = pattern(&mut reader)?;
         if radiance.is_some() && pattern.is_some() {
-            let message = "an area light has `L` or `filename`, not both";
-            return Err(Fault::scene(reader.span(), message));
+            return Err(reader.fault("an area light has `L` or `filename`, not both"));
         }
         let group = group::read(&mut reader)?;
         reader.finish()?;

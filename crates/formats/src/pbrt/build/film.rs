@@ -6,7 +6,6 @@ use super::filter;
 use super::reader::Reader;
 use super::sensor;
 use crate::import::Crop;
-use crate::pbrt::lexer::shorten;
 use crate::pbrt::parameters::{ParameterList, ParameterType, Values};
 use crate::pbrt::scene::{ColorSpace, Entity, FilmDescription};
 use crate::source::{Fault, SourceMap, Span};
@@ -132,18 +131,12 @@ fn film_kind(reader: &mut Reader<'_, '_>, film: &Entity) -> Result<Vec<Aov>, Fau
     match film.kind.as_str() {
         "rgb" => Ok(Vec::new()),
         "gbuffer" => {
-            let space = reader.string("coordinatesystem")?;
-            match space.map_or(("camera", film.span), |space| space) {
-                ("world", _) => {}
-                ("camera", span) => {
-                    let message = "positions and normals of the image are in world space";
-                    reader.context.warn(span, message);
-                }
-                (name, span) => {
-                    let message = format!("unknown coordinate system `{}`", shorten(name));
-                    let fault = Fault::scene(span, message);
-                    return Err(fault.with_nearest(name, ["camera", "world"]));
-                }
+            let spaces = [("camera", false), ("world", true)];
+            if !reader.choice("coordinatesystem", "coordinate system", &spaces)? {
+                let given = reader.string("coordinatesystem")?;
+                let span = given.map_or(film.span, |(_, span)| span);
+                let message = "positions and normals of the image are in world space";
+                reader.context.warn(span, message);
             }
             let message = "the image has no channels `dzdx`, `dzdy`, `u` and `v`";
             reader.context.warn(film.span, message);
@@ -192,11 +185,8 @@ fn window_crop(values: &[f32]) -> Option<Crop> {
 }
 
 fn bounds_crop(values: &[i32], own: [u32; 2], resolution: [u32; 2]) -> Option<Crop> {
-    let values: Vec<u32> = values
-        .iter()
-        .filter_map(|&edge| u32::try_from(edge).ok())
-        .collect();
-    let bounds: [u32; 4] = values.try_into().ok()?;
+    let values = values.iter().filter_map(|&edge| u32::try_from(edge).ok());
+    let bounds: [u32; 4] = values.collect::<Vec<_>>().try_into().ok()?;
     if own == resolution {
         return Some(Crop::Pixels(bounds));
     }

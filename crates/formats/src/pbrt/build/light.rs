@@ -4,7 +4,7 @@ use super::color::{self, Purpose};
 use super::context::Context;
 use super::group;
 use super::reader::Reader;
-use super::shape;
+use crate::import::{self, vector};
 use crate::pbrt::parameters::ParameterType;
 use crate::pbrt::scene::LightDescription;
 use crate::source::{Fault, Span};
@@ -60,10 +60,6 @@ fn factor(reader: &mut Reader<'_, '_>, power: &'static str, per_unit: f32) -> Re
     Ok(power.map_or(scale, |power| scale * power / per_unit))
 }
 
-fn vector(p: [f32; 3]) -> DVec3 {
-    DVec3::from(p.map(f64::from))
-}
-
 fn point(reader: &mut Reader<'_, '_>, world_from_light: &DAffine3) -> Result<PointLight, Fault> {
     let intensity = intensity(reader, 4.0 * PI)?;
     let from = vector(reader.point3("from", [0.0; 3])?);
@@ -82,7 +78,7 @@ fn intensity(reader: &mut Reader<'_, '_>, solid_angle: f32) -> Result<Rgb, Fault
 
 /// Maps a point from the world to the render space.
 fn position_of(reader: &Reader<'_, '_>, world: DVec3) -> Result<Vec3, Fault> {
-    shape::check_point(reader.span(), world)?;
+    import::check_point(world, &reader.span())?;
     let from_world = reader.context.layout.render_from_world();
     Ok(from_world.transform_point3(world).as_vec3())
 }
@@ -143,8 +139,7 @@ fn infinite(
         )?));
     };
     if color::read(reader, "L", Purpose::Illuminant)?.is_some() {
-        let message = "an infinite light has `L` or `filename`, not both";
-        return Err(Fault::scene(reader.span(), message));
+        return Err(reader.fault("an infinite light has `L` or `filename`, not both"));
     }
     let image = environment(reader.context, name, span)?;
     let scale = factor(reader, "illuminance", illuminance(&image))?;
@@ -176,18 +171,14 @@ pub(super) fn radiance_image(
 ) -> Result<Image<3>, Fault> {
     let path = context.document.resolve(name);
     let data = context.read_image(&path, None, span)?;
-    let is_radiance = |&channel: &f32| channel.is_finite() && channel >= 0.0;
+    let is_radiance = |channel: f32| channel.is_finite() && channel >= 0.0;
     let mut texels: Vec<Rgb> = data.rgb().collect();
-    let replaced = texels
-        .iter_mut()
-        .flatten()
-        .filter(|channel| !is_radiance(channel));
-    let count = replaced.map(|channel| *channel = 0.0).count();
+    let count = import::replace_invalid(&mut texels, is_radiance);
     if count > 0 {
         let message = format!("{count} values of the image are not radiances and count as 0");
         context.warn(span, message);
     }
-    Image::new(data.width, texels).ok_or_else(|| Fault::scene(span, "the image has no pixels"))
+    import::image((data.width, texels), &span)
 }
 
 /// Computes the illuminance of an environment as the format defines it: (2π/N) Σ luminance · cosθ over the

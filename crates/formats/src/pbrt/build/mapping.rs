@@ -2,7 +2,6 @@
 
 use super::context::Context;
 use super::reader::Reader;
-use crate::pbrt::lexer::shorten;
 use crate::pbrt::parameters::ParameterType;
 use crate::pbrt::scene::TextureDescription;
 use crate::source::Fault;
@@ -48,7 +47,7 @@ pub(super) fn direction(
     let direction = world.try_normalize().map(glam::DVec3::as_vec3);
     direction.ok_or_else(|| {
         let message = format!("the direction `{name}` has no length");
-        Fault::scene(reader.span(), message)
+        reader.fault(message)
     })
 }
 
@@ -57,25 +56,22 @@ pub(super) fn read(
     texture: &TextureDescription,
     reader: &mut Reader<'_, '_>,
 ) -> Result<Mapping, Fault> {
-    match reader.string("mapping")? {
-        None | Some(("uv", _)) => {
+    let kinds = ["uv", "spherical", "cylindrical", "planar"].map(|kind| (kind, kind));
+    match reader.choice("mapping", "mapping", &kinds)? {
+        "uv" => {
             let scale = Vec2::new(reader.float("uscale", 1.0)?, reader.float("vscale", 1.0)?);
             let offset = offset(reader)?;
             Ok(Mapping::Parameters { scale, offset })
         }
-        Some(("spherical", _)) => Ok(Mapping::Spherical(space(reader.context, texture)?)),
-        Some(("cylindrical", _)) => Ok(Mapping::Cylindrical(space(reader.context, texture)?)),
-        Some(("planar", _)) => {
+        "spherical" => Ok(Mapping::Spherical(space(reader.context, texture)?)),
+        "cylindrical" => Ok(Mapping::Cylindrical(space(reader.context, texture)?)),
+        _ => {
             let vectors = [
                 vector(reader, "v1", Vec3::X)?,
                 vector(reader, "v2", Vec3::Y)?,
             ];
             let from_world: Affine3A = from_world(reader.context, texture)?.as_affine3a();
             Ok(Mapping::planar(&from_world, vectors, offset(reader)?))
-        }
-        Some((name, span)) => {
-            let fault = Fault::scene(span, format!("unknown mapping `{}`", shorten(name)));
-            Err(fault.with_nearest(name, ["uv", "spherical", "cylindrical", "planar"]))
         }
     }
 }

@@ -10,9 +10,10 @@ use super::spectral;
 use super::texture::Textures;
 use crate::pbrt::known;
 use crate::pbrt::lexer::shorten;
-use crate::pbrt::parameters::{ParameterType, Values};
+use crate::pbrt::parameters::ParameterType;
 use crate::pbrt::scene::MaterialDescription;
 use crate::source::{Fault, Span};
+use crate::spectra;
 use bidir::bsdf::FacetScattering;
 use bidir::material::{
     Bitangent, CLEAR, CoatSettings, CoatedConductorMaterial, CoatedDiffuseMaterial, ConductorIndex,
@@ -23,12 +24,16 @@ use bidir::texture::{ColorTexture, FloatTexture, Mix, Scale};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// A material, and the part of the surface that has it.
-#[derive(Clone)]
+/// A material, the part of the surface that has it, and what it fills.
 pub(super) struct Built {
     pub(super) material: Material,
     /// None: all. Rays pass through the rest, which is an `interface` of a mixture.
     pub(super) coverage: Option<FloatTexture>,
+    /// The medium within the surface.
+    pub(super) content: Option<Recipe>,
+    /// The priority and the index of refraction of what it bounds. None: its index is that of the inside over that of
+    /// the outside, whatever these are.
+    pub(super) filling: Option<(i32, f32)>,
 }
 
 impl From<Material> for Built {
@@ -36,6 +41,8 @@ impl From<Material> for Built {
         Self {
             material,
             coverage: None,
+            content: None,
+            filling: None,
         }
     }
 }
@@ -47,10 +54,6 @@ pub(super) struct Materials<'a> {
     named: BTreeMap<&'a str, usize>,
     /// The materials in construction, the innermost last, to find cycles of mixtures.
     open: Vec<usize>,
-    /// The media within surfaces, by number of the material.
-    contents: BTreeMap<usize, Recipe>,
-    /// The priority and the index of refraction of materials that fill what they bound, likewise.
-    fillings: BTreeMap<usize, (i32, f32)>,
 }
 
 impl<'a> Materials<'a> {
@@ -62,20 +65,7 @@ impl<'a> Materials<'a> {
                 .collect(),
             described,
             open: Vec::new(),
-            contents: BTreeMap::new(),
-            fillings: BTreeMap::new(),
         }
-    }
-
-    /// The medium within the surfaces of material number `index`, which was built.
-    pub(super) fn take_content(&mut self, index: usize) -> Option<Recipe> {
-        self.contents.remove(&index)
-    }
-
-    /// The priority and the index of what material number `index` bounds, which was built. None: its index is that of
-    /// the inside over that of the outside, whatever these are.
-    pub(super) fn take_filling(&mut self, index: usize) -> Option<(i32, f32)> {
-        self.fillings.remove(&index)
     }
 
     /// Builds material number `index`; one without an entity is the default material.
@@ -96,20 +86,27 @@ impl<'a> Materials<'a> {
             textures,
             reader: Reader::new(context, entity),
         };
+        let mut content = None;
         let material = match entity.kind.as_str() {
-            "diffuse" => parameters.diffuse()?,
+            "diffuse" => Material::Diffuse {
+                reflectance: parameters.albedo("reflectance", 0.5)?,
+            },
             "diffusetransmission" => parameters.diffuse_transmission()?,
             "conductor" => parameters.conductor()?,
-            "dielectric" => parameters.dielectric()?,
+            "dielectric" => {
+                let eta = spectral::read_eta(&mut parameters.reader, "eta", GLASS)?;
+                parameters.dielectric(eta)?
+            }
             "thindielectric" => Material::ThinDielectric {
                 eta: spectral::read_eta(&mut parameters.reader, "eta", GLASS)?,
             },
             "coateddiffuse" => parameters.coated_diffuse()?,
             "coatedconductor" => parameters.coated_conductor()?,
             "subsurface" => {
-                let (material, content) = parameters.subsurface()?;
-                self.contents.insert(index, content);
-                material
+                let eta = spectral::read_eta(&mut parameters.reader, "eta", WATER)?;
+                let surface = parameters.dielectric(eta)?;
+                content = Some(media::subsurface::read(&mut parameters.reader, eta)?);
+                surface
             }
             "mix" => {
                 let material = self.mix(&mut parameters, index)?;
@@ -122,18 +119,24 @@ impl<'a> Materials<'a> {
             }
             kind => return parameters.substitute(kind).map(|grey| Some(grey.into())),
         };
-        if let Material::Dielectric { eta, .. } = &material {
-            let priority = parameters.reader.optional_integer("priority")?;
-            let filling = priority.map(|priority| (index, (priority, *eta)));
-            self.fillings.extend(filling);
-        }
+        let filling = match &material {
+            Material::Dielectric { eta, .. } => {
+                let priority = parameters.reader.optional_integer("priority")?;
+                priority.map(|priority| (priority, *eta))
+            }
+            _ => None,
+        };
         let relief = parameters.relief()?;
         parameters.reader.finish()?;
         let material = match relief {
             Some(relief) => material.with_relief(relief),
             None => material,
         };
-        Ok(Some(material.into()))
+        Ok(Some(Built {
+            content,
+            filling,
+            ..material.into()
+        }))
     }
 
     /// Builds a mixture. None: no part of it is visible.
@@ -145,13 +148,10 @@ impl<'a> Materials<'a> {
         let amount = from.float("amount", 0.5)?;
         let reader = &mut from.reader;
         let Some(parameter) = reader.find(ParameterType::String, "materials") else {
-            let message = "the parameter `string materials` is missing";
-            return Err(Fault::scene(reader.span(), message));
+            return Err(reader.missing("string materials"));
         };
-        let (Values::Strings(names), span) = (&parameter.values, parameter.value_span) else {
-            return Err(Fault::scene(parameter.value_span, "expected names"));
-        };
-        let [first, second] = names.as_slice() else {
+        let (names, span) = (parameter.values.strings(), parameter.value_span);
+        let [first, second] = names else {
             let message = format!("`materials` has two names, found {}", names.len());
             return Err(Fault::scene(span, message));
         };
@@ -177,8 +177,8 @@ impl<'a> Materials<'a> {
         span: Span,
     ) -> Result<Option<Built>, Fault> {
         let Some(&index) = self.named.get(&*known::normalized(name)) else {
-            let fault = Fault::scene(span, format!("unknown material `{}`", shorten(name)));
-            return Err(fault.with_nearest(name, self.named.keys().copied()));
+            let known = self.named.keys().copied();
+            return Err(known::unknown(span, "material", name, known));
         };
         if self.open.contains(&index) {
             let message = format!("the mixture `{}` is a part of itself", shorten(name));
@@ -188,16 +188,18 @@ impl<'a> Materials<'a> {
             let message = format!("mixtures are nested deeper than {DEEPEST}");
             return Err(Fault::scene(span, message));
         }
-        let part = self.build(from.reader.context, from.textures, index)?;
-        if self.take_content(index).is_some() {
+        let mut part = self.build(from.reader.context, from.textures, index)?;
+        let Some(built) = &mut part else {
+            return Ok(None);
+        };
+        let context = &mut *from.reader.context;
+        if built.content.take().is_some() {
             let what = "a mixture with a material `subsurface`";
-            let substitute = "its part is clear glass";
-            from.reader.context.unsupported(span, what, substitute)?;
+            context.unsupported(span, what, "its part is clear glass")?;
         }
-        if self.take_filling(index).is_some() {
+        if built.filling.take().is_some() {
             let what = "a mixture with a material that has a `priority`";
-            let substitute = "its part has none";
-            from.reader.context.unsupported(span, what, substitute)?;
+            context.unsupported(span, what, "its part has none")?;
         }
         Ok(part)
     }
@@ -328,7 +330,7 @@ impl Parameters<'_, '_, '_> {
 
     /// Reads a colour between 0 and 1 or the name of a texture. None: the file has none.
     fn optional_albedo(&mut self, name: &'static str) -> Result<Option<ColorTexture>, Fault> {
-        self.textures.color(&mut self.reader, name, Purpose::Albedo)
+        self.textures.get(&mut self.reader, name, Purpose::Albedo)
     }
 
     /// Reads a colour between 0 and 1 or the name of a texture; by default it is grey.
@@ -350,12 +352,6 @@ impl Parameters<'_, '_, '_> {
         }
         let space = &self.reader.context.layout.space;
         Ok(height.map(|height| Relief::Displacement(in_space(height, space))))
-    }
-
-    fn diffuse(&mut self) -> Result<Material, Fault> {
-        Ok(Material::Diffuse {
-            reflectance: self.albedo("reflectance", 0.5)?,
-        })
     }
 
     fn diffuse_transmission(&mut self) -> Result<Material, Fault> {
@@ -400,7 +396,7 @@ impl Parameters<'_, '_, '_> {
             if is_given(eta) || is_given(k) {
                 let message =
                     format!("a conductor has `reflectance` or `{eta}` and `{k}`, not both");
-                return Err(Fault::scene(self.reader.span(), message));
+                return Err(self.reader.fault(message));
             }
             return Ok(ConductorIndex::Reflectance(reflectance));
         }
@@ -410,10 +406,10 @@ impl Parameters<'_, '_, '_> {
                 k: ColorTexture::Constant(k),
             });
         }
-        let (of_copper, k_of_copper) = spectral::copper();
+        let (of_copper, k_of_copper) = spectra::metal("Cu").unwrap_or(([1.0; 3], [0.0; 3]));
         let mut part = |name, copper| -> Result<ColorTexture, Fault> {
             let reader = &mut self.reader;
-            let given = self.textures.color(reader, name, Purpose::Unbounded)?;
+            let given = self.textures.get(reader, name, Purpose::Unbounded)?;
             Ok(given.unwrap_or(ColorTexture::Constant(copper)))
         };
         Ok(ConductorIndex::Complex {
@@ -422,26 +418,13 @@ impl Parameters<'_, '_, '_> {
         })
     }
 
-    fn dielectric(&mut self) -> Result<Material, Fault> {
+    /// Reads the surface of something of this index of refraction.
+    fn dielectric(&mut self, eta: f32) -> Result<Material, Fault> {
         Ok(Material::Dielectric {
-            eta: spectral::read_eta(&mut self.reader, "eta", GLASS)?,
+            eta,
             roughness: self.roughness(&SURFACE)?,
             scattering: self.facet_scattering()?,
         })
-    }
-
-    /// Reads a surface and the medium within it.
-    fn subsurface(&mut self) -> Result<(Material, Recipe), Fault> {
-        let eta = spectral::read_eta(&mut self.reader, "eta", WATER)?;
-        let roughness = self.roughness(&SURFACE)?;
-        let scattering = self.facet_scattering()?;
-        let content = media::subsurface::read(&mut self.reader, eta)?;
-        let surface = Material::Dielectric {
-            eta,
-            roughness,
-            scattering,
-        };
-        Ok((surface, content))
     }
 
     fn coated_diffuse(&mut self) -> Result<Material, Fault> {
@@ -499,12 +482,8 @@ impl Parameters<'_, '_, '_> {
     fn substitute(&mut self, kind: &str) -> Result<Material, Fault> {
         let span = self.reader.span();
         let what = format!("the material `{kind}`");
-        let context = &mut *self.reader.context;
-        context.unsupported(
-            span,
-            &what,
-            "`diffuse` with reflectance 0.5 is used instead",
-        )?;
+        let substitute = "`diffuse` with reflectance 0.5 is used instead";
+        (self.reader.context).unsupported(span, &what, substitute)?;
         Ok(grey())
     }
 }

@@ -5,18 +5,16 @@ use super::patches::PatchMesh;
 use super::reader::Reader;
 use super::subdivision::ControlMesh;
 use crate::error::ErrorKind;
+use crate::import::vector;
 use crate::limits::MOST_LEVELS;
-use crate::pbrt::parameters::{Parameter, ParameterType, Values};
+use crate::pbrt::parameters::{Parameter, ParameterType};
 use crate::ply::PlyMesh;
 use crate::source::{Fault, Span};
 use glam::DVec3;
 
 pub(super) fn ply_mesh(reader: &mut Reader<'_, '_>) -> Result<PlyMesh, Fault> {
     let Some((name, span)) = reader.string("filename")? else {
-        return Err(Fault::scene(
-            reader.span(),
-            "the parameter `string filename` is missing",
-        ));
+        return Err(reader.missing("string filename"));
     };
     let flat = "the mesh stays as it is";
     reader.unsupported(ParameterType::Texture, "displacement", flat)?;
@@ -77,8 +75,7 @@ fn drop_unless_per_vertex<T>(
 fn positions(reader: &mut Reader<'_, '_>) -> Result<Vec<[f32; 3]>, Fault> {
     let positions = triples(reader.floats(ParameterType::Point3, "P"));
     if positions.is_empty() {
-        let message = "the parameter `point3 P` is missing or empty";
-        return Err(Fault::scene(reader.span(), message));
+        return Err(reader.fault("the parameter `point3 P` is missing or empty"));
     }
     Ok(positions)
 }
@@ -127,14 +124,13 @@ pub(super) fn subdivided_mesh(reader: &mut Reader<'_, '_>) -> Result<PlyMesh, Fa
     }
     let count = (triangles.len() as u64) << (2 * levels);
     reader.context.check_size(count, &reader.span())?;
-    let points = positions.iter().map(|p| DVec3::from(p.map(f64::from)));
+    let points = positions.iter().copied().map(vector);
     let control = ControlMesh {
         points: points.collect(),
         triangles,
     };
     let subdivided = control.subdivide(levels);
-    let (mesh, normals) =
-        subdivided.map_err(|error| Fault::scene(reader.span(), error.to_string()))?;
+    let (mesh, normals) = subdivided.map_err(|reason| reader.fault(reason))?;
     let single = |p: &DVec3| p.as_vec3().to_array();
     Ok(PlyMesh {
         positions: mesh.points.iter().map(single).collect(),
@@ -156,10 +152,7 @@ fn faces<const N: usize>(
     match reader.find(ParameterType::Integer, "indices") {
         Some(parameter) => listed_faces(reader.context, parameter, vertices),
         None if vertices == N => Ok(vec![std::array::from_fn(|corner| corner as u32)]),
-        None => {
-            let message = "the parameter `integer indices` is missing";
-            Err(Fault::scene(reader.span(), message))
-        }
+        None => Err(reader.missing("integer indices")),
     }
 }
 
@@ -168,9 +161,7 @@ fn listed_faces<const N: usize>(
     parameter: &Parameter,
     vertices: usize,
 ) -> Result<Vec<[u32; N]>, Fault> {
-    let Values::Integers(indices) = &parameter.values else {
-        return Ok(Vec::new());
-    };
+    let indices = parameter.values.integers();
     let is_vertex = |&index: &i32| usize::try_from(index).is_ok_and(|index| index < vertices);
     if let Some(index) = indices.iter().find(|index| !is_vertex(index)) {
         let message = format!("there is no point {index}: the mesh has {vertices}");

@@ -30,9 +30,7 @@ mod texture_class;
 use super::scene::{Entity, SceneDescription, ShapeDescription};
 use crate::error::Result;
 use crate::files::Files;
-use crate::import::{
-    self, Gathered, LoadOptions, Loaded, SharedObject, Size, Skin, Survey, VolumeContent,
-};
+use crate::import::{self, Destination, Gathered, LoadOptions, Loaded, Size, Skin, VolumeContent};
 use crate::source::{Fault, Span};
 use bidir::medium::MediumId;
 use bidir::scene::{Emission, MaterialId, Volume};
@@ -40,8 +38,8 @@ use bidir::shape::Shape;
 use bidir::texture::{FloatTexture, Scale};
 use context::Context;
 use emission::AreaEmission;
-use glam::{DAffine3, DVec3};
-use material::Materials;
+use glam::DVec3;
+use material::{Built, Materials};
 use media::Media;
 use shape::Geometry;
 use std::collections::BTreeSet;
@@ -80,23 +78,21 @@ struct Builder<'a> {
     assembly: Assembly,
     textures: Textures<'a>,
     media: Media,
-    /// By index, with the part of a surface that has it; None where there is no surface.
-    materials: Vec<Option<(MaterialId, Option<FloatTexture>)>>,
-    /// The media within their surfaces.
-    contents: Vec<Option<MediumId>>,
-    /// The priority and the index of refraction of what they bound. None: they have none.
-    fillings: Vec<Option<(i32, f32)>>,
+    /// By index; None where there is no surface.
+    materials: Vec<Option<Surface>>,
     /// The emission of the last shape.
     last_emission: Option<(Arc<Entity>, Arc<AreaEmission>)>,
 }
 
-/// The destination of a shape.
-#[derive(Clone, Copy)]
-enum Destination<'a> {
-    /// Into the space that is rendered in, once for each of these places of its space.
-    World(&'a [DAffine3]),
-    /// Into an object that is shared.
-    Object(SharedObject),
+/// A material in the scene.
+struct Surface {
+    id: MaterialId,
+    /// The part of a surface that has it. None: all.
+    coverage: Option<FloatTexture>,
+    /// The medium within.
+    content: Option<MediumId>,
+    /// The priority and the index of refraction of what it bounds. None: it has none.
+    filling: Option<(i32, f32)>,
 }
 
 impl<'a> Builder<'a> {
@@ -114,8 +110,6 @@ impl<'a> Builder<'a> {
             textures: Textures::new(description),
             media: Media::default(),
             materials: Vec::new(),
-            contents: Vec::new(),
-            fillings: Vec::new(),
             last_emission: None,
         };
         builder.assembly.film_place = film.place;
@@ -152,22 +146,26 @@ impl<'a> Builder<'a> {
         let textures = &mut self.textures;
         for index in 0..description.materials.len() {
             let mut build = |context: &mut _| materials.build(context, textures, index);
-            let built = if used.contains(&index) {
+            let is_used = used.contains(&index);
+            let built = if is_used {
                 build(context)?
             } else {
                 context.unused(build)?.flatten()
             };
-            self.assembly.summary.materials += usize::from(built.is_some());
             let builder = &mut self.assembly.builder;
-            let built = built.map(|built| (builder.material(built.material), built.coverage));
-            self.materials.push(built);
-            let content = materials
-                .take_content(index)
-                .filter(|_| used.contains(&index));
-            let content = content.map(|recipe| Ok(self.assembly.builder.medium(recipe()?)));
-            self.contents.push(content.transpose()?);
-            self.fillings.push(materials.take_filling(index));
+            let add = |built: Built| {
+                let content = built.content.filter(|_| is_used);
+                let content = content.map(|recipe| Ok(builder.medium(recipe()?)));
+                Ok(Surface {
+                    id: builder.material(built.material),
+                    coverage: built.coverage,
+                    content: content.transpose()?,
+                    filling: built.filling,
+                })
+            };
+            self.materials.push(built.map(add).transpose()?);
         }
+        self.assembly.summary.materials = self.materials.iter().flatten().count();
         Ok(())
     }
 
@@ -179,13 +177,16 @@ impl<'a> Builder<'a> {
         destination: Destination<'_>,
     ) -> Result<(), Fault> {
         let span = shape.entity.span;
-        refuse_motion(context, shape)?;
+        if shape.transforms.is_animated() {
+            context.unsupported(span, "a moving shape", "its first position is used")?;
+        }
         let Some((geometry, alpha)) = Geometry::read(context, &mut self.textures, shape)? else {
             return Ok(());
         };
         let builder = &mut self.assembly.builder;
         let mut media = self.media.sides(context, builder, &shape.medium)?;
-        if let Some(content) = self.contents.get(shape.material).copied().flatten() {
+        let surface = self.materials[shape.material].as_ref();
+        if let Some(content) = surface.and_then(|surface| surface.content) {
             if let Some(replaced) = shape.medium.inside.as_ref()
                 && media.is_boundary()
             {
@@ -193,28 +194,34 @@ impl<'a> Builder<'a> {
             }
             media.inside = content;
         }
-        let material = self.materials.get(shape.material).cloned().flatten();
-        let (material, part) = material.unzip();
-        let coverage = all_of(alpha, part.flatten());
-        if material.is_none() && !media.is_boundary() {
+        if surface.is_none() && !media.is_boundary() {
             return Ok(());
         }
+        let part = surface.and_then(|surface| surface.coverage.clone());
+        let coverage = all_of(alpha, part);
+        let filling = surface.and_then(|surface| surface.filling);
+        let content = filling.map(|filling| (content(filling, media.inside), shape.material));
         let skin = Skin {
-            material,
+            material: surface.map(|surface| surface.id),
             coverage: coverage.as_ref(),
             media,
-            content: self.content(shape.material, media.inside),
+            content,
         };
-        let emission = match &shape.area_light {
-            _ if material.is_none() => None,
-            Some(entity) => Some(self.emission(context, entity)?),
-            None => None,
-        };
+        let light = shape.area_light.as_ref().filter(|_| surface.is_some());
+        let emission = light
+            .map(|light| self.emission(context, light))
+            .transpose()?;
         let emission = emission.as_deref();
         if let Some(emission) = emission {
             emission.warn_of_parts(context, &geometry);
         }
-        let size = size(&geometry, emission, destination);
+        let parts = emission.map_or(1, |emission| emission.part_count(&geometry));
+        let copies = destination.copies();
+        let size = Size {
+            primitives: geometry.primitives() * copies,
+            vertices: geometry.vertices() * copies,
+            shapes: parts * copies,
+        };
         self.assembly.count(context, size, &span)?;
         let error = geometry.vertex_error(&shape.transforms.start.matrix3);
         self.assembly.add_error(&span, error);
@@ -222,35 +229,20 @@ impl<'a> Builder<'a> {
             Destination::World(places) => {
                 for place in places {
                     let survey = &mut self.assembly.survey;
-                    let placed = place_shape(&geometry, shape, place, survey)?;
+                    let map = *place * shape.transforms.start;
+                    let placed = geometry.place(&map, shape, survey)?;
                     let parts = self.emitting_parts(&geometry, placed, emission)?;
                     self.assembly.add_shape(parts, &skin, &span);
                 }
             }
             Destination::Object(object) => {
-                let place = object.kept_from_own();
+                let map = object.kept_from_own() * shape.transforms.start;
                 let survey = self.assembly.object_survey();
-                let shape = place_shape(&geometry, shape, &place, survey)?;
+                let shape = geometry.place(&map, shape, survey)?;
                 self.assembly.add_to_object(object, shape, &skin, &span);
             }
         }
         Ok(())
-    }
-
-    /// What fills the shapes of material number `index`, with this medium. None: it has no priority.
-    fn content(&self, index: usize, medium: MediumId) -> Option<(VolumeContent, usize)> {
-        let (priority, eta) = self.fillings.get(index).copied().flatten()?;
-        let volume = Volume {
-            index: eta,
-            medium,
-            priority,
-        };
-        let content = VolumeContent {
-            volume,
-            thin: None,
-            warning: ENCLOSES_NOTHING,
-        };
-        Some((content, index))
     }
 
     /// The parts of a shape that emit each for itself, in the group of their light.
@@ -303,21 +295,16 @@ impl<'a> Builder<'a> {
     }
 }
 
-/// The size of a shape with its copies.
-fn size(
-    geometry: &Geometry,
-    emission: Option<&AreaEmission>,
-    destination: Destination<'_>,
-) -> Size {
-    let copies = match destination {
-        Destination::World(places) => places.len() as u64,
-        Destination::Object(_) => 1,
-    };
-    let parts = emission.map_or(1, |emission| emission.part_count(geometry));
-    Size {
-        primitives: geometry.primitives() * copies,
-        vertices: geometry.vertices() * copies,
-        shapes: parts * copies,
+/// Returns what fills the shapes of a material with this priority and index, with this medium.
+fn content((priority, index): (i32, f32), medium: MediumId) -> VolumeContent {
+    VolumeContent {
+        volume: Volume {
+            index,
+            medium,
+            priority,
+        },
+        thin: None,
+        warning: ENCLOSES_NOTHING,
     }
 }
 
@@ -334,34 +321,8 @@ fn all_of(first: Option<FloatTexture>, second: Option<FloatTexture>) -> Option<F
 /// The materials of shapes, by index.
 fn used_materials(description: &SceneDescription) -> BTreeSet<usize> {
     let of_objects = description.objects.iter().flat_map(|object| &object.shapes);
-    description
-        .shapes
-        .iter()
-        .chain(of_objects)
-        .map(|shape| shape.material)
-        .collect()
-}
-
-/// Refuses a shape that moves.
-fn refuse_motion(context: &mut Context<'_>, shape: &ShapeDescription) -> Result<(), Fault> {
-    if shape.transforms.is_animated() {
-        let span = shape.entity.span;
-        context.unsupported(span, "a moving shape", "its first position is used")?;
-    }
-    Ok(())
-}
-
-/// The shape in the space of `place`.
-fn place_shape(
-    geometry: &Geometry,
-    shape: &ShapeDescription,
-    place: &DAffine3,
-    survey: &mut Survey,
-) -> Result<Shape, Fault> {
-    let placed_from_local = *place * shape.transforms.start;
-    let placed = geometry.place(&placed_from_local, shape::orientation(shape), survey);
-    shape::check_extent(shape.entity.span, &placed)?;
-    Ok(placed)
+    let shapes = description.shapes.iter().chain(of_objects);
+    shapes.map(|shape| shape.material).collect()
 }
 
 #[cfg(test)]

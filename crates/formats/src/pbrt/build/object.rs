@@ -4,8 +4,9 @@
 //! several is shared: its shapes are kept once, and rays are taken to its space. Shapes of an object that
 //! emit are lights of the world, one for each place; the format leaves undefined what they do.
 
+use super::Builder;
 use super::context::Context;
-use super::{Builder, Destination, shape};
+use crate::import::Group;
 use crate::pbrt::scene::{InstanceDescription, ObjectDescription};
 use crate::source::Fault;
 use glam::DAffine3;
@@ -38,33 +39,22 @@ impl Builder<'_> {
     ) -> Result<(), Fault> {
         let places = instances.iter();
         let places: Vec<DAffine3> = places.map(|it| context.place(&it.transforms)).collect();
-        let everywhere = Destination::World(&places);
-        let shared = (instances.len() > 1).then(|| self.assembly.begin_object(context));
+        let mut group = Group::new(&places);
         for shape in &object.shapes {
             if let Some(light) = &shape.area_light {
                 let message = "a shape of an object emits: it becomes a light at every instance";
                 context.warn(light.span, message);
             }
-            match shared {
-                _ if instances.is_empty() => {}
-                Some(object) if shape.area_light.is_none() => {
-                    self.add_shape(context, shape, Destination::Object(object))?;
-                }
-                _ => self.add_shape(context, shape, everywhere)?,
+            if places.is_empty() {
+                continue;
             }
+            let destination = match shape.area_light {
+                Some(_) => group.copied(),
+                None => self.assembly.shared(context, &mut group),
+            };
+            self.add_shape(context, shape, destination)?;
         }
-        let Some(object) = shared else {
-            return Ok(());
-        };
-        let corners = self.assembly.object_survey().corners();
-        let world_from_render = context.layout.render_from_world().inverse();
-        for (instance, place) in instances.iter().zip(&places) {
-            if let Some(corners) = corners {
-                let world_from_object = world_from_render * object.place_kept(place);
-                shape::check_instance(instance.span, &world_from_object, corners)?;
-            }
-            self.assembly.add_instance(object, place, &instance.span);
-        }
-        Ok(())
+        let span = |i: usize| instances[i].span;
+        self.assembly.add_instances(context, &group, span).map(drop)
     }
 }

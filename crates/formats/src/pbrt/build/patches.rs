@@ -4,6 +4,7 @@
 //! triangles, with the normals of the patch. All patches of a mesh have the same n, and a point on an edge
 //! is computed from the edge's ends in one order, so that there are no gaps between neighbours.
 
+use crate::import::vector;
 use crate::ply::PlyMesh;
 use glam::DVec3;
 
@@ -55,7 +56,7 @@ impl PatchMesh {
     }
 
     fn position(&self, corner: u32) -> DVec3 {
-        DVec3::from(self.positions[corner as usize].map(f64::from))
+        vector(self.positions[corner as usize])
     }
 
     fn add(&self, patch: &[u32; 4], cells: usize, mesh: &mut PlyMesh) {

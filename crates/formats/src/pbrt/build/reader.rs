@@ -1,6 +1,7 @@
 //! Reads an entity's parameters, and refuses those that are not read.
 
 use super::context::Context;
+use crate::pbrt::known;
 use crate::pbrt::lexer::shorten;
 use crate::pbrt::parameters::{Parameter, ParameterType, Values};
 use crate::pbrt::scene::Entity;
@@ -41,21 +42,27 @@ impl<'a, 'c> Reader<'a, 'c> {
     }
 
     pub(super) fn floats(&mut self, kind: ParameterType, name: &'static str) -> Option<&'a [f32]> {
-        match &self.find(kind, name)?.values {
-            Values::Floats(values) => Some(values),
-            _ => None,
-        }
+        Some(self.find(kind, name)?.values.floats())
+    }
+
+    /// Reads the only value of a parameter. Returns it with its place.
+    fn one<T>(
+        &mut self,
+        kind: ParameterType,
+        name: &'static str,
+        values: fn(&'a Values) -> &'a [T],
+    ) -> Result<Option<(&'a T, Span)>, Fault> {
+        let Some(parameter) = self.find(kind, name) else {
+            return Ok(None);
+        };
+        let value = single(parameter, values(&parameter.values))?;
+        Ok(Some((value, parameter.value_span)))
     }
 
     /// Reads a number. None: the file has none.
     pub(super) fn optional_float(&mut self, name: &'static str) -> Result<Option<f32>, Fault> {
-        let Some(parameter) = self.find(ParameterType::Float, name) else {
-            return Ok(None);
-        };
-        match &parameter.values {
-            Values::Floats(values) => Ok(Some(*single(parameter, values)?)),
-            _ => Ok(None),
-        }
+        let found = self.one(ParameterType::Float, name, Values::floats)?;
+        Ok(found.map(|(&value, _)| value))
     }
 
     pub(super) fn float(&mut self, name: &'static str, default: f32) -> Result<f32, Fault> {
@@ -95,13 +102,8 @@ impl<'a, 'c> Reader<'a, 'c> {
     }
 
     pub(super) fn optional_integer(&mut self, name: &'static str) -> Result<Option<i32>, Fault> {
-        let Some(parameter) = self.find(ParameterType::Integer, name) else {
-            return Ok(None);
-        };
-        match &parameter.values {
-            Values::Integers(values) => Ok(Some(*single(parameter, values)?)),
-            _ => Ok(None),
-        }
+        let found = self.one(ParameterType::Integer, name, Values::integers)?;
+        Ok(found.map(|(&value, _)| value))
     }
 
     /// Reads an integer of at least `min`.
@@ -111,53 +113,58 @@ impl<'a, 'c> Reader<'a, 'c> {
         default: u32,
         min: u32,
     ) -> Result<u32, Fault> {
-        match self.optional_integer(name)? {
-            None => Ok(default),
-            Some(value) => u32::try_from(value)
-                .ok()
-                .filter(|&value| value >= min)
-                .ok_or_else(|| {
-                    let range = [min as f32, f32::MAX];
-                    self.out_of_range(ParameterType::Integer, name, &value.to_string(), range)
-                }),
-        }
+        let Some(value) = self.optional_integer(name)? else {
+            return Ok(default);
+        };
+        let valid = u32::try_from(value).ok().filter(|&value| value >= min);
+        valid.ok_or_else(|| {
+            let range = [min as f32, f32::MAX];
+            self.out_of_range(ParameterType::Integer, name, &value.to_string(), range)
+        })
     }
 
     pub(super) fn bool(&mut self, name: &'static str, default: bool) -> Result<bool, Fault> {
-        let Some(parameter) = self.find(ParameterType::Bool, name) else {
-            return Ok(default);
-        };
-        match &parameter.values {
-            Values::Bools(values) => Ok(*single(parameter, values)?),
-            _ => Ok(default),
-        }
+        let found = self.one(ParameterType::Bool, name, Values::bools)?;
+        Ok(found.map_or(default, |(&value, _)| value))
     }
 
     /// Reads a string. Returns it with its place.
     pub(super) fn string(&mut self, name: &'static str) -> Result<Option<(&'a str, Span)>, Fault> {
-        self.one_string(ParameterType::String, name)
+        let found = self.one(ParameterType::String, name, Values::strings)?;
+        Ok(found.map(|(text, span)| (text.as_str(), span)))
     }
 
     /// Reads the name of a texture. Returns it with its place.
     pub(super) fn texture(&mut self, name: &'static str) -> Result<Option<(&'a str, Span)>, Fault> {
-        self.one_string(ParameterType::Texture, name)
+        let found = self.one(ParameterType::Texture, name, Values::strings)?;
+        Ok(found.map(|(text, span)| (text.as_str(), span)))
     }
 
-    fn one_string(
+    /// Reads a string that names one of `choices`, by default the first; `what` is their kind.
+    pub(super) fn choice<T: Copy>(
         &mut self,
-        kind: ParameterType,
         name: &'static str,
-    ) -> Result<Option<(&'a str, Span)>, Fault> {
-        let Some(parameter) = self.find(kind, name) else {
-            return Ok(None);
+        what: &str,
+        choices: &[(&str, T)],
+    ) -> Result<T, Fault> {
+        let Some((word, span)) = self.string(name)? else {
+            return Ok(choices[0].1);
         };
-        match &parameter.values {
-            Values::Strings(values) => Ok(Some((
-                single(parameter, values)?.as_str(),
-                parameter.value_span,
-            ))),
-            _ => Ok(None),
-        }
+        let chosen = choices.iter().find(|(known, _)| *known == word);
+        let known = choices.iter().map(|(known, _)| *known);
+        chosen
+            .map(|&(_, choice)| choice)
+            .ok_or_else(|| known::unknown(span, what, word, known))
+    }
+
+    /// Returns a fault of the whole entity.
+    pub(super) fn fault(&self, message: impl Into<String>) -> Fault {
+        Fault::scene(self.span(), message)
+    }
+
+    /// Returns the fault of an entity without a parameter that it needs.
+    pub(super) fn missing(&self, parameter: &str) -> Fault {
+        self.fault(format!("the parameter `{parameter}` is missing"))
     }
 
     pub(super) fn point3(
@@ -175,10 +182,7 @@ impl<'a, 'c> Reader<'a, 'c> {
         name: &'static str,
         default: [f32; 3],
     ) -> Result<[f32; 3], Fault> {
-        let Some(parameter) = self.find(kind, name) else {
-            return Ok(default);
-        };
-        three(parameter)
+        self.find(kind, name).map_or(Ok(default), three)
     }
 
     /// Warns of a parameter of the format that has no effect here.
@@ -240,13 +244,9 @@ pub(super) fn single<'v, T>(parameter: &Parameter, values: &'v [T]) -> Result<&'
 
 /// Returns the three numbers of a parameter with one value.
 pub(super) fn three(parameter: &Parameter) -> Result<[f32; 3], Fault> {
-    match &parameter.values {
-        Values::Floats(values) => values
-            .as_slice()
-            .try_into()
-            .map_err(|_| wrong_count(parameter, values.len() / 3)),
-        values => Err(wrong_count(parameter, values.len())),
-    }
+    let values = parameter.values.floats();
+    let found = values.try_into();
+    found.map_err(|_| wrong_count(parameter, values.len() / 3))
 }
 
 fn wrong_count(parameter: &Parameter, count: usize) -> Fault {

@@ -4,11 +4,10 @@ use super::context::Context;
 use super::mesh;
 use super::reader::Reader;
 use super::texture::Textures;
-use crate::error::ErrorKind;
-use crate::import::{Survey, VertexError, box_corners};
+use crate::import::{self, Survey, VertexError, vector};
 use crate::pbrt::scene::ShapeDescription;
 use crate::ply::PlyMesh;
-use crate::source::{Fault, Span};
+use crate::source::Fault;
 use bidir::math::{Vec2, Vec3};
 use bidir::shape::{Cylinder, Disk, Mesh, Orientation, Shape, Sphere};
 use bidir::texture::FloatTexture;
@@ -104,19 +103,19 @@ impl Geometry {
         }
     }
 
-    /// Returns the shape at a place, and adds it to `survey`. A reflection does not change the front: of a
-    /// quadric it is the outside, of a mesh it follows from the order of corners in its own space.
+    /// Returns the shape of a description under a map, and adds it to `survey`. A reflection does not change the front: of
+    /// a quadric it is the outside, of a mesh it follows from the order of corners in its own space. Errors: it extends
+    /// too far.
     pub(super) fn place(
         &self,
         world_from_local: &DAffine3,
-        orientation: Orientation,
+        described: &ShapeDescription,
         survey: &mut Survey,
-    ) -> Shape {
+    ) -> Result<Shape, Fault> {
+        let span = described.entity.span;
         let affine = world_from_local.as_affine3a();
-        if let Some(corners) = self.quadric_box() {
-            survey.include_box(corners, world_from_local);
-        }
-        match self {
+        let orientation = orientation(described);
+        let shape = match self {
             Self::Sphere(radius, limits) => {
                 Shape::Sphere(Sphere::partial(affine, *radius, *limits, orientation))
             }
@@ -127,100 +126,49 @@ impl Geometry {
                 Shape::Disk(Disk::new(affine, *height, *radii, *phi_max, orientation))
             }
             Self::Mesh(mesh) => {
-                Shape::Mesh(place_mesh(mesh, world_from_local, orientation, survey))
+                let vertices = mesh.positions.iter();
+                let vertices = vertices.map(|&p| world_from_local.transform_point3(vector(p)));
+                let positions = import::place_vertices(vertices, survey, &span)?;
+                let mesh = with_vertices(mesh, positions, (world_from_local, orientation));
+                return Ok(Shape::Mesh(mesh));
             }
+        };
+        if let Some(corners) = self.quadric_box() {
+            survey.include_box(corners, world_from_local);
         }
+        let bounds = shape.primitive(0).bounds();
+        for corner in [bounds.min, bounds.max] {
+            import::check_point(corner.as_dvec3(), &span)?;
+        }
+        Ok(shape)
     }
 }
 
-/// Maximum distance from the origin, below which squared distances stay finite.
-const FARTHEST: f32 = 1e12;
-
-fn too_far(span: Span) -> Fault {
-    Fault::new(
-        ErrorKind::Limit,
-        span,
-        format!("a coordinate is beyond {FARTHEST:e}"),
-    )
-}
-
-/// Refuses points of the world that are too far away.
-pub(super) fn check_point(span: Span, point: DVec3) -> Result<(), Fault> {
-    // NaN fails the comparison, too.
-    if point.abs().max_element() <= f64::from(FARTHEST) && point.is_finite() {
-        Ok(())
-    } else {
-        Err(too_far(span))
-    }
-}
-
-/// Refuses an instance that extends too far, of an object between two corners.
-pub(super) fn check_instance(
-    span: Span,
-    world_from_object: &DAffine3,
-    corners: [DVec3; 2],
-) -> Result<(), Fault> {
-    let mut corners = box_corners(corners);
-    corners.try_for_each(|corner| check_point(span, world_from_object.transform_point3(corner)))
-}
-
-/// Refuses a shape that extends too far to compute with.
-pub(super) fn check_extent(span: Span, shape: &Shape) -> Result<(), Fault> {
-    let is_near = |p: Vec3| p.is_finite() && p.abs().max_element() <= FARTHEST;
-    let fits = match shape {
-        Shape::Mesh(mesh) => mesh.positions.iter().all(|&p| is_near(p)),
-        Shape::Sphere(_) | Shape::Disk(_) | Shape::Cylinder(_) => {
-            let bounds = shape.primitive(0).bounds();
-            is_near(bounds.min) && is_near(bounds.max)
-        }
-    };
-    if fits { Ok(()) } else { Err(too_far(span)) }
-}
-
-fn place_mesh(
+/// Returns a mesh with these vertices, where a map puts it.
+fn with_vertices(
     mesh: &PlyMesh,
-    world_from_local: &DAffine3,
-    orientation: Orientation,
-    survey: &mut Survey,
+    positions: Vec<Vec3>,
+    (world_from_local, orientation): (&DAffine3, Orientation),
 ) -> Mesh {
     let normal_matrix = world_from_local.matrix3.inverse().transpose();
     let sign = f64::from(orientation.sign());
-    let is_mirrored = world_from_local.matrix3.determinant() < 0.0;
-    let vector = |v: &[f32; 3]| DVec3::from(v.map(f64::from));
-    let point = |p| {
-        let placed = world_from_local.transform_point3(vector(p));
-        survey.include(placed);
-        placed.as_vec3()
-    };
-    // Normals are normalised, so that interpolation weights the corners as in the file.
-    let normal = |n| ((normal_matrix * vector(n)).normalize_or_zero() * sign).as_vec3();
+    let normal = |&n| import::unit(normal_matrix * vector(n) * sign);
     Mesh {
-        positions: mesh.positions.iter().map(point).collect(),
+        positions,
         normals: mesh.normals.iter().map(normal).collect(),
         uvs: mesh.uvs.iter().map(|&uv| Vec2::from(uv)).collect(),
         triangles: mesh.triangles.clone(),
-        orientation: if is_mirrored {
-            opposite(orientation)
-        } else {
-            orientation
-        },
+        orientation: import::mirrored(orientation, world_from_local),
         ..Mesh::default()
     }
 }
 
 /// Returns the orientation in the file, which does not depend on the shape's place.
-pub(super) fn orientation(shape: &ShapeDescription) -> Orientation {
+fn orientation(shape: &ShapeDescription) -> Orientation {
     if shape.reverse_orientation {
         Orientation::Reversed
     } else {
         Orientation::Natural
-    }
-}
-
-fn opposite(orientation: Orientation) -> Orientation {
-    match orientation {
-        Orientation::Natural => Orientation::Reversed,
-        Orientation::Reversed => Orientation::Natural,
     }
 }
 

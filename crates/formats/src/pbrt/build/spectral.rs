@@ -8,14 +8,10 @@ use crate::pbrt::parameters::{Parameter, ParameterType, Values};
 use crate::source::{Fault, Span};
 use crate::spectra::{self, Beyond, Spectrum};
 use crate::text::number;
-use bidir::names::nearest;
 use bidir::spectrum::{Rgb, luminance};
 
 /// The range of temperatures, beyond which no light is visible. Unit: K.
 const TEMPERATURES: [f32; 2] = [100.0, 1e8];
-
-/// The d line of helium, at which glasses are specified. Unit: nm.
-const D_LINE: f64 = 587.56;
 
 /// Reads a parameter given as `spectrum` or `blackbody`. None: the file has none.
 pub(super) fn read<'a>(
@@ -28,10 +24,7 @@ pub(super) fn read<'a>(
     let Some(parameter) = reader.find(ParameterType::Blackbody, name) else {
         return Ok(None);
     };
-    let kelvin = match &parameter.values {
-        Values::Floats(values) => *single(parameter, values)?,
-        _ => 0.0,
-    };
+    let kelvin = *single(parameter, parameter.values.floats())?;
     if !(TEMPERATURES[0]..=TEMPERATURES[1]).contains(&kelvin) {
         let [low, high] = TEMPERATURES.map(number);
         let found = number(kelvin);
@@ -52,7 +45,7 @@ fn spectrum(context: &mut Context<'_>, parameter: &Parameter) -> Result<Spectrum
                 context.warn(parameter.value_span, message);
             }
             Spectrum::from_pairs(&numbers, Beyond::Zero)
-                .map_err(|error| Fault::scene(parameter.value_span, error.to_string()))
+                .map_err(|error| Fault::scene(parameter.value_span, error))
         }
         _ => Err(Fault::scene(parameter.value_span, "expected a spectrum")),
     }
@@ -73,11 +66,11 @@ fn named(context: &mut Context<'_>, parameter: &Parameter, name: &str) -> Result
         "`{}` is neither a spectrum's name nor a file",
         shorten(name)
     );
-    let fault = Fault::scene(span, message);
-    Err(match nearest(name, known.iter().map(String::as_str)) {
-        Some(known) => fault.with_hint(format!("did you mean `{known}`?")),
-        None => fault.with_hint("files have pairs of wavelength (nm) and value"),
-    })
+    let fault = Fault::scene(span, message).with_nearest(name, known.iter().map(String::as_str));
+    if fault.hint.is_some() {
+        return Err(fault);
+    }
+    Err(fault.with_hint("files have pairs of wavelength (nm) and value"))
 }
 
 /// Reads the index of refraction of a metal from the spectra `eta` and `k`, by default those of copper.
@@ -100,15 +93,6 @@ pub(super) fn read_metal(
         (Some(eta), Some(k)) => Some(spectra::conductor(&eta, &k)),
         _ => None,
     })
-}
-
-/// Returns η and k of copper, the default of conductors.
-pub(super) fn copper() -> (Rgb, Rgb) {
-    let parts = (spectra::named("metal-Cu-eta"), spectra::named("metal-Cu-k"));
-    match parts {
-        (Some(eta), Some(k)) => spectra::conductor(&eta, &k),
-        _ => ([1.0; 3], [0.0; 3]),
-    }
 }
 
 /// Reads the index of refraction `name` of a dielectric: a number, the luminance of a colour, or the value of
@@ -137,13 +121,12 @@ fn spectral_eta(
 ) -> Result<Option<(f32, Span)>, Fault> {
     let (eta, span, is_constant) = if let Some(parameter) = reader.find(ParameterType::Rgb, name) {
         let rgb = color::rgb(parameter, Purpose::Unbounded)?;
-        let is_grey = rgb
-            .iter()
-            .all(|channel| channel.to_bits() == rgb[0].to_bits());
+        let bits = rgb.map(f32::to_bits);
+        let is_grey = bits == [bits[0]; 3];
         let eta = if is_grey { rgb[0] } else { luminance(rgb) };
         (eta, parameter.value_span, is_grey)
     } else if let Some((spectrum, parameter)) = read(reader, name)? {
-        (spectrum.at(D_LINE) as f32, parameter.value_span, false)
+        (spectrum.index(), parameter.value_span, false)
     } else {
         return Ok(None);
     };
@@ -160,6 +143,6 @@ fn positive(reader: &Reader<'_, '_>, name: &str, eta: f32) -> Result<f32, Fault>
         Ok(eta)
     } else {
         let message = format!("the index of refraction `{name}` is not positive");
-        Err(Fault::scene(reader.span(), message))
+        Err(reader.fault(message))
     }
 }

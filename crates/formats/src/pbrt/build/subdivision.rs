@@ -11,7 +11,6 @@
 use glam::DVec3;
 use std::collections::HashMap;
 use std::f64::consts::PI;
-use std::fmt;
 
 /// A mesh that can be subdivided.
 pub(super) struct ControlMesh {
@@ -20,29 +19,7 @@ pub(super) struct ControlMesh {
 }
 
 /// The reason why a mesh cannot be subdivided.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum SubdivisionError {
-    /// Two triangles have an edge in the same direction.
-    Edge([u32; 2]),
-    /// A triangle has a vertex twice.
-    Degenerate(usize),
-    /// The triangles around a vertex are not one fan.
-    Vertex(u32),
-}
-
-impl fmt::Display for SubdivisionError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Edge([a, b]) => write!(
-                f,
-                "two triangles go from point {a} to point {b}: the mesh is not oriented, or three \
-                 triangles share the edge"
-            ),
-            Self::Degenerate(i) => write!(f, "triangle {i} has a point twice"),
-            Self::Vertex(v) => write!(f, "the triangles around point {v} are more than one fan"),
-        }
-    }
-}
+type Reason = String;
 
 /// Stands for no half-edge.
 const NONE: u32 = u32::MAX;
@@ -66,7 +43,7 @@ struct Ring {
 
 impl ControlMesh {
     /// Returns the mesh after `levels` steps, moved to the limit surface, with its normals.
-    pub(super) fn subdivide(mut self, levels: u32) -> Result<(Self, Vec<DVec3>), SubdivisionError> {
+    pub(super) fn subdivide(mut self, levels: u32) -> Result<(Self, Vec<DVec3>), Reason> {
         let mut edges = HalfEdges::of(&self)?;
         for _ in 0..levels {
             self = self.refined(&edges);
@@ -203,15 +180,19 @@ fn previous(h: u32) -> u32 {
 
 impl HalfEdges {
     /// Returns the half-edges of a mesh. Errors: it is not an oriented surface.
-    fn of(mesh: &ControlMesh) -> Result<Self, SubdivisionError> {
+    fn of(mesh: &ControlMesh) -> Result<Self, Reason> {
         let mut known = HashMap::with_capacity(3 * mesh.triangles.len());
         for (i, &[a, b, c]) in mesh.triangles.iter().enumerate() {
             if a == b || b == c || c == a {
-                return Err(SubdivisionError::Degenerate(i));
+                return Err(format!("triangle {i} has a point twice"));
             }
             for (k, edge) in [[a, b], [b, c], [c, a]].into_iter().enumerate() {
                 if known.insert(edge, (3 * i + k) as u32).is_some() {
-                    return Err(SubdivisionError::Edge(edge));
+                    let [from, to] = edge;
+                    return Err(format!(
+                        "two triangles go from point {from} to point {to}: the mesh is not oriented, \
+                         or three triangles share the edge"
+                    ));
                 }
             }
         }
@@ -237,7 +218,7 @@ impl HalfEdges {
     }
 
     /// Refuses vertices around which the triangles are not one fan.
-    fn check_fans(&self, mesh: &ControlMesh) -> Result<(), SubdivisionError> {
+    fn check_fans(&self, mesh: &ControlMesh) -> Result<(), Reason> {
         let mut triangles = vec![0; mesh.points.len()];
         for &corner in mesh.triangles.iter().flatten() {
             triangles[corner as usize] += 1;
@@ -246,7 +227,9 @@ impl HalfEdges {
         for (v, &expected) in triangles.iter().enumerate() {
             ring.walk(mesh, self, v);
             if ring.neighbours.len() - usize::from(ring.is_border) != expected {
-                return Err(SubdivisionError::Vertex(v as u32));
+                return Err(format!(
+                    "the triangles around point {v} are more than one fan"
+                ));
             }
         }
         Ok(())
@@ -377,15 +360,19 @@ mod tests {
 
     #[test]
     fn meshes_that_are_no_surfaces_are_refused() {
-        let refuse = |triangles: &[[u32; 3]], error| {
+        let refuse = |triangles: &[[u32; 3]], words: &str| {
             let mesh = ControlMesh {
                 points: vec![DVec3::ZERO; 5],
                 triangles: triangles.to_vec(),
             };
-            assert_eq!(mesh.subdivide(1).err(), Some(error));
+            let reason = mesh.subdivide(1).err().expect("it is no surface");
+            assert!(reason.contains(words), "{reason}");
         };
-        refuse(&[[0, 1, 2], [0, 1, 3]], SubdivisionError::Edge([0, 1]));
-        refuse(&[[0, 1, 1]], SubdivisionError::Degenerate(0));
-        refuse(&[[0, 1, 2], [0, 3, 4]], SubdivisionError::Vertex(0));
+        refuse(
+            &[[0, 1, 2], [0, 1, 3]],
+            "two triangles go from point 0 to point 1",
+        );
+        refuse(&[[0, 1, 1]], "triangle 0 has a point twice");
+        refuse(&[[0, 1, 2], [0, 3, 4]], "around point 0");
     }
 }

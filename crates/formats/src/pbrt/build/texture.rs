@@ -5,10 +5,12 @@
 
 use super::color::{self, Purpose};
 use super::context::Context;
-use super::imagemap::{Files, ImageSettings};
+use super::imagemap::{self, ImageSettings, Key};
 use super::reader::Reader;
 use super::texture_class::Source;
 use crate::error::ErrorKind;
+use crate::image::ImageData;
+use crate::import::Images;
 use crate::limits::{DEEPEST_TEXTURE, MOST_TEXTURES};
 use crate::pbrt::known;
 use crate::pbrt::lexer::shorten;
@@ -24,7 +26,7 @@ type Built<T> = BTreeMap<(usize, Purpose), Texture<T>>;
 
 /// The textures of a scene.
 pub(super) struct Textures<'a> {
-    described: &'a [TextureDescription],
+    pub(super) described: &'a [TextureDescription],
     /// The number of each texture by kind and name.
     names: BTreeMap<(TextureKind, &'a str), usize>,
     used: BTreeSet<usize>,
@@ -32,7 +34,8 @@ pub(super) struct Textures<'a> {
     floats: Built<f32>,
     /// The depth of nested textures that are being built.
     depth: usize,
-    files: Files,
+    images: Images<Key, 3>,
+    images_of_numbers: Images<Key, 1>,
 }
 
 /// A number or a colour.
@@ -52,7 +55,7 @@ pub(super) trait Element: Value + 'static {
 
     /// Reads an image.
     fn image(
-        files: &mut Files,
+        textures: &mut Textures<'_>,
         context: &mut Context<'_>,
         settings: &ImageSettings,
     ) -> Result<Self::Map, Fault>;
@@ -76,11 +79,11 @@ impl Element for f32 {
     }
 
     fn image(
-        files: &mut Files,
+        textures: &mut Textures<'_>,
         context: &mut Context<'_>,
         settings: &ImageSettings,
     ) -> Result<ImageMap<1>, Fault> {
-        files.float(context, settings)
+        settings.map(context, &mut textures.images_of_numbers, imagemap::numbers)
     }
 
     fn built<'t>(textures: &'t mut Textures<'_>) -> &'t mut Built<Self> {
@@ -104,11 +107,12 @@ impl Element for Rgb {
     }
 
     fn image(
-        files: &mut Files,
+        textures: &mut Textures<'_>,
         context: &mut Context<'_>,
         settings: &ImageSettings,
     ) -> Result<ImageMap<3>, Fault> {
-        files.color(context, settings)
+        let texels = |data: &ImageData| data.rgb().collect();
+        settings.map(context, &mut textures.images, texels)
     }
 
     fn built<'t>(textures: &'t mut Textures<'_>) -> &'t mut Built<Self> {
@@ -137,18 +141,9 @@ impl<'a> Textures<'a> {
             colors: BTreeMap::new(),
             floats: BTreeMap::new(),
             depth: 0,
-            files: Files::default(),
+            images: Images::default(),
+            images_of_numbers: Images::default(),
         }
-    }
-
-    /// Reads a colour or the name of a texture. None: the file has none.
-    pub(super) fn color(
-        &mut self,
-        reader: &mut Reader<'_, '_>,
-        name: &'static str,
-        purpose: Purpose,
-    ) -> Result<Option<ColorTexture>, Fault> {
-        self.get(reader, name, purpose)
     }
 
     /// Reads a number or the name of a texture. None: the file has none.
@@ -170,11 +165,11 @@ impl<'a> Textures<'a> {
             return Ok(None);
         };
         let settings = ImageSettings::of_normals(reader.context, file, span);
-        let map = self.files.color(reader.context, &settings)?;
-        Ok(Some(ColorTexture::Image(Arc::new(map))))
+        self.image(reader.context, &settings).map(Some)
     }
 
-    fn get<T: Element>(
+    /// Reads a value for a purpose, or the name of a texture. None: the file has none.
+    pub(super) fn get<T: Element>(
         &mut self,
         reader: &mut Reader<'_, '_>,
         name: &'static str,
@@ -193,10 +188,7 @@ impl<'a> Textures<'a> {
         purpose: Purpose,
     ) -> Result<Option<Operand<T>>, Fault> {
         match reader.texture(name)? {
-            Some((name, span)) => self
-                .find(T::KIND, name, span)
-                .map(Operand::Texture)
-                .map(Some),
+            Some((name, span)) => Ok(Some(Operand::Texture(self.find(T::KIND, name, span)?))),
             None => Ok(T::read(reader, name, purpose)?.map(Operand::Value)),
         }
     }
@@ -206,13 +198,10 @@ impl<'a> Textures<'a> {
         if let Some(&number) = self.names.get(&(kind, &*normalized)) {
             return Ok(number);
         }
-        let word = match kind {
-            TextureKind::Float => "float",
-            TextureKind::Spectrum => "spectrum",
-        };
-        let fault = Fault::scene(span, format!("unknown {word} texture `{}`", shorten(name)));
         let of_kind = self.names.keys().filter(|(known, _)| *known == kind);
-        Err(fault.with_nearest(name, of_kind.map(|&(_, name)| name)))
+        let names = of_kind.map(|&(_, name)| name);
+        let what = format!("{} texture", kind.word());
+        Err(known::unknown(span, &what, name, names))
     }
 
     /// Refuses a part that texture number `user` cannot have: images exist before all others; then numbers
@@ -276,12 +265,8 @@ impl<'a> Textures<'a> {
         context: &mut Context<'_>,
         settings: &ImageSettings,
     ) -> Result<Texture<T>, Fault> {
-        let map = T::image(&mut self.files, context, settings)?;
+        let map = T::image(self, context, settings)?;
         Ok(Texture::Image(Arc::new(map)))
-    }
-
-    pub(super) fn described(&self, number: usize) -> &'a TextureDescription {
-        &self.described[number]
     }
 
     /// Checks the parameters of unused textures. Reads no images.

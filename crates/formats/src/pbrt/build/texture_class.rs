@@ -6,7 +6,6 @@ use super::imagemap::ImageSettings;
 use super::mapping;
 use super::reader::Reader;
 use super::texture::{Element, Operand, Textures};
-use crate::error::ErrorKind;
 use crate::pbrt::parameters::ParameterType;
 use crate::pbrt::scene::{TextureDescription, TextureKind};
 use crate::source::Fault;
@@ -39,7 +38,7 @@ impl<T: Element> Source<T> {
         number: usize,
         purpose: Purpose,
     ) -> Result<Self, Fault> {
-        let texture = textures.described(number);
+        let texture = &textures.described[number];
         let mut class = Class {
             textures,
             number,
@@ -186,7 +185,7 @@ impl Class<'_, '_, '_> {
             3 => mapping::space(self.reader.context, self.texture).map(Cells::Space),
             dimension => {
                 let message = format!("a checkerboard has 2 or 3 dimensions, not {dimension}");
-                Err(Fault::scene(self.reader.span(), message))
+                Err(self.reader.fault(message))
             }
         }
     }
@@ -196,13 +195,9 @@ impl Class<'_, '_, '_> {
         if self.texture.kind == kind {
             return Ok(());
         }
-        let word = match kind {
-            TextureKind::Float => "float",
-            TextureKind::Spectrum => "spectrum",
-        };
-        let class = &self.texture.entity.kind;
+        let (class, word) = (&self.texture.entity.kind, kind.word());
         let message = format!("a texture of class `{class}` is of type `{word}`");
-        Err(Fault::new(ErrorKind::Scene, self.reader.span(), message))
+        Err(self.reader.fault(message))
     }
 
     fn noise<T: Element>(&mut self, class: &str) -> Result<Texture<T>, Fault> {

@@ -44,8 +44,7 @@ pub(super) fn of_cells(reader: &mut Reader<'_, '_>, cells: Cells) -> Result<Opti
     let radiance: Vec<Rgb> = match (radiance, temperatures) {
         (None, None) => return Ok(None),
         (Some(_), Some(_)) => {
-            let message = "the medium has both `Le` and `temperature`";
-            return Err(Fault::scene(reader.span(), message));
+            return Err(reader.fault("the medium has both `Le` and `temperature`"));
         }
         (Some(radiance), None) if factors.is_none() => {
             return bright(reader, radiance).map(|radiance| Some(Glow::Even(radiance)));

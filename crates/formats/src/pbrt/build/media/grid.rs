@@ -2,11 +2,11 @@
 
 use super::super::color::to_rec709;
 use super::super::reader::Reader;
-use super::super::shape::check_point;
 use super::{color, glow, own_coefficients, phase, scale, scaled};
 use crate::error::ErrorKind;
+use crate::import::{box_corners, check_point};
 use crate::limits::LONGEST_GRID;
-use crate::pbrt::parameters::{Parameter, ParameterType, Values};
+use crate::pbrt::parameters::{Parameter, ParameterType};
 use crate::pbrt::transform::Transforms;
 use crate::source::{Fault, Span};
 use bidir::math::Affine3A;
@@ -26,7 +26,7 @@ pub(super) fn uniform(
     let light = glow::of_cells(reader, cells)?;
     let phase = phase(reader)?;
     let Some(density) = reader.find(ParameterType::Float, "density") else {
-        return Err(Fault::scene(reader.span(), "the medium has no `density`"));
+        return Err(reader.fault("the medium has no `density`"));
     };
     let values = numbers(density, cells.size, 1)?;
     let values = values.iter().map(|&value| [value]).collect();
@@ -48,12 +48,10 @@ pub(super) fn rgb(reader: &mut Reader<'_, '_>, transforms: &Transforms) -> Resul
     let [absorption, scattering] =
         ["sigma_a", "sigma_s"].map(|name| reader.find(ParameterType::Rgb, name));
     if light.is_some() && absorption.is_none() {
-        let message = "a medium with `Le` needs `sigma_a`";
-        return Err(Fault::scene(reader.span(), message));
+        return Err(reader.fault("a medium with `Le` needs `sigma_a`"));
     }
     let Some(any) = absorption.or(scattering) else {
-        let message = "the medium has neither `sigma_a` nor `sigma_s`";
-        return Err(Fault::scene(reader.span(), message));
+        return Err(reader.fault("the medium has neither `sigma_a` nor `sigma_s`"));
     };
     let count = numbers(any, cells.size, 3)?.len() / 3;
     let read = |parameter: Option<&Parameter>| {
@@ -110,8 +108,8 @@ pub(super) fn place(
     ]
     .map(|corner| Vec3::from_array(corner).as_dvec3());
     if !low.cmplt(high).all() {
-        let message = "the box of the medium is empty: `p0` must be below `p1` in every coordinate";
-        return Err(Fault::scene(reader.span(), message));
+        return Err(reader
+            .fault("the box of the medium is empty: `p0` must be below `p1` in every coordinate"));
     }
     let cube = DAffine3::from_translation(low) * DAffine3::from_scale(high - low);
     placed(reader, transforms, cube)
@@ -129,10 +127,8 @@ pub(super) fn placed(
         reader.context.unsupported(span, what, substitute)?;
     }
     let placed = reader.context.place(transforms) * cube;
-    let corners =
-        (0..8).map(|i| DVec3::new(f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2)));
-    for corner in corners {
-        check_point(reader.span(), placed.transform_point3(corner))?;
+    for corner in box_corners([DVec3::ZERO, DVec3::ONE]) {
+        check_point(placed.transform_point3(corner), &reader.span())?;
     }
     Ok(Affine3A {
         matrix3: placed.matrix3.as_mat3().into(),
@@ -171,9 +167,7 @@ pub(super) fn signed_numbers(
     channels: usize,
 ) -> Result<&[f32], Fault> {
     let expected = size.iter().try_fold(channels, |n, &k| n.checked_mul(k));
-    let Values::Floats(values) = &parameter.values else {
-        return Ok(&[]);
-    };
+    let values = parameter.values.floats();
     if expected != Some(values.len()) {
         let [nx, ny, nz] = size;
         let message = format!(

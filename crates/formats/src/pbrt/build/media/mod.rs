@@ -122,7 +122,7 @@ fn phase(reader: &mut Reader<'_, '_>) -> Result<HenyeyGreenstein, Fault> {
     let g = reader.float_within("g", 0.0, [-1.0, 1.0])?;
     HenyeyGreenstein::new(g).ok_or_else(|| {
         let message = "the medium scatters in one direction alone: g is 1 or -1";
-        Fault::scene(reader.span(), message)
+        reader.fault(message)
     })
 }
 
@@ -131,7 +131,7 @@ fn scaled(reader: &Reader<'_, '_>, given: [Rgb; 2], scale: f32) -> Result<Coeffi
     let scale = scale * reader.context.layout.space.unit as f32;
     let [absorption, scattering] = given.map(|sigma| sigma.map(|channel| channel * scale));
     let message = "the coefficients of the medium are too large";
-    Coefficients::new(absorption, scattering).ok_or_else(|| Fault::scene(reader.span(), message))
+    Coefficients::new(absorption, scattering).ok_or_else(|| reader.fault(message))
 }
 
 /// σ_a and σ_s as they are given. Unit: 1 / the scene's unit of length.

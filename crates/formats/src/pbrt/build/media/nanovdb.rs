@@ -31,7 +31,7 @@ struct Smoke {
 /// cell around those that are active.
 pub(super) fn read(reader: &mut Reader<'_, '_>, transforms: &Transforms) -> Result<Recipe, Fault> {
     let Some((name, span)) = reader.string("filename")? else {
-        return Err(Fault::scene(reader.span(), "the medium has no `filename`"));
+        return Err(reader.fault("the medium has no `filename`"));
     };
     let path = reader.context.document.resolve(name);
     let bytes = reader.context.read_grids(&path, span)?;
@@ -79,7 +79,7 @@ pub(super) fn read(reader: &mut Reader<'_, '_>, transforms: &Transforms) -> Resu
         return Err(Fault::scene(span, message));
     }
     for part in [Some(&density), temperature.as_ref()].into_iter().flatten() {
-        let counted = reader.context.log.cells(part.within.count());
+        let counted = reader.context.log.reading.cells(part.within.count());
         counted.map_err(|error| Fault::from_error(span, &error))?;
     }
     let cells = cells(reader, transforms, &density)?;
@@ -97,14 +97,9 @@ pub(super) fn read(reader: &mut Reader<'_, '_>, transforms: &Transforms) -> Resu
 
 /// True where two maps differ by rounding at most.
 fn are_close(a: DAffine3, b: DAffine3) -> bool {
-    let pairs = a.to_cols_array().into_iter().zip(b.to_cols_array());
-    let size = a
-        .to_cols_array()
-        .into_iter()
-        .fold(0.0, |most: f64, x| most.max(x.abs()));
-    pairs
-        .map(|(a, b)| (a - b).abs())
-        .all(|error| error <= 1e-6 * size)
+    let (a, b) = (a.to_cols_array(), b.to_cols_array());
+    let size = a.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+    a.iter().zip(b).all(|(a, b)| (a - b).abs() <= 1e-6 * size)
 }
 
 impl Part {

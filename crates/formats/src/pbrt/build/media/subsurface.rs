@@ -51,8 +51,9 @@ pub(in super::super) fn read(reader: &mut Reader<'_, '_>, eta: f32) -> Result<Re
         }
         (None, None, None, None) => Given::Coefficients([ABSORPTION, SCATTERING]),
         _ => {
-            let message = "a subsurface material has `sigma_a` and `sigma_s`, or `reflectance`";
-            return Err(Fault::scene(reader.span(), message));
+            return Err(
+                reader.fault("a subsurface material has `sigma_a` and `sigma_s`, or `reflectance`")
+            );
         }
     };
     // Paths are divided by what coefficients are multiplied with.
