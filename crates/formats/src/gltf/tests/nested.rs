@@ -118,10 +118,9 @@ fn check(draft: &Draft, expected: f32) {
     }
 }
 
-/// The number of warnings that contain `words`.
+/// Returns the number of warnings that contain `words`.
 fn warnings(draft: &Draft, words: &str) -> usize {
-    let warnings = draft.load().expect("it is valid").warnings;
-    warnings.iter().filter(|it| it.contains(words)).count()
+    super::warnings(&draft.load().expect("it is valid"), words)
 }
 
 const INSIDE_OUT: &str = "inside out";

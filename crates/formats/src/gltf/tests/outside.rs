@@ -1,7 +1,7 @@
 //! Scenes without a camera, or without light of consequence.
 
 use super::look::seen;
-use super::{Draft, F32, floats};
+use super::{Draft, F32, floats, warnings};
 use crate::import::Loaded;
 use bidir::light::LightPoint;
 use bidir::math::{Vec3, sin_cos};
@@ -153,12 +153,7 @@ fn closed_rooms_are_seen_from_inside() {
         ] {
             assert!(is_inside(&loaded, ROOM), "{:?}", loaded.warnings);
             assert!(!has_sky(&loaded));
-            assert!(
-                loaded
-                    .warnings
-                    .iter()
-                    .any(|it| it.contains("one inside it"))
-            );
+            assert_eq!(warnings(&loaded, "one inside it"), 1);
         }
     }
 }
@@ -201,12 +196,7 @@ fn a_little_emission_is_no_light() {
         "{:?}",
         loaded.warnings
     );
-    assert!(
-        loaded
-            .warnings
-            .iter()
-            .any(|it| it.contains("leave the scene dark"))
-    );
+    assert_eq!(warnings(&loaded, "leave the scene dark"), 1);
     // A sign that shines over all of the front is seen, and a lamp before it lights it.
     let mut sign = faces_of_box([1.0; 3]);
     let front = sign.pop().unwrap();
