@@ -1,7 +1,7 @@
 //! Cases of tests in text files: inputs, each with what comes of it.
 //!
-//! Empty lines separate cases. The outcome of a case are its lines after `=> `, which `UPDATE_EXPECT=1` writes anew;
-//! blocks that begin with `##` are headings.
+//! Empty lines separate cases. Lines after `=> ` are the outcome of a case, which `UPDATE_EXPECT=1` writes anew; blocks
+//! that begin with `##` are headings.
 
 use crate::error::Result;
 use expect_test::ExpectFile;
@@ -12,10 +12,10 @@ const MARK: &str = "=> ";
 #[track_caller]
 pub(crate) fn check(file: &ExpectFile, outcome: impl Fn(&str) -> String) {
     let text = file.data();
-    let is_case = |block: &&str| !block.starts_with("##");
-    assert!(text.split("\n\n").any(|block| is_case(&block)), "no case");
+    let is_case = |block: &str| !block.is_empty() && !block.starts_with("##");
+    assert!(text.split("\n\n").any(is_case), "no case");
     let run = |block: &str| {
-        if !is_case(&block) {
+        if !is_case(block) {
             return block.to_owned();
         }
         let input: Vec<_> = block

@@ -5,19 +5,9 @@ use super::*;
 const NONE: Vec<u32> = Vec::new();
 
 /// The faces of a box, seen from outside.
-const BOX: [[u32; 3]; 12] = [
-    [4, 5, 6],
-    [4, 6, 7],
-    [0, 2, 1],
-    [0, 3, 2],
-    [0, 1, 5],
-    [0, 5, 4],
-    [1, 2, 6],
-    [1, 6, 5],
-    [2, 3, 7],
-    [2, 7, 6],
-    [3, 0, 4],
-    [3, 4, 7],
+const BOX: [u32; 36] = [
+    4, 5, 6, 4, 6, 7, 0, 2, 1, 0, 3, 2, 0, 1, 5, 0, 5, 4, 1, 2, 6, 1, 6, 5, 2, 3, 7, 2, 7, 6, 3, 0,
+    4, 3, 4, 7,
 ];
 
 /// A box between two corners, without shared vertices.
@@ -29,7 +19,7 @@ fn soup([low, high]: [Vec3; 2]) -> Mesh {
         Vec3::new(ends[x].x, ends[y].y, ends[i as usize / 4].z)
     };
     Mesh {
-        positions: BOX.iter().flatten().map(|&i| corner(i)).collect(),
+        positions: BOX.map(corner).to_vec(),
         triangles: (0..12).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect(),
         ..Mesh::default()
     }

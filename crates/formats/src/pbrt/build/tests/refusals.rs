@@ -3,7 +3,7 @@ use crate::cases;
 use crate::pbrt::parse_text;
 use expect_test::expect_file;
 
-/// The error of a scene, or its warnings.
+/// Returns the error of a scene, or its warnings.
 pub(super) fn outcome(text: &str, options: &LoadOptions) -> String {
     let loaded = parse_text("s.pbrt", text).and_then(|description| build(&description, options));
     cases::of_reading(loaded.map(|loaded| loaded.warnings))

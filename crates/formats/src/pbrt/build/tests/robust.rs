@@ -1,5 +1,5 @@
 use super::{LENIENT, STRICT, build};
-use crate::pbrt::{load, parse_text};
+use crate::pbrt::{parse_file, parse_text};
 use proptest::prelude::*;
 use std::path::Path;
 
@@ -59,25 +59,25 @@ fn real_scenes_are_built() {
         return;
     };
     let scenes = Path::new(&scenes).join("pbrt-v4");
-    for (name, options) in [
-        ("veach-bidir/veach-bidir.pbrt", STRICT),
-        ("veach-ajar/veach-ajar.pbrt", STRICT),
-        ("veach-mis/veach-mis.pbrt", STRICT),
-        ("cornell-box-w3ntao/cornell-box.pbrt", STRICT),
-        ("cornell-box-w3ntao/smallpt.pbrt", STRICT),
-        ("coffee/coffee.pbrt", LENIENT),
-        ("living-room/living-room.pbrt", LENIENT),
+    for (name, options, shapes) in [
+        ("veach-bidir/veach-bidir.pbrt", STRICT, Some(14)),
+        ("veach-ajar/veach-ajar.pbrt", STRICT, Some(22)),
+        ("veach-mis/veach-mis.pbrt", STRICT, Some(9)),
+        ("cornell-box-w3ntao/cornell-box.pbrt", STRICT, Some(8)),
+        ("cornell-box-w3ntao/smallpt.pbrt", STRICT, None),
+        ("coffee/coffee.pbrt", LENIENT, Some(23)),
+        ("living-room/living-room.pbrt", LENIENT, None),
     ] {
-        let path = scenes.join(name);
-        let loaded = load(&path, &options).unwrap_or_else(|error| panic!("{error}"));
+        let description = parse_file(&scenes.join(name)).unwrap_or_else(|error| panic!("{error}"));
+        let count = description.shapes.len();
+        assert_eq!(count, shapes.unwrap_or(count), "{name}");
+        let loaded = build(&description, &options).unwrap_or_else(|error| panic!("{error}"));
         println!(
             "{name}: {:?}\n{}",
             loaded.summary,
             loaded.warnings.join("\n")
         );
-        assert!(
-            loaded.summary.primitives > 10 && !loaded.scene.lights().is_empty(),
-            "{name}"
-        );
+        let is_lit = !loaded.scene.lights().is_empty();
+        assert!(loaded.summary.primitives > 10 && is_lit, "{name}");
     }
 }
