@@ -72,8 +72,8 @@ fn scattered(loaded: &Loaded, wo: Vec3, wi: Vec3) -> f32 {
     let hit = job.scene.intersect(origin, -wo, RayDraws::new(&stream, 1));
     let hit = hit.expect("the plate is there");
     let vertex = Vertex::surface(&job, &hit, wo, Spectrum::ONE, || 0.5);
-    let turn = vertex.turn(wo, wi, TransportMode::Radiance);
-    turn.scatter(&job)[0] * vertex.locus.n_g.dot(wi).abs()
+    let event = vertex.event(wo, wi, TransportMode::Radiance);
+    event.scatter(&job)[0] * vertex.locus.n_g.dot(wi).abs()
 }
 
 /// Pairs of directions above the plate.
