@@ -119,55 +119,32 @@ fn count<'a>(names: impl Iterator<Item = &'a str>) -> BTreeMap<&'a str, usize> {
 
 /// Returns the contents of a scene as lines, each with its name.
 fn lines(info: &Value, loaded: &LoadedScene) -> Vec<(String, String)> {
-    let film = loaded.subject.view.film();
-    let ([width, height], [x0, y0], [x1, y1]) = (film.resolution, film.crop.min, film.crop.max);
-    let settings = SettingsText::from(&loaded.settings).by_flag();
-    let depth = match &*settings["max-depth"] {
-        "0" => "no limit".to_owned(),
-        depth => format!("at most {depth} bounces"),
-    };
+    let properties = properties(info, loaded).map(|(name, text)| (name.to_owned(), text));
+    let spots = info["blind_spots"].as_object();
+    let spots = spots.map(|spots| blind_spot_lines(spots, loaded.settings.integrator));
+    let refused = loaded.refused.iter();
+    let refused = refused.map(|text| ("refused".to_owned(), text.clone()));
+    let lines = properties.into_iter().chain(spots.unwrap_or_default());
+    lines.chain(refused).collect()
+}
+
+fn properties(info: &Value, loaded: &LoadedScene) -> [(&'static str, String); 17] {
     let memory = |bytes: &Value| BinaryBytes(bytes.as_u64().unwrap_or_default()).to_string();
     let text = |key: &str| match &info[key] {
         Value::String(text) => text.clone(),
         Value::Object(counts) => list(counts),
         number => number.to_string(),
     };
-    let groups = info["light_groups"].as_object().into_iter().flatten();
-    let groups: Vec<_> = groups
-        .map(|(name, count)| {
-            let lights = if *count == 1 { "light" } else { "lights" };
-            format!("{name} ({count} {lights})")
-        })
-        .collect();
-    let groups = match groups.len() {
-        0 => "none".to_owned(),
-        count => format!("{count}: {}", groups.join(", ")),
-    };
-    let corner = |corner: [f32; 3]| corner.map(number).join(", ");
-    let bounds = bounds(&loaded.subject.scene).map(|corners| corners.map(corner));
-    let bounds = bounds.map(|[low, high]| format!("({low}) to ({high})"));
-    let named = [
+    let [integrator, sampler] = settings(loaded);
+    let output = info["film"]["output"].as_str().unwrap_or("not named");
+    let bvh = format!("{} ({})", memory(&info["bvh_bytes"]), text("isa"));
+    [
         ("scene", text("scene")),
-        (
-            "film",
-            format!("{width}x{height}, pixels {x0},{y0} to {x1},{y1}"),
-        ),
-        (
-            "output",
-            info["film"]["output"]
-                .as_str()
-                .unwrap_or("not named")
-                .to_owned(),
-        ),
+        ("film", film(loaded)),
+        ("output", output.to_owned()),
         ("camera", text("camera")),
-        ("integrator", format!("{}, {depth}", settings["integrator"])),
-        (
-            "sampler",
-            format!(
-                "{}, {} spp, seed {}",
-                settings["sampler"], loaded.spp, settings["seed"]
-            ),
-        ),
+        ("integrator", integrator),
+        ("sampler", sampler),
         ("shapes", text("shapes")),
         ("triangles", text("triangles")),
         (
@@ -177,28 +154,52 @@ fn lines(info: &Value, loaded: &LoadedScene) -> Vec<(String, String)> {
         ("materials", text("materials")),
         ("media", text("media")),
         ("lights", text("lights")),
-        ("light groups", groups),
+        ("light groups", groups(&info["light_groups"])),
         ("textures", text("textures")),
-        ("bounds", bounds.unwrap_or_else(|| "no surfaces".to_owned())),
+        ("bounds", extent(&loaded.subject.scene)),
         ("film memory", memory(&info["film"]["bytes"])),
-        (
-            "BVH memory",
-            format!("{} ({})", memory(&info["bvh_bytes"]), text("isa")),
-        ),
-    ];
-    let named = named
-        .map(|(name, text)| (name.to_owned(), text))
-        .into_iter();
-    let refused = loaded
-        .refused
-        .iter()
-        .map(|text| ("refused".to_owned(), text.clone()));
-    let spots = info["blind_spots"].as_object();
-    let spots = spots.map(|spots| blind_spot_lines(spots, loaded.settings.integrator));
-    named
-        .chain(spots.unwrap_or_default())
-        .chain(refused)
-        .collect()
+        ("BVH memory", bvh),
+    ]
+}
+
+fn film(loaded: &LoadedScene) -> String {
+    let film = loaded.subject.view.film();
+    let ([width, height], [x0, y0], [x1, y1]) = (film.resolution, film.crop.min, film.crop.max);
+    format!("{width}x{height}, pixels {x0},{y0} to {x1},{y1}")
+}
+
+/// Returns the lines of integrator and sampler.
+fn settings(loaded: &LoadedScene) -> [String; 2] {
+    let settings = SettingsText::from(&loaded.settings).by_flag();
+    let depth = match &*settings["max-depth"] {
+        "0" => "no limit".to_owned(),
+        depth => format!("at most {depth} bounces"),
+    };
+    let (sampler, seed) = (&settings["sampler"], &settings["seed"]);
+    let sampler = format!("{sampler}, {} spp, seed {seed}", loaded.spp);
+    [format!("{}, {depth}", settings["integrator"]), sampler]
+}
+
+/// Returns the number of groups, and each with its number of lights.
+fn groups(counts: &Value) -> String {
+    let groups = counts.as_object().into_iter().flatten();
+    let groups = groups.map(|(name, count)| {
+        let lights = if *count == 1 { "light" } else { "lights" };
+        format!("{name} ({count} {lights})")
+    });
+    let texts: Vec<_> = groups.collect();
+    match texts.len() {
+        0 => "none".to_owned(),
+        count => format!("{count}: {}", texts.join(", ")),
+    }
+}
+
+fn extent(scene: &Scene) -> String {
+    let corner = |corner: [f32; 3]| corner.map(number).join(", ");
+    match bounds(scene).map(|corners| corners.map(corner)) {
+        Some([low, high]) => format!("({low}) to ({high})"),
+        None => "no surfaces".to_owned(),
+    }
 }
 
 /// Returns a line for each blind spot, those of the scene's integrator first. Integrators with the same blind spots

@@ -3,7 +3,7 @@
 use crate::exit::Failure;
 use bidir::names::nearest;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
-use clap::{Command, Error};
+use clap::{Arg, Command, Error};
 use std::ffi::{OsStr, OsString};
 use std::num::ParseIntError;
 use std::path::Path;
@@ -18,40 +18,44 @@ const ELSEWHERE: [&str; 4] = [
 
 /// Returns the failure for an error of the command line `root`, which read these arguments.
 pub(crate) fn explained(error: &Error, root: &Command, arguments: &[OsString]) -> Failure {
-    let mut command = root;
-    let mut names = arguments.iter().skip(1);
-    while let Some(called) = names.next().and_then(|name| command.find_subcommand(name)) {
-        command = called;
-    }
+    let command = called(root, arguments);
     let given = first(error, ContextKind::InvalidArg);
     let (message, hint) = match error.kind() {
         ErrorKind::UnknownArgument if given.starts_with('-') => {
             let flag = flag_of(&given);
-            let hint = hint_at_flag(flag, command, root).or_else(|| near(error));
+            let hint = hint_at_flag(flag, command, root).or_else(|| near(error, command));
             (format!("there is no flag `{flag}`"), hint)
         }
         ErrorKind::UnknownArgument => (format!("unexpected argument `{given}`"), None),
         ErrorKind::InvalidSubcommand => {
             let name = first(error, ContextKind::InvalidSubcommand);
-            let hint = hint_at_file(&name).or_else(|| near(error));
+            let hint = hint_at_file(&name).or_else(|| near(error, command));
             (format!("there is no command `{name}`"), hint)
         }
         ErrorKind::MissingRequiredArgument => (missing(error, command), None),
         ErrorKind::ValueValidation | ErrorKind::InvalidValue => return value(error, command),
         ErrorKind::ArgumentConflict if !given.is_empty() => return conflict(error),
-        // The first line has clap's own words.
-        _ => (
-            error
-                .to_string()
-                .lines()
-                .take(1)
-                .collect::<String>()
-                .replacen("error: ", "", 1),
-            None,
-        ),
+        _ => (own_words(error), None),
     };
     let see_help = || format!("see `{} --help`", command.get_bin_name().unwrap_or("bidir"));
     Failure::usage(message).with_hint(hint.unwrap_or_else(see_help))
+}
+
+/// Returns the command that the arguments call.
+fn called<'c>(root: &'c Command, arguments: &[OsString]) -> &'c Command {
+    let mut called = root;
+    let mut names = arguments.iter().skip(1);
+    while let Some(command) = names.next().and_then(|name| called.find_subcommand(name)) {
+        called = command;
+    }
+    called
+}
+
+/// Returns the first line of clap's own words.
+fn own_words(error: &Error) -> String {
+    let text = error.to_string();
+    let line = text.lines().next().unwrap_or_default();
+    line.trim_start_matches("error: ").to_owned()
 }
 
 /// Returns the texts of a part of an error.
@@ -72,10 +76,20 @@ fn flag_of(argument: &str) -> &str {
     argument.split([' ', '=']).next().unwrap_or_default()
 }
 
-/// Returns a hint at the flag or command that is nearest to the given one.
-fn near(error: &Error) -> Option<String> {
+/// Returns a hint at the flag or command that is nearest to the given one; a flag under its own name.
+fn near(error: &Error, command: &Command) -> Option<String> {
     let mut kinds = [ContextKind::SuggestedArg, ContextKind::SuggestedSubcommand].into_iter();
     let near = kinds.find_map(|kind| texts(error, kind).into_iter().next())?;
+    let name = near.strip_prefix("--").unwrap_or_default();
+    let has_alias = |arg: &&Arg| {
+        arg.get_all_aliases()
+            .is_some_and(|names| names.contains(&name))
+    };
+    let flag = command
+        .get_arguments()
+        .find(has_alias)
+        .and_then(Arg::get_long);
+    let near = flag.map_or(near.clone(), |flag| format!("--{flag}"));
     Some(format!("did you mean `{near}`?"))
 }
 

@@ -3,7 +3,6 @@
 use super::noise::{self, Significance};
 use crate::exit::{Exit, Failure};
 use lab::statistics::{Interval, mean_interval};
-use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
 use std::path::PathBuf;
 
@@ -62,11 +61,7 @@ fn as_map<T: Serialize, S: Serializer>(
     entries: &[(&'static str, T)],
     serializer: S,
 ) -> Result<S::Ok, S::Error> {
-    let mut map = serializer.serialize_map(Some(entries.len()))?;
-    for (name, value) in entries {
-        map.serialize_entry(name, value)?;
-    }
-    map.end()
+    serializer.collect_map(entries.iter().map(|(name, value)| (name, value)))
 }
 
 /// Refuses images that were compared at different sizes.
