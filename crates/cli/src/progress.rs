@@ -13,6 +13,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::json;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::thread;
 use std::time::{Duration, Instant};
 
 /// The least time between two lines.
@@ -206,13 +207,16 @@ impl Progress for Reporter<'_> {
     }
 }
 
-/// A bar whose end is at 1000, which is drawn at intervals, so that its time goes on.
+/// Returns a bar whose end is at 1000, which is drawn at intervals, so that its time goes on: where the system still
+/// gives threads, without which the bar's own would panic.
 pub(crate) fn bar(template: &str) -> ProgressBar {
     let bar = ProgressBar::new(BAR_LENGTH);
     if let Ok(style) = ProgressStyle::with_template(template) {
         bar.set_style(style.progress_chars("━╸ "));
     }
-    bar.enable_steady_tick(TICK);
+    if thread::Builder::new().spawn(|| ()).is_ok() {
+        bar.enable_steady_tick(TICK);
+    }
     bar
 }
 
