@@ -94,7 +94,7 @@ impl ScaledFloat {
 
     /// Returns the product between 0 and 1; where the number is 0 nothing is looked up.
     #[inline]
-    fn share(&self, at: &TexturePoint) -> f32 {
+    fn fraction(&self, at: &TexturePoint) -> f32 {
         if self.factor == 0.0 {
             return 0.0;
         }
@@ -211,7 +211,7 @@ impl PrincipledMaterial {
     /// Slopes along the grain and across, and where the grain points.
     #[inline]
     fn facets(&self, at: &TexturePoint) -> (Ggx, Vec2) {
-        let across = sqr(self.roughness.share(at));
+        let across = sqr(self.roughness.fraction(at));
         let (strength, grain) = self.anisotropy.eval(at);
         let along = across + (1.0 - across) * sqr(strength);
         (Ggx::new(along, across), grain)
@@ -219,9 +219,9 @@ impl PrincipledMaterial {
 
     #[inline]
     fn coat(&self, at: &TexturePoint) -> PrincipledCoat {
-        let cover = self.coat.share(at);
+        let cover = self.coat.fraction(at);
         let alpha = if cover > 0.0 {
-            sqr(self.coat_roughness.share(at))
+            sqr(self.coat_roughness.fraction(at))
         } else {
             0.0
         };
@@ -263,13 +263,13 @@ impl PrincipledMaterial {
         let albedo = |of: &ScaledColor| lanes.albedo(unit(of.eval(at)));
         let (ggx, grain) = self.facets(at);
         let mut parameters = PrincipledParameters {
-            metallic: self.metallic.share(at),
+            metallic: self.metallic.fraction(at),
             grain,
             ior: self.ior,
-            specular: self.specular.share(at),
-            transmission: self.transmission.share(at),
+            specular: self.specular.fraction(at),
+            transmission: self.transmission.fraction(at),
             thickness: self.thickness,
-            diffuse_transmission: self.diffuse_transmission.share(at),
+            diffuse_transmission: self.diffuse_transmission.fraction(at),
             coat: self.coat(at),
             ..PrincipledParameters::plain(albedo(&self.color), ggx)
         };
@@ -282,7 +282,7 @@ impl PrincipledMaterial {
         }
         if !self.sheen.is_black() {
             parameters.sheen = albedo(&self.sheen);
-            parameters.sheen_alpha = sqr(self.sheen_roughness.share(at));
+            parameters.sheen_alpha = sqr(self.sheen_roughness.fraction(at));
         }
         Bsdf::Principled(Principled::new(&parameters))
     }
@@ -342,6 +342,6 @@ mod tests {
             factor: 3.0,
             texture: Some(FloatTexture::Constant(0.5)),
         };
-        assert_eq!(number.share(&at).to_bits(), 1.0f32.to_bits());
+        assert_eq!(number.fraction(&at).to_bits(), 1.0f32.to_bits());
     }
 }

@@ -100,11 +100,11 @@ impl<const N: usize> Curve<N> {
         }
     }
 
-    /// This and the part `share` of another, value by value.
+    /// Returns the sum of this and of another times `factor`, value by value.
     #[must_use]
-    pub(super) fn plus(self, other: Self, share: f32) -> Self {
+    pub(super) fn plus(self, other: Self, factor: f32) -> Self {
         let (a, b) = (self.series(), other.series());
-        Self::of_series(std::array::from_fn(|i| a[i] + share * b[i]))
+        Self::of_series(std::array::from_fn(|i| a[i] + factor * b[i]))
     }
 
     /// Between two curves.

@@ -73,13 +73,13 @@ impl Counts {
     }
 
     /// Returns D_k / D of a path.
-    pub(super) fn share(&self, shares: &Shares) -> Share {
+    pub(super) fn density_ratio(&self, shares: &Shares) -> DensityRatio {
         let pair = |parts: [f32; 2], counts| dot(parts.map(f64::from), counts);
         let hits = f64::from(shares.hits) * self.longer(shares, 0);
         let next_events = pair(shares.next_events, self.next_events) * self.longer(shares, 1);
         let light_images = f64::from(shares.light_images) * self.light_images;
         let others = pair(shares.connections, self.connections) + light_images;
-        Share {
+        DensityRatio {
             all: (hits + next_events + others).max(LEAST_SHARE),
             light_images,
         }
@@ -110,7 +110,7 @@ impl Draws {
 }
 
 /// D_k / D of a path.
-pub(super) struct Share {
+pub(super) struct DensityRatio {
     pub(super) all: f64,
     /// The part of t = 1.
     pub(super) light_images: f64,
@@ -152,11 +152,11 @@ mod tests {
 
     #[test]
     fn a_plan_takes_of_a_path_what_its_numbers_of_samples_are() {
-        let share = |integrator| {
+        let ratio = |integrator| {
             let settings = Settings::new(integrator);
             let roulette = PathRoulette::Albedo { start: 0 };
             Counts::new(&settings, roulette, 4.0, 1 << 16)
-                .share(&SHARES)
+                .density_ratio(&SHARES)
                 .all
         };
         let (path, bdpt) = (0.05 / 0.5 + 0.25 / 0.5, 1.0);
@@ -166,7 +166,7 @@ mod tests {
             (IntegratorKind::Bdpt, bdpt),
             (IntegratorKind::Lvc, lvc),
         ] {
-            let found = share(integrator);
+            let found = ratio(integrator);
             assert!((found - expected).abs() < 1e-6, "{integrator:?}: {found}");
         }
     }
@@ -188,7 +188,9 @@ mod tests {
             (1, 5, 0.3 / 0.5),
             (0, 5, 0.3),
         ] {
-            let found = settings(start).share(&Shares { vertices, ..SHARES }).all;
+            let found = settings(start)
+                .density_ratio(&Shares { vertices, ..SHARES })
+                .all;
             assert!(
                 (found - expected).abs() < 1e-6,
                 "{start}, {vertices}: {found}"

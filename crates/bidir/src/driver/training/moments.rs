@@ -198,21 +198,21 @@ impl Sums {
     ) {
         let mut scale = 0.0;
         for (term, relative, known) in terms {
-            let share = counts.share(&known.shares);
+            let ratio = counts.density_ratio(&known.shares);
             let is_seen = known.shares.vertices == 2;
             let alone = if is_seen {
-                share.light_images
+                ratio.light_images
             } else {
-                share.all
+                ratio.all
             };
-            let square = relative.square / (share.all * share.all);
+            let square = relative.square / (ratio.all * ratio.all);
             self.moment += square * (alone + dot(known.excess, counts.connections));
             self.of_light += square * dot(known.squares, counts.connections.map(|n| n * n));
             if term.is_light_image() {
                 continue;
             }
             scale = relative.scale;
-            let value = relative.value / share.all;
+            let value = relative.value / ratio.all;
             let (part, rate) = term.rate(known, counts);
             let (i, reach) = (
                 term.sample as usize % QUAD as usize,
@@ -224,7 +224,7 @@ impl Sums {
                     block: relative.block as u32,
                     sample: term.sample,
                     count: rate,
-                    score: relative.score / share.all * f64::from(known.root_visibility),
+                    score: relative.score / ratio.all * f64::from(known.root_visibility),
                     value,
                     scale,
                 });

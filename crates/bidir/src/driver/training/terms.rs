@@ -66,7 +66,7 @@ impl SurveyTerm {
 
     /// Returns f / D_k: what it is of the value of a pixel of `film` where the numbers of samples are `counts`.
     pub(super) fn value_by(&self, film: &FilmSettings, counts: &Counts) -> f64 {
-        self.of_mean_pixel(film) / counts.share(&self.shares).all
+        self.of_mean_pixel(film) / counts.density_ratio(&self.shares).all
     }
 }
 
