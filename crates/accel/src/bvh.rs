@@ -13,7 +13,6 @@ use crate::instance::{Instance, Placement};
 use crate::isa::Isa;
 use crate::node::Node;
 use crate::primitive::{Primitive, Primitives};
-use crate::query::AnyHit;
 use crate::ray::{Hit, Ray};
 use crate::stop::Stop;
 use crate::triangle::TriangleBlock;
@@ -42,7 +41,7 @@ impl Default for BuildOptions {
 /// let ray = Ray { t_max: 3.0, ..Ray::new(Vec3::new(0.2, 0.3, 2.0), -Vec3::Z) };
 /// let hit = bvh.closest(&ray, accept_all).expect("it points at the triangle");
 /// assert_eq!((hit.t, hit.u, hit.v), (2.0, 0.2, 0.3));
-/// assert!(bvh.occluded(&ray, accept_all));
+/// assert!(bvh.is_blocked(&ray));
 /// # Ok::<(), bidir_accel::BuildError>(())
 /// ```
 #[derive(Debug, Clone)]
@@ -122,16 +121,7 @@ impl Bvh {
         self.until(Stop::NEVER).closest(ray, accept)
     }
 
-    /// Returns true if there is any hit for which `accept` holds: the same as `closest(..).is_some()`,
-    /// but faster.
-    #[inline]
-    pub fn occluded<F: Fn(&Hit) -> bool>(&self, ray: &Ray, accept: F) -> bool {
-        let mut query = AnyHit::new(accept);
-        self.until(Stop::NEVER).ask(ray, &mut query);
-        query.found
-    }
-
-    /// Returns true if there is any hit: the same as `occluded(ray, accept_all)`, but faster.
+    /// Returns true if there is any hit: the same as `closest(ray, accept_all).is_some()`, but faster.
     #[inline]
     pub fn is_blocked(&self, ray: &Ray) -> bool {
         self.until(Stop::NEVER).is_blocked(ray)

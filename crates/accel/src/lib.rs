@@ -1,8 +1,8 @@
 //! Watertight ray intersection: an 8-wide BVH over triangles, spheres, disks, cylinders and instances.
 //!
 //! A [`Bvh`] is built once from a slice of [`Primitive`]s and then answers rays from any number of
-//! threads: [`Bvh::closest`] and [`Bvh::occluded`] take a filter that decides which hits exist, so that
-//! cut-outs (alpha) cost one call per hit and nothing where they are not used ([`accept_all`]);
+//! threads: [`Bvh::closest`] takes a filter that decides which hits exist, so that cut-outs (alpha) cost
+//! one call per hit and nothing where they are not used ([`accept_all`]);
 //! [`Bvh::each_hit`] reports all hits, and [`Bvh::are_blocked`] finds which of many rays hit anything.
 //!
 //! ```

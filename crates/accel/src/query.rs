@@ -36,33 +36,6 @@ impl<F: Fn(&Hit) -> bool> Query for ClosestHit<F> {
     }
 }
 
-/// Finds whether there is an accepted hit.
-pub(crate) struct AnyHit<F> {
-    accept: F,
-    pub(crate) found: bool,
-}
-
-impl<F> AnyHit<F> {
-    pub(crate) fn new(accept: F) -> Self {
-        Self {
-            accept,
-            found: false,
-        }
-    }
-}
-
-impl<F: Fn(&Hit) -> bool> Query for AnyHit<F> {
-    #[inline(always)]
-    fn offer(&mut self, hit: Hit, _: &mut f32) -> ControlFlow<()> {
-        self.found = (self.accept)(&hit);
-        if self.found {
-            ControlFlow::Break(())
-        } else {
-            ControlFlow::Continue(())
-        }
-    }
-}
-
 /// Finds whether there is any hit.
 pub(crate) struct Anything {
     pub(crate) found: bool,

@@ -175,7 +175,7 @@ fn no_hit_is_culled_by_the_world_box() {
                 t_max: expected.unwrap_or(0.0),
                 ..ray
             };
-            assert_eq!(bvh.occluded(&limited, accept_all), expected.is_some());
+            assert_eq!(bvh.is_blocked(&limited), expected.is_some());
         }
     }
     assert!(hits > 20_000, "{hits} hits do not say much");

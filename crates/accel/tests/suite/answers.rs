@@ -208,12 +208,9 @@ fn filtered_primitives_do_not_exist() {
             hit_bits(bvh.closest(&ray, by_primitive)),
             hit_bits(expected)
         );
-        assert_eq!(bvh.occluded(&ray, by_primitive), expected.is_some());
         let expected = single.closest(&ray, by_place);
         assert_eq!(hit_bits(bvh.closest(&ray, by_place)), hit_bits(expected));
-        assert_eq!(bvh.occluded(&ray, by_place), expected.is_some());
         assert_eq!(bvh.closest(&ray, |_| false), None);
-        assert!(!bvh.occluded(&ray, |_| false));
     }
 }
 
@@ -279,7 +276,7 @@ fn ties_at_shared_vertices_equal_brute_force() {
             hit_bits(expected),
             "{ray:?}"
         );
-        assert!(bvh.occluded(&limited, accept_all));
+        assert!(bvh.is_blocked(&limited));
     }
 }
 
@@ -325,7 +322,7 @@ fn nothing_is_a_scene() {
     let bvh = build(&[]);
     let ray = Ray::new(Vec3::ZERO, Vec3::X);
     assert_eq!(bvh.closest(&ray, accept_all), None);
-    assert!(!bvh.occluded(&ray, accept_all));
+    assert!(!bvh.is_blocked(&ray));
     assert_eq!(
         (bvh.bounds(), bvh.memory_bytes(), bvh.primitive_count()),
         (Aabb::EMPTY, 0, 0)
