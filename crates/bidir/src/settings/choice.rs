@@ -1,5 +1,6 @@
 //! A setting that may be left to the integrator.
 
+use crate::integrator::IntegratorKind;
 use std::fmt::{self, Display};
 use std::str::FromStr;
 
@@ -27,17 +28,12 @@ impl<T> Choice<T> {
         }
     }
 
-    /// Returns the value, or the integrator's own.
-    pub(super) fn or(self, own: T) -> T {
+    /// Returns the value, or the `integrator`'s own, and whether that is still to choose.
+    pub(super) fn decide(self, own: T, integrator: IntegratorKind) -> (T, bool) {
         match self {
-            Self::Automatic => own,
-            Self::Fixed(value) => value,
+            Self::Automatic => (own, integrator == IntegratorKind::Auto),
+            Self::Fixed(value) => (value, false),
         }
-    }
-
-    /// Returns true where it is left to an integrator that makes its own choice if `makes_it`.
-    pub(super) fn is_open(&self, makes_it: bool) -> bool {
-        matches!(self, Self::Automatic) && makes_it
     }
 }
 

@@ -13,7 +13,7 @@ mod choice;
 mod request;
 
 pub use choice::{Choice, ChoiceError};
-pub use request::{Request, RequestError};
+pub use request::{Request, RequestError, flag, text};
 
 use crate::film::Layers;
 use crate::integrator::{CandidateCount, IntegratorKind, LightStart, LvcSettings, ProposalKind};

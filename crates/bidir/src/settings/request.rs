@@ -179,96 +179,62 @@ impl Request {
     /// Returns the settings that an image depends on, each with its value: the same request gives the same image.
     pub fn of(settings: &Settings) -> Self {
         use IntegratorKind::{Auto, Light, Lvc};
-        let Settings {
-            integrator,
-            shadow_rays,
-            lvc,
-            path,
-            open,
-            sampler,
-            seed,
-            layers: _,
-        } = settings;
+        let (path, lvc, open) = (&settings.path, &settings.lvc, settings.open);
+        let integrator = settings.integrator;
         let connecting = integrator.has_candidates().then_some(path);
-        let next_event = (*integrator != Light).then_some(path);
+        let next_event = (integrator != Light).then_some(path);
         let shared = matches!(integrator, Lvc | Auto).then_some(lvc);
         Self {
-            integrator: Some(*integrator),
+            integrator: Some(integrator),
             max_depth: Some(path.max_depth.unwrap_or(0)),
             mis: next_event.map(|path| path.mis),
             strategies: connecting.map(|path| path.strategies.clone()),
             path_roulette: Some(Choice::new(open.roulette, path.roulette)),
             light_choice: next_event.map(|path| path.light_choice),
             light_point: connecting.map(|path| path.light_point),
-            sampler: Some(*sampler),
-            seed: Some(*seed),
-            shadow_rays: connecting.map(|_| Choice::new(open.shadow_rays, *shadow_rays)),
+            sampler: Some(settings.sampler),
+            seed: Some(settings.seed),
+            shadow_rays: connecting.map(|_| Choice::new(open.shadow_rays, settings.shadow_rays)),
             candidates: shared.map(|lvc| Choice::new(open.candidates, lvc.candidates)),
             next_events: shared.map(|lvc| Choice::new(open.next_events, lvc.next_events)),
             proposal: shared.map(|lvc| lvc.proposal),
             light_start: shared.map(|lvc| lvc.light_start),
-            samples_per_subpath: (*integrator == Lvc).then_some(lvc.samples_per_subpath),
+            samples_per_subpath: (integrator == Lvc).then_some(lvc.samples_per_subpath),
         }
     }
 
     /// Returns `settings` with what is asked for. Another integrator brings what suits it.
     #[must_use]
     pub fn apply(&self, settings: &Settings) -> Settings {
-        let Self {
-            integrator,
-            max_depth,
-            mis,
-            strategies,
-            path_roulette,
-            light_choice,
-            light_point,
-            sampler,
-            seed,
-            shadow_rays,
-            candidates,
-            next_events,
-            proposal,
-            light_start,
-            samples_per_subpath,
-        } = self.clone();
+        let asked = self.clone();
         let mut settings = settings.clone();
-        if let Some(integrator) = integrator {
+        if let Some(integrator) = asked.integrator {
             settings.set_integrator(integrator);
         }
         let own = Settings::new(settings.integrator);
-        put(&mut settings.sampler, sampler);
-        put(&mut settings.seed, seed);
-        let Settings {
-            lvc,
-            path,
-            open,
-            shadow_rays: rays,
-            ..
-        } = &mut settings;
-        let depth = max_depth.map(|depth| (depth > 0).then_some(depth));
+        let (lvc, path, open) = (&mut settings.lvc, &mut settings.path, &mut settings.open);
+        let depth = asked.max_depth.map(|depth| (depth > 0).then_some(depth));
+        put(&mut settings.sampler, asked.sampler);
+        put(&mut settings.seed, asked.seed);
         put(&mut path.max_depth, depth);
-        put(&mut path.mis, mis);
-        put(&mut path.strategies, strategies);
-        put(&mut path.light_choice, light_choice);
-        put(&mut path.light_point, light_point);
-        put(&mut lvc.proposal, proposal);
-        put(&mut lvc.light_start, light_start);
-        put(&mut lvc.samples_per_subpath, samples_per_subpath);
-        if let Some(choice) = path_roulette {
-            open.roulette = choice.is_open(own.open.roulette);
-            path.roulette = choice.or(own.path.roulette);
+        put(&mut path.mis, asked.mis);
+        put(&mut path.strategies, asked.strategies);
+        put(&mut path.light_choice, asked.light_choice);
+        put(&mut path.light_point, asked.light_point);
+        put(&mut lvc.proposal, asked.proposal);
+        put(&mut lvc.light_start, asked.light_start);
+        put(&mut lvc.samples_per_subpath, asked.samples_per_subpath);
+        if let Some(rule) = asked.path_roulette {
+            (path.roulette, open.roulette) = rule.decide(own.path.roulette, own.integrator);
         }
-        if let Some(choice) = shadow_rays {
-            open.shadow_rays = choice.is_open(own.open.shadow_rays);
-            *rays = choice.or(own.shadow_rays);
+        if let Some(rule) = asked.shadow_rays {
+            (settings.shadow_rays, open.shadow_rays) = rule.decide(own.shadow_rays, own.integrator);
         }
-        if let Some(choice) = candidates {
-            open.candidates = choice.is_open(own.open.candidates);
-            lvc.candidates = choice.or(own.lvc.candidates);
+        if let Some(count) = asked.candidates {
+            (lvc.candidates, open.candidates) = count.decide(own.lvc.candidates, own.integrator);
         }
-        if let Some(choice) = next_events {
-            open.next_events = choice.is_open(own.open.next_events);
-            lvc.next_events = choice.or(own.lvc.next_events);
+        if let Some(count) = asked.next_events {
+            (lvc.next_events, open.next_events) = count.decide(own.lvc.next_events, own.integrator);
         }
         settings
     }
@@ -307,14 +273,8 @@ impl Request {
 
     /// Returns the settings that are asked for, as texts by the names of flags.
     pub fn texts(&self) -> BTreeMap<String, String> {
-        let text = |value| match value {
-            Value::String(text) => text,
-            value => value.to_string(),
-        };
-        let texts = self.map().into_iter();
-        texts
-            .map(|(name, value)| (flag(&name), text(value)))
-            .collect()
+        let map = self.map();
+        map.iter().map(|(k, v)| (flag(k), text(v))).collect()
     }
 
     /// Returns the names of the settings that are asked for and that an image by `settings` does not depend on, as
@@ -374,7 +334,15 @@ fn from_map(map: Map<String, Value>) -> Result<Request, serde_json::Error> {
     serde_json::from_value(Value::Object(map))
 }
 
+/// Returns a value as flags are spelt.
+pub fn text(value: &Value) -> String {
+    match value {
+        Value::String(text) => text.clone(),
+        value => value.to_string(),
+    }
+}
+
 /// Returns the name of a field as flags are spelt.
-fn flag(field: &str) -> String {
+pub fn flag(field: &str) -> String {
     field.replace('_', "-")
 }

@@ -3,11 +3,12 @@
 //! Names are those of flags: `light-point`, not `light_point`.
 
 use super::header::FilmHeader;
-use super::settings::{SettingsText, flag, text};
+use super::settings::SettingsText;
 use crate::image::MetadataValue;
 use bidir::ESTIMATOR_VERSION;
 use bidir::driver::{Session, Settings, Training};
 use bidir::scene::Scene;
+use bidir::settings::{flag, text};
 use bidir::view::View;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;

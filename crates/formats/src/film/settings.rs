@@ -2,7 +2,7 @@
 
 use bidir::driver::Settings;
 use bidir::film::StrategyImages;
-use bidir::settings::Request;
+use bidir::settings::{Request, flag, text};
 use serde::Serialize;
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -42,19 +42,6 @@ impl SettingsText {
             .filter_map(|&name| Some((name, texts.get(name)?)));
         let named = named.map(|(name, value)| format!("{} {value}", name.replace('-', " ")));
         named.collect::<Vec<_>>().join(", ")
-    }
-}
-
-/// Returns the name of a field in the spelling of flags.
-pub(super) fn flag(field: &str) -> String {
-    field.replace('_', "-")
-}
-
-/// Returns a value in the spelling of flags.
-pub(super) fn text(value: &Value) -> String {
-    match value {
-        Value::String(text) => text.clone(),
-        value => value.to_string(),
     }
 }
 
