@@ -29,8 +29,8 @@ use crate::spectrum::Lanes;
 use crate::stats::{Stage, StageTimes, Stats};
 use crate::view::View;
 use std::ops::Range;
-use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::{Mutex, PoisonError};
 
 /// How many samples go through the stages together: so many that a stage's code serves some before another stage's
 /// takes its place in a processor's fastest cache, and so few that their vertices stay in the next one.
@@ -197,9 +197,7 @@ impl<'a> Session<'a> {
                 return;
             };
             // Only this thread locks it; a panic elsewhere does not make its buffers wrong.
-            let mut batch = batch
-                .lock()
-                .unwrap_or_else(std::sync::PoisonError::into_inner);
+            let mut batch = batch.lock().unwrap_or_else(PoisonError::into_inner);
             if !this.render_groups(pass, &next, &mut batch, progress) {
                 given_up.store(true, Ordering::Relaxed);
             }
@@ -224,9 +222,7 @@ impl<'a> Session<'a> {
     fn take_counts(&mut self) -> (Stats, StageTimes) {
         let (mut stats, mut stage_times) = (Stats::default(), StageTimes::default());
         for batch in &mut self.batches {
-            let batch = batch
-                .get_mut()
-                .unwrap_or_else(std::sync::PoisonError::into_inner);
+            let batch = batch.get_mut().unwrap_or_else(PoisonError::into_inner);
             stats += &std::mem::take(&mut batch.worker.stats);
             stage_times += &batch.worker.stopwatch.take();
         }
@@ -318,10 +314,8 @@ impl<'a> Session<'a> {
         while !places.is_empty() {
             let samples = places.by_ref().take(size);
             batch.fill(samples.map(|place| self.sample(place, pass)));
-            batch
-                .worker
-                .stopwatch
-                .begin_samples(batch.walked.samples.len());
+            let count = batch.walked.samples.len();
+            batch.worker.stopwatch.begin_samples(count);
             let before = Meter::read(layers, batch, progress);
             self.method.run(job, batch);
             self.deposit(job).take(batch);
@@ -359,13 +353,10 @@ impl<'a> Session<'a> {
         let brought = shared.then(|| self.replay_light(&job, place, pass, &mut batch));
         batch.fill([self.sample(place, pass)]);
         self.method.run(&job, &mut batch);
-        let light = match brought.flatten() {
-            Some((number, splats)) => {
-                batch.splats = splats;
-                Some(number)
-            }
-            None => (!shared && batch.walked.light.count() > 0).then_some(0),
-        };
+        let mut light = (!shared && batch.walked.light.count() > 0).then_some(0);
+        if let Some((number, splats)) = brought.flatten() {
+            (light, batch.splats) = (Some(number), splats);
+        }
         let selector = selector(&self.settings, self.training.as_ref());
         Some(Replay::new(&job, batch, light, &*selector))
     }
@@ -410,16 +401,11 @@ impl<'a> Session<'a> {
     /// Returns a warning that the image is black, or the same everywhere, with the reason. None: it has content, or no
     /// pass was rendered. Takes as long as developing the film.
     pub fn blank_warning(&self) -> Option<String> {
-        let is_empty = self.film.passes().is_empty();
-        let warn = || {
-            blank_warning(
-                &self.scene,
-                &self.view,
-                &self.settings,
-                &self.film.develop(),
-            )
-        };
-        (!is_empty).then(warn)?
+        if self.film.passes().is_empty() {
+            return None;
+        }
+        let picture = self.film.develop();
+        blank_warning(&self.scene, &self.view, &self.settings, &picture)
     }
 
     /// Returns the counters so far, without training.

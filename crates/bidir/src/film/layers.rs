@@ -111,10 +111,9 @@ impl Aov {
 
     /// Returns the number of sums that a pixel has for it; none if it is computed from other sums.
     pub fn sums(self) -> usize {
-        match self {
-            Self::Albedo | Self::Position | Self::Normal | Self::ShadingNormal => 3,
-            Self::Depth | Self::Coverage | Self::Time | Self::Rays => 1,
-            Self::Samples | Self::Variance => 0,
+        match self.kind() {
+            AovKind::Film => 0,
+            _ => self.channels().iter().map(|of| of.names.len()).sum(),
         }
     }
 

@@ -209,6 +209,15 @@ impl Light {
         }
     }
 
+    /// Returns the position of a light that is a point. Unit: m. None: it has an extent, or is at infinity.
+    pub(crate) fn position(&self) -> Option<Vec3> {
+        match self {
+            Self::Point(light) => Some(light.position),
+            Self::Spot(light) => Some(light.position),
+            Self::Area(_) | Self::Distant(_) | Self::Infinite(_) | Self::Volume(_) => None,
+        }
+    }
+
     /// Radiance from `at` along the unit direction `w` away from the light; intensity for point
     /// and spot lights, irradiance on a facing surface for a distant light, σ_a L_e in a medium.
     #[inline]

@@ -59,11 +59,8 @@ impl Axis {
     fn of(roughness: &Roughness) -> Self {
         let is_constant = |texture: &FloatTexture| matches!(texture, FloatTexture::Constant(_));
         if is_constant(&roughness.u) && is_constant(&roughness.v) {
-            return Self(vec![
-                roughness
-                    .ggx(&TexturePoint::of_parameters(Vec2::ZERO))
-                    .mean_alpha(),
-            ]);
+            let anywhere = TexturePoint::of_parameters(Vec2::ZERO);
+            return Self(vec![roughness.ggx(&anywhere).mean_alpha()]);
         }
         let steps = 8;
         Self((0..=steps).map(|i| sqr(i as f32 / steps as f32)).collect())
@@ -172,13 +169,9 @@ impl InterlayerTables {
         let cosine = self.cosines.locate(medium.g);
         let at = |albedo| self.mixed([slope, depth, cosine, self.albedos.locate(albedo)]);
         let first = at(medium.albedo[0]);
-        medium.albedo.0.map(|albedo| {
-            if albedo.to_bits() == medium.albedo[0].to_bits() {
-                first
-            } else {
-                at(albedo)
-            }
-        })
+        let is_first = |albedo: f32| albedo.to_bits() == medium.albedo[0].to_bits();
+        let lanes = medium.albedo.0;
+        lanes.map(|albedo| if is_first(albedo) { first } else { at(albedo) })
     }
 
     /// Returns the mean of the tables around a point, of which this is the position on each axis.
@@ -308,13 +301,8 @@ impl CoatedConductorMaterial {
         let (coat_alpha, metal_alpha) = (ggx.mean_alpha(), facets.mean_alpha());
         let layer = self.layers.at(coat_alpha);
         let reflections = self.reflections(coat_alpha, metal_alpha);
-        Bsdf::CoatedConductor(CoatedConductor::new(
-            &layer,
-            &reflections,
-            ggx,
-            &medium,
-            metal,
-        ))
+        let coated = CoatedConductor::new(&layer, &reflections, ggx, &medium, metal);
+        Bsdf::CoatedConductor(coated)
     }
 }
 

@@ -39,8 +39,3 @@ pub fn sqr(x: f32) -> f32 {
 pub fn safe_sqrt(x: f32) -> f32 {
     x.max(0.0).sqrt()
 }
-
-/// Returns the smallest power of two not below `n`, as an exponent.
-pub fn ceil_log2(n: u64) -> u32 {
-    n.max(1).next_power_of_two().trailing_zeros()
-}

@@ -2,6 +2,7 @@
 //! everything (metres) that lights at infinity shine through. All errors of a scene are found here.
 
 use super::check::check_shape;
+use super::error::SceneError;
 use super::nesting::{self, Enclosed, Volume};
 use super::object::{Geometry, ObjectId, Objects};
 use super::{Opacity, RenderSpace, Scene, Surface, glow};
@@ -14,7 +15,6 @@ use crate::medium::{Medium, MediumId, MediumSides};
 use crate::shape::{Shape, WorldFromObject};
 use crate::spectrum::Rgb;
 use crate::texture::{ColorTexture, FloatTexture, clamped_alpha};
-use thiserror::Error;
 
 /// A material added to a [`SceneBuilder`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -35,70 +35,6 @@ pub struct Emission {
 pub const ENVIRONMENT_GROUP: &str = "environment";
 /// The group of other lights that are in no other.
 pub const DEFAULT_GROUP: &str = "default";
-
-/// Why a scene cannot be built.
-#[derive(Clone, Debug, Error, PartialEq)]
-pub enum SceneError {
-    /// A triangle refers to a vertex that its mesh does not have.
-    #[error("triangle {triangle} refers to vertex {vertex}, but the mesh has {vertices} vertices")]
-    VertexIndex {
-        /// The shape, in the order of addition.
-        shape: usize,
-        /// The triangle of the mesh.
-        triangle: usize,
-        /// The vertex it refers to.
-        vertex: u32,
-        /// The number of vertices.
-        vertices: usize,
-    },
-    /// A mesh has normals, tangents or parameters, but not one per vertex.
-    #[error("the mesh has {vertices} vertices, but {count} {what}")]
-    AttributeCount {
-        /// The shape, in the order of addition.
-        shape: usize,
-        /// The number of vertices.
-        vertices: usize,
-        /// The number of values.
-        count: usize,
-        /// The name of the attribute.
-        what: &'static str,
-    },
-    /// A coordinate is NaN or infinite, or a size overflows.
-    #[error("a coordinate of the shape is not finite")]
-    NotFinite {
-        /// The shape, in the order of addition.
-        shape: usize,
-    },
-    /// An instance has a map without inverse, or nearly without, or reaches too far.
-    #[error(
-        "the transformation of the instance has no inverse, or nearly none, or reaches too far"
-    )]
-    Instance {
-        /// The instance, in the order of addition.
-        instance: usize,
-    },
-    /// There are more media than places can name.
-    #[error("the scene has {count} media; at most {most} are possible", most = MediumId::MOST)]
-    TooManyMedia {
-        /// How many.
-        count: usize,
-    },
-    /// The intersector refuses the scene: too many primitives, or instructions that the machine lacks.
-    #[error("the scene cannot be traced: {0}")]
-    Intersector(String),
-}
-
-impl SceneError {
-    /// Returns the shape at fault, in the order of addition.
-    pub fn shape(&self) -> Option<usize> {
-        match self {
-            Self::VertexIndex { shape, .. }
-            | Self::AttributeCount { shape, .. }
-            | Self::NotFinite { shape } => Some(*shape),
-            Self::Instance { .. } | Self::TooManyMedia { .. } | Self::Intersector(_) => None,
-        }
-    }
-}
 
 /// Collects the parts of a scene and checks them.
 #[derive(Debug, Default)]
@@ -429,14 +365,12 @@ impl SceneBuilder {
         if !nesting::keep_touching(&mut self.surfaces, boxes.clone()) {
             return Vec::new();
         }
-        let mut volumes: Vec<_> = std::mem::take(&mut self.volumes)
-            .into_iter()
-            .map(|volume| Enclosed {
-                volume,
-                size: 0.0,
-                reach: 0.0,
-            })
-            .collect();
+        let enclosed = |volume| Enclosed {
+            volume,
+            size: 0.0,
+            reach: 0.0,
+        };
+        let mut volumes: Vec<_> = self.volumes.drain(..).map(enclosed).collect();
         for (volume, bounds) in &boxes {
             let reach = &mut volumes[*volume as usize].reach;
             *reach = reach.max(nesting::reach(bounds));
@@ -452,25 +386,24 @@ impl SceneBuilder {
 
 /// Returns the media on the sides of a light: those of its shape, or the one that some point of it lies in.
 fn media_of(scene: &Scene, light: &Light) -> MediumSides {
-    let at = match light {
+    match light {
         Light::Area(light) => {
             let surface = scene.surfaces[light.shape_index()];
+            let point = scene.point_on(light.shape_index());
             match surface.sides {
-                Some(sides) if surface.opacity != Opacity::Invisible => {
-                    let point = scene.point_on(light.shape_index());
-                    return scene
-                        .sides_of_nested(surface.volume, point)
-                        .unwrap_or(sides);
-                }
-                _ => scene.point_on(light.shape_index()),
+                Some(sides) if surface.opacity != Opacity::Invisible => scene
+                    .sides_of_nested(surface.volume, point)
+                    .unwrap_or(sides),
+                _ => MediumSides::all(scene.medium_at(point)),
             }
         }
-        Light::Point(light) => light.position,
-        Light::Spot(light) => light.position,
-        Light::Distant(_) | Light::Infinite(_) => return MediumSides::all(scene.around),
-        Light::Volume(light) => return MediumSides::all(light.medium()),
-    };
-    MediumSides::all(scene.medium_at(at))
+        Light::Volume(light) => MediumSides::all(light.medium()),
+        other => MediumSides::all(
+            other
+                .position()
+                .map_or(scene.around, |point| scene.medium_at(point)),
+        ),
+    }
 }
 
 /// Returns a sphere around all surfaces, bounded media, and lights in space, with a little room.
@@ -478,12 +411,7 @@ fn bounding_sphere(bvh: &accel::Bvh, lights: &[Light], media: &[Medium]) -> (Vec
     let boxes = media.iter().filter_map(Medium::bounds);
     let bounds = boxes.fold(bvh.bounds(), accel::Aabb::union);
     let (mut min, mut max) = (bounds.min, bounds.max);
-    for light in lights {
-        let position = match light {
-            Light::Point(light) => light.position,
-            Light::Spot(light) => light.position,
-            Light::Area(_) | Light::Distant(_) | Light::Infinite(_) | Light::Volume(_) => continue,
-        };
+    for position in lights.iter().filter_map(Light::position) {
         (min, max) = (min.min(position), max.max(position));
     }
     if !min.cmple(max).all() {

@@ -8,6 +8,7 @@ mod alpha;
 mod builder;
 mod check;
 mod edge;
+mod error;
 mod glow;
 mod nesting;
 mod object;
@@ -18,10 +19,9 @@ mod visibility;
 pub use accel::Isa;
 pub use advance::{Advance, Interaction};
 pub use alpha::RayDraws;
-pub use builder::{
-    DEFAULT_GROUP, ENVIRONMENT_GROUP, Emission, MaterialId, SceneBuilder, SceneError,
-};
+pub use builder::{DEFAULT_GROUP, ENVIRONMENT_GROUP, Emission, MaterialId, SceneBuilder};
 pub use edge::{Edge, Transmittance};
+pub use error::SceneError;
 pub use nesting::Volume;
 pub use object::ObjectId;
 

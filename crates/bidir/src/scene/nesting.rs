@@ -94,10 +94,8 @@ impl PartialOrd for PlacedVolume {
 
 impl Ord for PlacedVolume {
     fn cmp(&self, other: &Self) -> Ordering {
-        let by_priority = self.volume.priority.cmp(&other.volume.priority);
-        let by_size = other.size.total_cmp(&self.size);
-        by_priority
-            .then(by_size)
+        (self.volume.priority.cmp(&other.volume.priority))
+            .then(other.size.total_cmp(&self.size))
             .then(self.number.cmp(&other.number))
     }
 }
@@ -187,10 +185,7 @@ impl Scene {
         }
         let stops = |hit: &Hit| self.stops(ray, hit, draws);
         let interface = self.settle(ray, draws.stop, end, crossings, stops);
-        (
-            interface.map_or(hit, |interface| Some(interface.hit)),
-            interface,
-        )
+        (interface.map(|interface| interface.hit).or(hit), interface)
     }
 
     /// Returns Π (1 - α) of the surfaces of volumes that a shadow ray meets. Settles the boundaries on its way.

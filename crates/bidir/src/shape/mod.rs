@@ -184,18 +184,15 @@ impl Shape {
     ) -> Differentials {
         match self {
             Self::Mesh(mesh) => mesh.differentials(to_world, i, uv),
-            Self::Sphere(sphere) => match to_world {
-                None => sphere.differentials(surface.point),
-                Some(to_world) => sphere.at(to_world).differentials(surface.point),
-            },
-            Self::Disk(disk) => match to_world {
-                None => disk.differentials(surface.point),
-                Some(to_world) => disk.at(to_world).differentials(surface.point),
-            },
-            Self::Cylinder(cylinder) => match to_world {
-                None => cylinder.differentials(surface.point),
-                Some(to_world) => cylinder.at(to_world).differentials(surface.point),
-            },
+            Self::Sphere(sphere) => to_world
+                .map_or(*sphere, |map| sphere.at(map))
+                .differentials(surface.point),
+            Self::Disk(disk) => to_world
+                .map_or(*disk, |map| disk.at(map))
+                .differentials(surface.point),
+            Self::Cylinder(cylinder) => to_world
+                .map_or(*cylinder, |map| cylinder.at(map))
+                .differentials(surface.point),
         }
     }
 
@@ -339,12 +336,9 @@ impl Placement {
     /// Returns a bound of the coordinates of points up to `distance` from the local origin.
     #[inline]
     fn magnitude(&self, distance: f32) -> f32 {
-        let (m, origin) = (
-            self.world_from_local.matrix3,
-            self.world_from_local.translation,
-        );
+        let m = self.world_from_local.matrix3;
         let reach = (m.x_axis.abs() + m.y_axis.abs() + m.z_axis.abs()) * distance;
-        (origin.abs() + reach).max_element()
+        (self.world_from_local.translation.abs() + reach).max_element()
     }
 
     /// Returns the inverse transpose applied to a local normal: not normalised.
@@ -370,14 +364,9 @@ impl Placement {
     ) -> SurfacePoint {
         let point = self.world_from_local.transform_point3(local);
         let n_g = self.normal(normal).normalize() * orientation.sign();
-        let tangent = self
-            .world_from_local
-            .transform_vector3(Vec3::new(-local.y, local.x, 0.0));
-        let reach = self
-            .world_from_local
-            .transform_vector3(local)
-            .abs()
-            .max_element();
+        let vector = |v: Vec3| self.world_from_local.transform_vector3(v);
+        let tangent = vector(Vec3::new(-local.y, local.x, 0.0));
+        let reach = vector(local).abs().max_element();
         let origin = Vec3::from(self.world_from_local.translation)
             .abs()
             .max_element();

@@ -12,10 +12,8 @@ use super::{Settings, TrainingInput};
 use crate::integrator::{Batch, Entry, Link, Method, Sample};
 use crate::path::{Job, MisHeuristic, PathDensities};
 use crate::sampler::{Dimension, Domain, Purpose, Sampler};
-use crate::scene::Scene;
 use crate::select::{Candidate, ShadowRays};
 use crate::stats::Stats;
-use crate::view::View;
 use accel::Stop;
 use rayon::prelude::*;
 use std::ops::Range;
@@ -131,8 +129,7 @@ impl Survey {
 
 /// Takes the samples.
 struct Surveyor<'a> {
-    scene: &'a Scene,
-    view: &'a View,
+    input: TrainingInput<'a>,
     settings: Settings,
     method: Method,
     stop: Stop<'a>,
@@ -145,8 +142,7 @@ impl<'a> Surveyor<'a> {
         settings.path.mis = MisHeuristic::Balance;
         let all = ShadowRays::All.selector(0.0);
         Self {
-            scene: input.scene,
-            view: input.view,
+            input,
             settings,
             method: Method::Bdpt(all),
             stop,
@@ -184,15 +180,16 @@ impl<'a> Surveyor<'a> {
 
     /// Takes one of the four samples of a pixel.
     fn sample(&self, number: u64, batch: &mut Batch, survey: &mut Survey) {
+        let TrainingInput { scene, view, .. } = self.input;
         let quad = number / QUAD;
         let [walk, of_light] = [number / 2 % 2, number % 2].map(|i| 2 * quad + i);
         let sampler = Sampler::new(self.settings.sampler, self.settings.seed);
         let camera = sampler.stream(Domain::TrainingCamera, walk, 0);
         let light = sampler.stream(Domain::TrainingLight, 0, of_light);
-        let pixel = spread::point(&self.view.film().crop, quad);
+        let pixel = spread::point(&view.film().crop, quad);
         let job = Job {
             stop: self.stop,
-            ..Job::of_own_subpaths(self.scene, self.view, &self.settings.path)
+            ..Job::of_own_subpaths(scene, view, &self.settings.path)
         };
         batch.fill([Sample {
             points: sampler.stream(Domain::TrainingCamera, number, 1),
@@ -214,7 +211,7 @@ mod tests {
     use crate::material::Material;
     use crate::math::{Affine3A, Vec3};
     use crate::path::{MAX_VERTICES, PathSettings};
-    use crate::scene::SceneBuilder;
+    use crate::scene::{Scene, SceneBuilder};
     use crate::shape::{Orientation, Shape, Sphere};
     use crate::spectrum::luminance;
     use crate::texture::ColorTexture;

@@ -59,10 +59,8 @@ impl AddAssign for WorkCounts {
             }
         };
         add(&mut self.camera_rays, &more.camera_rays);
-        add(
-            self.next_events.as_flattened_mut(),
-            more.next_events.as_flattened(),
-        );
+        let next_events = more.next_events.as_flattened();
+        add(self.next_events.as_flattened_mut(), next_events);
         add(&mut self.connections, &more.connections);
         add(&mut self.diffuse, &more.diffuse);
         self.connected += more.connected;
