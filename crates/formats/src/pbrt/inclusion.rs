@@ -33,10 +33,8 @@ impl Parser {
             .as_ref()
             .map_or_else(|| self.scene.resolve(name), |(path, _)| path.clone());
         if self.open.contains(&path) {
-            return Err(Fault::scene(
-                span,
-                format!("`{}` includes itself", path.display()),
-            ));
+            let message = format!("`{}` includes itself", path.display());
+            return Err(Fault::scene(span, message));
         }
         let file = match known {
             Some((_, file)) => self.load_again(file, span)?,

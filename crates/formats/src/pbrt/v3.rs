@@ -4,11 +4,9 @@ use crate::source::{Fault, Span};
 
 /// Returns the error for a mark of version 3; `hint` names the replacement in version 4.
 pub(super) fn fault(span: Span, mark: &str, hint: &str) -> Fault {
-    let fault = Fault::scene(
-        span,
-        format!("this is a pbrt-v3 file: {mark} is not part of version 4"),
-    );
-    fault.with_hint(format!("{hint}, or convert the file with `pbrt --upgrade`"))
+    let message = format!("this is a pbrt-v3 file: {mark} is not part of version 4");
+    Fault::scene(span, message)
+        .with_hint(format!("{hint}, or convert the file with `pbrt --upgrade`"))
 }
 
 /// Returns the replacement for an old directive.

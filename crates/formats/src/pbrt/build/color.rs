@@ -76,11 +76,8 @@ pub(super) fn check_emission(span: Span, emission: Rgb) -> Result<Rgb, Fault> {
     if emission.iter().all(|&channel| channel <= BRIGHTEST) {
         return Ok(emission);
     }
-    Err(Fault::new(
-        ErrorKind::Limit,
-        span,
-        format!("the light emits more than {BRIGHTEST:e}"),
-    ))
+    let message = format!("the light emits more than {BRIGHTEST:e}");
+    Err(Fault::new(ErrorKind::Limit, span, message))
 }
 
 /// Returns the colour of an `rgb`.

@@ -87,16 +87,9 @@ fn position_of(reader: &Reader<'_, '_>, world: DVec3) -> Result<Vec3, Fault> {
 fn aim(reader: &mut Reader<'_, '_>, world_from_light: &DAffine3) -> Result<(DVec3, Vec3), Fault> {
     let from = vector(reader.point3("from", [0.0; 3])?);
     let to = vector(reader.point3("to", [0.0, 0.0, 1.0])?);
-    let direction = world_from_light
-        .transform_vector3(to - from)
-        .try_normalize();
-    let same = || {
-        Fault::scene(
-            reader.span(),
-            "`from` and `to` of the light are the same point",
-        )
-    };
-    let direction = direction.ok_or_else(same)?.as_vec3();
+    let axis = world_from_light.transform_vector3(to - from);
+    let same = || reader.fault("`from` and `to` of the light are the same point");
+    let direction = axis.try_normalize().ok_or_else(same)?.as_vec3();
     Ok((world_from_light.transform_point3(from), direction))
 }
 
@@ -131,12 +124,8 @@ fn infinite(
     let everywhere = "light comes from everywhere";
     reader.unsupported(ParameterType::Point3, "portal", everywhere)?;
     let Some((name, span)) = reader.string("filename")? else {
-        return Ok(InfiniteLight::constant(emission(
-            reader,
-            "L",
-            "illuminance",
-            PI,
-        )?));
+        let radiance = emission(reader, "L", "illuminance", PI)?;
+        return Ok(InfiniteLight::constant(radiance));
     };
     if color::read(reader, "L", Purpose::Illuminant)?.is_some() {
         return Err(reader.fault("an infinite light has `L` or `filename`, not both"));

@@ -13,10 +13,8 @@ use glam::DAffine3;
 fn from_world(context: &mut Context<'_>, texture: &TextureDescription) -> Result<DAffine3, Fault> {
     let span = texture.entity.span;
     if texture.transforms.is_animated() {
-        context.warn(
-            span,
-            "textures cannot move: the first position of the texture is used",
-        );
+        let message = "textures cannot move: the first position of the texture is used";
+        context.warn(span, message);
     }
     let inverse = context.place(&texture.transforms).inverse();
     if inverse.is_finite() && inverse.as_affine3a().is_finite() {

@@ -57,10 +57,8 @@ fn options(context: &mut Context<'_>, settings: &mut SceneSettings) -> Result<()
             ("rendercoordsys" | "pixelstats" | "wavefront" | "disabletexturefiltering", _)
             | (_, "false") => {}
             (name, _) => {
-                context.warn(
-                    option.span,
-                    format!("the option `{name}` has no effect here"),
-                );
+                let message = format!("the option `{name}` has no effect here");
+                context.warn(option.span, message);
             }
         }
     }

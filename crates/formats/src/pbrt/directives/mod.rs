@@ -137,10 +137,8 @@ fn option(parser: &mut Parser, tokens: &mut Tokens<'_>) -> Done {
         TokenKind::Word(word) => word.to_owned(),
         TokenKind::Quoted(text) => text.into_owned(),
         _ => {
-            return Err(Fault::syntax(
-                token.span,
-                "expected the option's value without brackets",
-            ));
+            let message = "expected the option's value without brackets";
+            return Err(Fault::syntax(token.span, message));
         }
     };
     parser

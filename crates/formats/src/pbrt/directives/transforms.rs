@@ -94,10 +94,8 @@ fn expect_bracket(tokens: &mut Tokens<'_>, bracket: &TokenKind<'_>, what: &str) 
     if token.kind == *bracket {
         return Ok(());
     }
-    Err(Fault::syntax(
-        token.span,
-        format!("expected {what}, found {}", token.describe()),
-    ))
+    let message = format!("expected {what}, found {}", token.describe());
+    Err(Fault::syntax(token.span, message))
 }
 
 fn number(token: &Token<'_>) -> Result<f64, Fault> {
