@@ -11,6 +11,7 @@ use crate::locus::Locus;
 use crate::path::{Job, Strategy, Subpath};
 use crate::select::Selector;
 use crate::spectrum::{Lanes, Spectrum};
+use serde::Serialize;
 
 /// One sample again, with all that it made.
 pub struct Replay {
@@ -58,11 +59,12 @@ pub struct Selection {
 }
 
 /// The place of a contribution to the light image.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Landing {
     /// The point on the film. Unit: pixels.
     pub raster: [f32; 2],
     /// The pixel that the filter drew. None: it is outside the crop.
+    #[serde(rename = "landed")]
     pub pixel: Option<[u32; 2]>,
 }
 

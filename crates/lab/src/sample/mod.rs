@@ -6,10 +6,9 @@
 
 mod drawing;
 mod report;
-mod subpath;
-mod term;
 mod text;
 mod training;
+mod view;
 
 pub use report::SampleReport;
 pub use training::TrainingReport;

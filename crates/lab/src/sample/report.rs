@@ -1,10 +1,9 @@
 //! The report of a sample.
 
 use super::TrainingReport;
-use super::subpath::{SubpathReport, View};
-use super::term::{CandidateReport, SplatReport, TermReport};
-use bidir::driver::{Replay, Session};
-use bidir::spectrum::{Lanes, Rgb};
+use super::view::{Place, View};
+use bidir::driver::{Landing, Replay, Session};
+use bidir::spectrum::Rgb;
 use formats::film::SettingsText;
 use serde::Serialize;
 
@@ -15,16 +14,19 @@ pub struct SampleReport {
     pub(super) pass: u64,
     pub(super) settings: SettingsText,
     pub(super) training: Option<TrainingReport>,
+    /// The lens point of the camera subpath; without one, the middle of the lens.
+    #[serde(skip)]
+    pub(super) eye: Place,
     pub(super) camera: SubpathReport,
     pub(super) light: SubpathReport,
     /// s = 0: lights that the camera subpath came to.
     pub(super) hits: Vec<TermReport>,
     /// s ≥ 1 and t ≥ 2: connections that are not zero before selection and visibility.
-    pub(super) candidates: Vec<CandidateReport>,
+    pub(super) candidates: Vec<ConnectionReport>,
     /// The connections that are.
     pub(super) zeros: Vec<String>,
     /// t = 1: splats.
-    pub(super) light_image: Vec<SplatReport>,
+    pub(super) light_image: Vec<ConnectionReport>,
     /// The divisor of splats.
     pub(super) light_paths: u64,
     /// The light subpaths of the pass: fewer, where samples share them.
@@ -39,16 +41,81 @@ pub struct SampleReport {
     pub(super) dropped: u64,
 }
 
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct SubpathReport {
+    pub(super) vertices: Vec<VertexReport>,
+    /// The direction in which the walk left the scene.
+    pub(super) escape: Option<[f32; 3]>,
+}
+
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct VertexReport {
+    pub(super) kind: &'static str,
+    #[serde(flatten)]
+    pub(super) place: Place,
+    pub(super) normal: [f32; 3],
+    pub(super) is_delta: bool,
+    pub(super) light: Option<u32>,
+    pub(super) beta: Rgb,
+    pub(super) pdf_fwd: f32,
+    pub(super) pdf_rev: f32,
+}
+
+/// The contribution of a strategy.
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct TermReport {
+    pub(super) s: u16,
+    pub(super) t: u16,
+    /// C, unweighted, as if nothing were in the way.
+    pub(super) contribution: Rgb,
+    /// w.
+    pub(super) weight: f32,
+    /// w C.
+    pub(super) value: Rgb,
+    pub(super) is_dropped: bool,
+    /// The value that it added to a pixel of an image of one pass.
+    pub(super) added: Rgb,
+}
+
+/// The contribution of a strategy with a shadow ray.
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct ConnectionReport {
+    #[serde(flatten)]
+    pub(super) term: TermReport,
+    /// The end of the light subpath: for s = 1 a light point of its own, in `lvc` a vertex of another
+    /// sample. The other end is vertex t - 1 of the camera subpath, or the lens.
+    pub(super) light_end: Place,
+    /// The selection among candidates. None: it is a splat.
+    #[serde(flatten)]
+    pub(super) choice: Option<Choice>,
+    /// Traced or not.
+    pub(super) is_visible: bool,
+    /// The part of it that arrives.
+    pub(super) transmittance: f32,
+    /// The place where a splat lands, or would.
+    #[serde(flatten)]
+    pub(super) landing: Option<Landing>,
+}
+
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct Choice {
+    /// The selection score; null where none are chosen.
+    pub(super) score: Option<f32>,
+    /// The probability of being chosen.
+    pub(super) prob: f64,
+    pub(super) is_chosen: bool,
+}
+
 impl SampleReport {
-    /// The report of a repeated sample: that of `pixel` in `pass`.
+    /// Reports a repeated sample of `pixel` in `pass`.
     pub fn new(session: &Session<'_>, pixel: [u32; 2], pass: u64, replay: &Replay) -> Self {
-        let (lanes, stats) = (replay.lanes, &replay.batch.worker.stats);
-        let view = View::new(session, &replay.camera());
-        let Terms {
-            hits,
-            candidates,
-            light_image,
-        } = Terms::new(lanes, &view, replay);
+        let stats = &replay.batch.worker.stats;
+        let view = View::new(session, replay);
+        let hits = replay.terms.iter().filter(|term| term.ends.is_none());
+        let hits: Vec<_> = hits.map(|term| view.term(term)).collect();
+        let connections = replay.terms.iter().filter_map(|term| view.connection(term));
+        let (light_image, candidates): (Vec<_>, Vec<_>) =
+            connections.partition(|connection| connection.landing.is_some());
         let all = candidates
             .iter()
             .filter(|c| c.is_visible && !c.term.is_dropped);
@@ -57,12 +124,13 @@ impl SampleReport {
             pass,
             settings: SettingsText::from(session.settings()),
             training: TrainingReport::new(session),
-            camera: SubpathReport::new(lanes, &view, &replay.camera()),
-            light: SubpathReport::new(lanes, &view, &replay.light()),
-            value: lanes.to_rgb(replay.value()),
+            eye: view.eye(),
+            camera: view.subpath(&replay.camera()),
+            light: view.subpath(&replay.light()),
+            value: replay.lanes.to_rgb(replay.value()),
             value_of_hits: sum(hits.iter().map(|hit| hit.added)),
             value_of_candidates: sum(candidates.iter().map(|c| c.term.added)),
-            value_of_all_candidates: sum(all.map(CandidateReport::arriving)),
+            value_of_all_candidates: sum(all.map(ConnectionReport::arriving)),
             hits,
             candidates,
             zeros: replay.zeros.iter().map(ToString::to_string).collect(),
@@ -75,31 +143,10 @@ impl SampleReport {
     }
 }
 
-/// The terms of a sample, by their reports.
-#[derive(Default)]
-struct Terms {
-    hits: Vec<TermReport>,
-    candidates: Vec<CandidateReport>,
-    light_image: Vec<SplatReport>,
-}
-
-impl Terms {
-    fn new(lanes: Lanes, view: &View<'_>, replay: &Replay) -> Self {
-        let mut terms = Self::default();
-        for term in &replay.terms {
-            match (&term.landing, &term.ends) {
-                (Some(landing), Some([light, _])) => {
-                    let splat = SplatReport::new(lanes, term, landing, view.end(light));
-                    terms.light_image.push(splat);
-                }
-                (None, Some([light, _])) => {
-                    let candidate = CandidateReport::new(lanes, term, view.end(light));
-                    terms.candidates.push(candidate);
-                }
-                (_, None) => terms.hits.push(TermReport::new(lanes, term)),
-            }
-        }
-        terms
+impl ConnectionReport {
+    /// Returns its value times its transmittance.
+    fn arriving(&self) -> Rgb {
+        self.term.value.map(|channel| channel * self.transmittance)
     }
 }
 

@@ -136,7 +136,7 @@ fn splats_land_where_their_vertex_is_seen() {
         let mut count = 0;
         for splat in splats {
             let seen = splat.light_end.raster.expect("it is in front");
-            for (a, b) in seen.into_iter().zip(splat.raster) {
+            for (a, b) in seen.into_iter().zip(splat.landing.unwrap().raster) {
                 assert!((a - b).abs() < 1e-3, "{camera}: {a} {b}");
             }
             count += 1;

@@ -1,8 +1,7 @@
 //! The report of a sample as a text: tables of the subpaths, of each kind of strategy, and the sums.
 
-use super::SampleReport;
-use super::subpath::{SubpathReport, VertexReport};
-use super::term::{CandidateReport, SplatReport, TermReport};
+use super::report::{ConnectionReport, SampleReport, SubpathReport, TermReport, VertexReport};
+use super::training::TrainingReport;
 use bidir::integrator::IntegratorKind;
 use std::fmt::{self, Display, Formatter};
 
@@ -26,81 +25,70 @@ impl Display for Triple {
     }
 }
 
+/// The columns that all terms have.
+const TERM: &str = "    s   t  contribution C, unoccluded              weight w";
+
 impl Display for SampleReport {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         let [x, y] = self.pixel;
+        let names = ["integrator", "shadow-rays", "mis", "strategies", "seed"];
         writeln!(f, "pixel {x},{y} pass {}: {} rays", self.pass, self.rays)?;
-        self.write_settings(f)?;
-        write!(f, "\ncamera subpath, {}", self.camera)?;
-        write!(f, "\nlight subpath, {}", self.light)?;
-        self.write_hits(f)?;
+        writeln!(f, "{}", self.settings.line(&names))?;
+        self.training
+            .iter()
+            .try_for_each(|training| write!(f, "{training}"))?;
+        write!(
+            f,
+            "\ncamera subpath, {}\nlight subpath, {}",
+            self.camera, self.light
+        )?;
+        table(
+            f,
+            "hits of lights, s = 0",
+            &format!("{TERM}  adds w C"),
+            &self.hits,
+        )?;
         self.write_candidates(f)?;
-        self.write_light_image(f)?;
+        let title = format!(
+            "splats to the light image, t = 1, of one of {} light subpaths",
+            self.light_subpaths
+        );
+        let columns = format!(
+            "{TERM}  way      lands at             in pixel     adds w C / {}, times the filter's part",
+            self.light_paths
+        );
+        table(f, &title, &columns, &self.light_image)?;
         self.write_sums(f)
     }
 }
 
+/// Writes the terms of a kind, below their number and the heads of the columns.
+fn table(f: &mut Formatter<'_>, title: &str, columns: &str, rows: &[impl Display]) -> fmt::Result {
+    writeln!(f, "\n{title}: {}", rows.len())?;
+    if !rows.is_empty() {
+        writeln!(f, "{columns}")?;
+    }
+    rows.iter().try_for_each(|row| writeln!(f, "  {row}"))
+}
+
 impl SampleReport {
-    fn write_settings(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        let names = ["integrator", "shadow-rays", "mis", "strategies", "seed"];
-        writeln!(f, "{}", self.settings.line(&names))?;
-        let Some(training) = &self.training else {
-            return Ok(());
-        };
-        writeln!(
-            f,
-            "training: {} samples with {} rays found an image mean of {:.4e}",
-            training.samples,
-            training.rays.total(),
-            training.mean_luminance
-        )?;
-        match training.threshold {
-            Some(threshold) => writeln!(
-                f,
-                "          connections with g >= {threshold:.4e} are certain, \
-                 others have probability g / {threshold:.4e}"
-            ),
-            None => Ok(()),
-        }
-    }
-
-    fn write_hits(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        let count = self.hits.len();
-        writeln!(f, "\nhits of lights, s = 0: {count}")?;
-        if count > 0 {
-            writeln!(f, "  {TERM_HEADER}  {:<35}", "adds w C")?;
-        }
-        for hit in &self.hits {
-            writeln!(f, "  {hit}  {}", Added(hit))?;
-        }
-        Ok(())
-    }
-
     fn write_candidates(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        let count = self.candidates.len();
-        writeln!(
+        let is_lvc = self.settings.request.integrator == Some(IntegratorKind::Lvc);
+        let learned = if is_lvc {
+            ", times √V̂ where visibility is learned"
+        } else {
+            ""
+        };
+        let columns = format!(
+            "  g, by which candidates are chosen, is the mean of the channels of w C{learned}\n\
+             {TERM}           g  probability  ray         way      adds w C / probability"
+        );
+        table(
             f,
-            "\ncandidates for shadow rays, s >= 1 and t >= 2: {count}"
+            "candidates for shadow rays, s >= 1 and t >= 2",
+            &columns,
+            &self.candidates,
         )?;
-        if count > 0 {
-            writeln!(
-                f,
-                "  g, by which candidates are chosen, is the mean of the channels of w C{}",
-                if self.settings.request.integrator == Some(IntegratorKind::Lvc) {
-                    ", times √V̂ where visibility is learned"
-                } else {
-                    ""
-                }
-            )?;
-            writeln!(
-                f,
-                "  {TERM_HEADER}  {:>10}  {:>11}  {:<10}  {:<7}  adds w C / probability",
-                "g", "probability", "ray", "way"
-            )?;
-        }
-        for candidate in &self.candidates {
-            writeln!(f, "  {candidate}")?;
-        }
         if !self.zeros.is_empty() {
             let zeros = self.zeros.join(" ");
             writeln!(f, "  zero (Dirac, facing away, or switched off): {zeros}")?;
@@ -108,43 +96,35 @@ impl SampleReport {
         Ok(())
     }
 
-    fn write_light_image(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        let (count, paths) = (self.light_image.len(), self.light_paths);
-        writeln!(
-            f,
-            "\nsplats to the light image, t = 1, of one of {} light subpaths: {count}",
-            self.light_subpaths
-        )?;
-        if count > 0 {
-            writeln!(
-                f,
-                "  {TERM_HEADER}  {:<7}  {:<19}  {:<11}  adds w C / {paths}, times the filter's part",
-                "way", "lands at", "in pixel"
-            )?;
-        }
-        for splat in &self.light_image {
-            writeln!(f, "  {splat}")?;
-        }
-        Ok(())
-    }
-
     fn write_sums(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        writeln!(f, "\nadded to the pixel   {}", Triple(self.value))?;
-        writeln!(f, "  by hits            {}", Triple(self.value_of_hits))?;
-        writeln!(
-            f,
-            "  by candidates      {}",
-            Triple(self.value_of_candidates)
-        )?;
-        writeln!(
-            f,
-            "  if all were traced {}",
-            Triple(self.value_of_all_candidates)
-        )?;
+        writeln!(f)?;
+        for (name, sum) in [
+            ("added to the pixel", self.value),
+            ("  by hits", self.value_of_hits),
+            ("  by candidates", self.value_of_candidates),
+            ("  if all were traced", self.value_of_all_candidates),
+        ] {
+            writeln!(f, "{name:<20} {}", Triple(sum))?;
+        }
         if self.dropped > 0 {
             writeln!(f, "dropped              {} contributions", self.dropped)?;
         }
         Ok(())
+    }
+}
+
+impl Display for TrainingReport {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        let (samples, rays, mean) = (self.samples, self.rays.total(), self.mean_luminance);
+        writeln!(
+            f,
+            "training: {samples} samples with {rays} rays found an image mean of {mean:.4e}"
+        )?;
+        let Some(g) = self.threshold else {
+            return Ok(());
+        };
+        write!(f, "          connections with g >= {g:.4e} are certain, ")?;
+        writeln!(f, "others have probability g / {g:.4e}")
     }
 }
 
@@ -163,9 +143,12 @@ impl Display for SubpathReport {
 
 impl Display for VertexReport {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        let place = &self.place;
-        let at = if place.is_infinite { "towards" } else { "at" };
-        write!(f, "{:<7} {at} {}", self.kind, Point(place.position))?;
+        let at = if self.place.is_infinite {
+            "towards"
+        } else {
+            "at"
+        };
+        write!(f, "{:<7} {at} {}", self.kind, Point(self.place.position))?;
         write!(f, "  beta {}", Triple(self.beta))?;
         write!(
             f,
@@ -175,81 +158,59 @@ impl Display for VertexReport {
         if let Some(light) = self.light {
             write!(f, "  light {light}")?;
         }
-        if self.is_delta {
-            write!(f, "  delta")
-        } else {
-            Ok(())
-        }
+        f.write_str(if self.is_delta { "  delta" } else { "" })
     }
 }
 
-/// Above the columns of a [`TermReport`].
-const TERM_HEADER: &str = "  s   t  contribution C, unoccluded              weight w";
-
-impl Display for TermReport {
-    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+impl TermReport {
+    /// Returns the text in the columns of [`TERM`].
+    fn head(&self) -> String {
         let contribution = Triple(self.contribution);
-        write!(
-            f,
+        format!(
             "{:>3} {:>3}  {contribution}  {:>10.4e}",
             self.s, self.t, self.weight
         )
     }
-}
 
-/// The value that a term added.
-struct Added<'a>(&'a TermReport);
-
-impl Display for Added<'_> {
-    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        if self.0.is_dropped {
-            f.write_str("dropped: not finite, or too large")
-        } else if self.0.added.iter().all(|channel| *channel == 0.0) {
-            f.write_str("nothing")
+    /// Returns the value that the term added, as a text.
+    fn outcome(&self) -> String {
+        if self.is_dropped {
+            "dropped: not finite, or too large".to_owned()
+        } else if self.added.iter().all(|channel| *channel == 0.0) {
+            "nothing".to_owned()
         } else {
-            Triple(self.0.added).fmt(f)
+            Triple(self.added).to_string()
         }
     }
 }
 
-/// The visibility of a connection, traced or not: true where the way is clear.
-struct Way(bool);
-
-impl Display for Way {
+impl Display for TermReport {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        f.pad(if self.0 { "clear" } else { "blocked" })
+        write!(f, "{}  {}", self.head(), self.outcome())
     }
 }
 
-impl Display for CandidateReport {
+impl Display for ConnectionReport {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        let score = self.score.map_or("-".to_owned(), |g| format!("{g:.4e}"));
-        let ray = if self.is_chosen {
-            "chosen"
-        } else {
-            "not chosen"
-        };
-        let (term, prob, way) = (&self.term, self.prob, Way(self.is_visible));
-        write!(
-            f,
-            "{term}  {score:>10}  {prob:>11.4e}  {ray:<10}  {way:<7}  {}",
-            Added(term)
-        )
-    }
-}
-
-impl Display for SplatReport {
-    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        let [x, y] = self.raster;
-        let raster = format!("{x:.3},{y:.3}");
-        let landed = self
-            .landed
-            .map_or("none".to_owned(), |[x, y]| format!("{x},{y}"));
-        let (term, way) = (&self.term, Way(self.is_visible));
-        write!(
-            f,
-            "{term}  {way:<7}  {raster:<19}  {landed:<11}  {}",
-            Added(term)
-        )
+        f.write_str(&self.term.head())?;
+        if let Some(choice) = &self.choice {
+            let score = choice.score.map_or("-".to_owned(), |g| format!("{g:.4e}"));
+            let ray = if choice.is_chosen {
+                "chosen"
+            } else {
+                "not chosen"
+            };
+            write!(f, "  {score:>10}  {:>11.4e}  {ray:<10}", choice.prob)?;
+        }
+        let way = if self.is_visible { "clear" } else { "blocked" };
+        write!(f, "  {way:<7}")?;
+        if let Some(landing) = &self.landing {
+            let [x, y] = landing.raster;
+            let pixel = landing
+                .pixel
+                .map_or("none".to_owned(), |[x, y]| format!("{x},{y}"));
+            write!(f, "  {:<19}  {pixel:<11}", format!("{x:.3},{y:.3}"))?;
+        }
+        write!(f, "  {}", self.term.outcome())
     }
 }

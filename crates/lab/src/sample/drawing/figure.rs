@@ -1,8 +1,7 @@
 //! The lines of a sample: subpaths, candidates and splats.
 
-use super::super::SampleReport;
-use super::super::subpath::{Place, SubpathReport};
-use super::super::term::TermReport;
+use super::super::report::{ConnectionReport, SampleReport, SubpathReport};
+use super::super::view::Place;
 use super::shapes::{circle, polyline, px, text};
 use super::view::View;
 use crate::markup::{Element, element};
@@ -25,40 +24,39 @@ pub(super) struct Ray {
 }
 
 impl Ray {
-    /// All rays of a sample from `eye`.
-    pub(super) fn all(report: &SampleReport, eye: Place) -> Vec<Self> {
-        let candidates = report.candidates.iter().map(|candidate| {
-            let mut ray = Self::new(report, &candidate.term, candidate.light_end, eye);
-            ray.class = match (candidate.is_chosen, candidate.is_visible) {
-                (false, _) => "untraced",
-                (true, false) => "blocked",
-                (true, true) => "arrives",
-            };
-            ray.title = format!("{}, probability {}", ray.title, number(candidate.prob));
-            ray.weight = luminance(candidate.term.value) * candidate.prob as f32;
-            ray
-        });
-        let splats = report.light_image.iter().map(|splat| {
-            let mut ray = Self::new(report, &splat.term, splat.light_end, eye);
-            ray.class = ["splat hidden", "splat"][usize::from(splat.is_visible)];
-            ray
-        });
-        candidates.chain(splats).collect()
+    /// Returns all rays of a sample.
+    pub(super) fn all(report: &SampleReport) -> Vec<Self> {
+        let all = report.candidates.iter().chain(&report.light_image);
+        all.map(|connection| Self::new(report, connection))
+            .collect()
     }
 
-    /// A line of no class and without weight.
-    fn new(report: &SampleReport, term: &TermReport, light_end: Place, eye: Place) -> Self {
+    fn new(report: &SampleReport, connection: &ConnectionReport) -> Self {
+        let (term, light_end) = (&connection.term, connection.light_end);
         let (s, t) = (usize::from(term.s), usize::from(term.t));
         let z = report.light.vertices.get(s - 1);
         let y = report.camera.vertices.get(t - 1);
-        let value = number(f64::from(luminance(term.value)));
+        let value = luminance(term.value);
+        let prob = connection.choice.as_ref().map(|choice| choice.prob);
+        let probability = prob.map(|prob| format!(", probability {}", number(prob)));
+        let is_traced = connection.choice.as_ref().map(|choice| choice.is_chosen);
         Self {
-            class: "",
+            class: match (is_traced, connection.is_visible) {
+                (None, true) => "splat",
+                (None, false) => "splat hidden",
+                (Some(false), _) => "untraced",
+                (Some(true), false) => "blocked",
+                (Some(true), true) => "arrives",
+            },
             light_end,
-            camera_end: y.map_or(eye, |y| y.place),
+            camera_end: y.map_or(report.eye, |y| y.place),
             is_foreign: z.is_none_or(|z| z.place != light_end),
-            title: format!("s{s}t{t}: w C = {value}"),
-            weight: 0.0,
+            title: format!(
+                "s{s}t{t}: w C = {}{}",
+                number(f64::from(value)),
+                probability.unwrap_or_default()
+            ),
+            weight: prob.map_or(0.0, |prob| value * prob as f32),
         }
     }
 
@@ -68,8 +66,8 @@ impl Ray {
         if light.is_infinite && camera.is_infinite {
             return None;
         }
-        let from = view.seen_from(&light, camera.point());
-        let to = view.seen_from(&camera, light.point());
+        let from = view.seen_from(&light, camera.point);
+        let to = view.seen_from(&camera, light.point);
         // The maximum is a number also where the weight is none.
         let width = 1.2 + 3.0 * (self.weight / largest).max(0.0).sqrt();
         let line = polyline(&[from, to]).class(self.class);
@@ -105,7 +103,7 @@ impl Walk {
         let middle = view.near_point(view.corner + 0.5 * view.size());
         let point = |i: usize| {
             let next = self.places.get(i + 1).filter(|next| !next.is_infinite);
-            view.seen_from(&self.places[i], next.map_or(middle, Place::point))
+            view.seen_from(&self.places[i], next.map_or(middle, |next| next.point))
         };
         (0..self.places.len()).map(point).collect()
     }
@@ -121,8 +119,8 @@ impl Walk {
     /// The arrow from the last vertex to the border, where the walk leaves the scene.
     fn arrow(&self, view: &View<'_>) -> Option<Element> {
         let last = self.places.last().filter(|last| !last.is_infinite)?;
-        let from = view.seen_from(last, last.point());
-        let to = view.border(last.point(), self.escape?);
+        let from = view.seen_from(last, last.point);
+        let to = view.border(last.point, self.escape?);
         let along = (to - from).try_normalize()?;
         let (back, side) = (along * -9.0, along.perp() * 4.0);
         let line = [from, to, to + back + side, to, to + back - side];

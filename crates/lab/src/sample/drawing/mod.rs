@@ -13,10 +13,8 @@ mod view;
 mod tests;
 
 use super::SampleReport;
-use super::subpath::Place;
 use crate::markup::{Element, element};
 use crate::number::number;
-use bidir::camera::Camera;
 use bidir::driver::Session;
 use bidir::math::{Vec2, Vec3};
 use bidir::spectrum::luminance;
@@ -52,13 +50,13 @@ struct Figure {
 }
 
 impl Figure {
-    fn new(report: &SampleReport, eye: &Camera) -> Self {
+    fn new(report: &SampleReport) -> Self {
         let mut camera = Walk::new("camera", 'y', &report.camera);
         if camera.places.is_empty() {
-            camera.places.push(Place::eye(eye));
+            camera.places.push(report.eye);
         }
         Self {
-            rays: Ray::all(report, camera.places[0]),
+            rays: Ray::all(report),
             walks: [Walk::new("light", 'z', &report.light), camera],
         }
     }
@@ -68,7 +66,7 @@ impl Figure {
         let vertices = self.walks.iter().flat_map(|walk| &walk.places);
         let places = vertices.chain(self.rays.iter().map(|ray| &ray.light_end));
         let finite = places.filter(|place| !place.is_infinite);
-        finite.map(Place::point).collect()
+        finite.map(|place| place.point).collect()
     }
 
     fn of_class(&self, class: &str) -> impl Iterator<Item = &Ray> {
@@ -117,7 +115,7 @@ impl SampleReport {
     /// The sample as a picture in the format SVG; `session` took it, and `name` is the
     /// title of its scene.
     pub fn drawing(&self, session: &Session<'_>, name: &str) -> String {
-        let figure = Figure::new(self, session.view().camera());
+        let figure = Figure::new(self);
         let views = View::both(session, &figure.points(), PLAN);
         let below = views[1].corner + views[1].size();
         let height = below.y.max(LEGEND.y + 10.0 * ROW) + MARGIN;

@@ -1,6 +1,6 @@
 //! Plan and elevation: parallel projections along axes of the world, each onto a panel of the page.
 
-use super::super::subpath::Place;
+use super::super::view::Place;
 use super::shapes::{rectangle, text};
 use crate::markup::{Element, element};
 use crate::number::number;
@@ -99,9 +99,9 @@ impl<'a> View<'a> {
     /// The place of `place`; where it is infinite, its direction from `from`.
     pub(super) fn seen_from(&self, place: &Place, from: Vec3) -> Vec2 {
         if place.is_infinite {
-            self.border(from, place.point())
+            self.border(from, place.point)
         } else {
-            self.at(place.point())
+            self.at(place.point)
         }
     }
 
