@@ -37,11 +37,7 @@ pub(crate) fn run(args: &ReferenceArgs, console: Console) -> Result<Exit, Failur
         same.map_err(failure)?;
     }
     let plan = plan(args, earlier.as_ref(), &loaded)?;
-    warn_unused(args, &plan, console);
-    for (settings, flag) in plan.estimators.iter().zip(["--estimator", "--against"]) {
-        settings::check_strategies(&format!("{flag}: strategies"), &loaded, settings, console)?;
-        settings::warn_missing(&loaded, settings, console);
-    }
+    check_estimators(args, &plan, &loaded, console)?;
     check_apart(&folder, &loaded)?;
     let films = folder.join(FILMS);
     std::fs::create_dir_all(&films).map_err(|error| Failure::io(&films, "make", &error))?;
@@ -105,13 +101,8 @@ fn plan(
             Failure::new(Exit::FilmMismatch, message)
         });
     }
-    let mut plan = Plan::with_defaults(&loaded.settings, args.spp.unwrap_or(loaded.spp));
-    let flags = [&args.estimator, &args.against];
-    for (settings, flags) in plan.estimators.iter_mut().zip(flags) {
-        if let Some(flags) = flags {
-            *settings = flags.0.apply(settings);
-        }
-    }
+    let spp = args.spp.unwrap_or(loaded.spp);
+    let plan = Plan::new(&loaded.settings, spp, args.requests().each_ref());
     if plan.is_its_own_cross_check() {
         let message =
             "--estimator and --against may be the same estimator, which cannot cross-check itself";
@@ -122,21 +113,25 @@ fn plan(
     Ok(plan)
 }
 
-/// Warns of settings that have no effect on their estimator.
-fn warn_unused(args: &ReferenceArgs, plan: &Plan, console: Console) {
-    let flags = [
-        ("--estimator", &args.estimator),
-        ("--against", &args.against),
-    ];
-    for (settings, (flag, named)) in plan.estimators.iter().zip(flags) {
-        let integrator = settings.integrator;
-        let named = named.iter();
-        for unused in named.flat_map(|named| named.0.ignored(settings)) {
+/// Refuses estimators that make no path, and warns of settings without effect and of light that is lost.
+fn check_estimators(
+    args: &ReferenceArgs,
+    plan: &Plan,
+    loaded: &LoadedScene,
+    console: Console,
+) -> Result<(), Failure> {
+    let estimators = plan.estimators.iter().zip(args.requests());
+    for ((settings, request), flag) in estimators.zip(["--estimator", "--against"]) {
+        for unused in request.ignored(settings) {
             console.warning(format_args!(
-                "{flag}: --{unused} has no effect on the integrator `{integrator}`"
+                "{flag}: --{unused} has no effect on the integrator `{}`",
+                settings.integrator
             ));
         }
+        settings::check_strategies(&format!("{flag}: strategies"), loaded, settings, console)?;
+        settings::warn_missing(loaded, settings, console);
     }
+    Ok(())
 }
 
 /// A reference whose arguments are checked.
@@ -257,35 +252,38 @@ impl Job<'_> {
 /// Returns the failure of the command for an error of a reference.
 pub(crate) fn failure(error: Error) -> Failure {
     let text = error.to_string();
-    match error {
-        Error::File(error) => error.into(),
-        Error::Io { .. } => Failure::new(Exit::InputOutput, text),
-        Error::Damaged { .. } => {
-            let hint = "the `bidir reference` command that made it writes it again from its films";
-            Failure::new(Exit::InputOutput, text).with_hint(hint)
+    let (exit, hint) = match error {
+        Error::File(error) => return error.into(),
+        Error::Io { .. } => return Failure::new(Exit::InputOutput, text),
+        Error::Session(SessionError::NoPath { .. }) => return Failure::usage(text),
+        Error::TooLong { found, .. } => {
+            let hint = format!("use --spp {found}, or start over with --restart");
+            return Failure::new(Exit::FilmMismatch, text).with_hint(hint);
         }
-        Error::Missing(_) => {
-            let hint = "make one with `bidir reference`, or name another folder";
-            Failure::new(Exit::InputOutput, text).with_hint(hint)
-        }
-        Error::Session(SessionError::NoPath { .. }) => Failure::usage(text),
-        Error::Session(_) => {
-            let hint = "make it smaller with --size, or render a part of it with --crop";
-            Failure::new(Exit::Scene, text).with_hint(hint)
-        }
-        Error::Refused { .. } => {
-            let hint = "make one again with `bidir reference`, in another folder or with --restart";
-            Failure::new(Exit::Validation, text).with_hint(hint)
-        }
-        Error::Disagree { .. } => {
-            let hint = "take more samples with --extend, or another estimator with --against";
-            Failure::new(Exit::Validation, text).with_hint(hint)
-        }
-        Error::TooLong { found, .. } => Failure::new(Exit::FilmMismatch, text)
-            .with_hint(format!("use --spp {found}, or start over with --restart")),
-        Error::OtherRender { .. } => {
-            let hint = "name another folder with --output, or start over with --restart";
-            Failure::new(Exit::FilmMismatch, text).with_hint(hint)
-        }
-    }
+        Error::Damaged { .. } => (
+            Exit::InputOutput,
+            "the `bidir reference` command that made it writes it again from its films",
+        ),
+        Error::Missing(_) => (
+            Exit::InputOutput,
+            "make one with `bidir reference`, or name another folder",
+        ),
+        Error::Session(_) => (
+            Exit::Scene,
+            "make it smaller with --size, or render a part of it with --crop",
+        ),
+        Error::Refused { .. } => (
+            Exit::Validation,
+            "make one again with `bidir reference`, in another folder or with --restart",
+        ),
+        Error::Disagree { .. } => (
+            Exit::Validation,
+            "take more samples with --extend, or another estimator with --against",
+        ),
+        Error::OtherRender { .. } => (
+            Exit::FilmMismatch,
+            "name another folder with --output, or start over with --restart",
+        ),
+    };
+    Failure::new(exit, text).with_hint(hint)
 }

@@ -42,12 +42,12 @@ pub(crate) struct ReferenceArgs {
     /// scene's maximum depth and seed; the scene's integrator and sampler and the environment have no
     /// effect.
     #[arg(long, value_name = "FLAGS", help_heading = "Estimators")]
-    pub(crate) estimator: Option<EstimatorFlags>,
+    estimator: Option<EstimatorFlags>,
     /// Estimator of the cross-check [default: path].
     ///
     /// Written in the same way; it must differ from the first in more than the seed.
     #[arg(long, value_name = "FLAGS", help_heading = "Estimators")]
-    pub(crate) against: Option<EstimatorFlags>,
+    against: Option<EstimatorFlags>,
     /// The image's geometry.
     #[command(flatten)]
     pub(crate) film: FilmArgs,
@@ -59,12 +59,20 @@ pub(crate) struct ReferenceArgs {
     pub(crate) threads: ThreadsArgs,
 }
 
+impl ReferenceArgs {
+    /// Returns the settings that are asked for, of the image and of the cross-check.
+    pub(crate) fn requests(&self) -> [Request; 2] {
+        let flags = [&self.estimator, &self.against];
+        flags.map(|flags| flags.clone().map_or_else(Request::default, |flags| flags.0))
+    }
+}
+
 /// Maximum number of samples per pixel, beyond any practical render.
 const MOST_SAMPLES: u64 = 1 << 40;
 
 /// An estimator in one argument of the command line, such as `bdpt --strategies s1,-t1`.
 #[derive(Clone, Debug)]
-pub(crate) struct EstimatorFlags(pub(crate) Request);
+struct EstimatorFlags(Request);
 
 impl FromStr for EstimatorFlags {
     type Err = String;

@@ -213,11 +213,8 @@ fn finite(pixels: Pixels, path: &Path, loaded: &LoadedScene<'_>) -> Result<Pixel
 /// Computes the mean square error of an image from its variance layer. None: it has none.
 fn stored_mse(path: &Path) -> Option<f64> {
     let layers = formats::image::read_layers(path).ok()?;
-    let variance = Pixels {
-        size: layers.size(),
-        data: layers.triples(["Variance.R", "Variance.G", "Variance.B"])?,
-    };
-    variance.mean().filter(|mse| mse.is_finite())
+    let mse = Pixels::layer(&layers, "Variance.")?.mean()?;
+    mse.is_finite().then_some(mse)
 }
 
 /// Plans the two estimators of a reference. With all strategies, path tracing is the default cross-check.
@@ -226,20 +223,15 @@ fn stored_mse(path: &Path) -> Option<f64> {
 /// but their variance is infinite near edges, and the skewed mean would fail the test more often than its
 /// level.
 fn plan(loaded: &LoadedScene<'_>, recipe: &ReferenceRecipe) -> Plan {
-    let (request, named) = (&recipe.request, recipe.cross_check);
-    let mut plan = Plan::with_defaults(&loaded.settings, recipe.spp);
-    let of_picture = request.apply(&plan.estimators[0]).path.strategies;
-    let has_all = of_picture == Strategies::default();
-    let cross_check = named.or((!has_all).then_some(IntegratorKind::Bdpt));
-    if let Some(cross_check) = cross_check {
-        plan.estimators[1].set_integrator(cross_check);
+    let (mut picture, mut cross_check) = ((*recipe.request).clone(), (*recipe.request).clone());
+    let strategies = recipe.request.strategies.clone();
+    cross_check.integrator = recipe.cross_check;
+    if recipe.cross_check.is_none() && strategies.unwrap_or_default() != Strategies::default() {
+        cross_check.integrator = Some(IntegratorKind::Bdpt);
+        picture.mis = Some(MisHeuristic::Balance);
+        cross_check.mis = Some(MisHeuristic::Power);
     }
-    plan.estimators = plan.estimators.map(|settings| request.apply(&settings));
-    if named.is_none() && !has_all {
-        plan.estimators[0].path.mis = MisHeuristic::Balance;
-        plan.estimators[1].path.mis = MisHeuristic::Power;
-    }
-    plan
+    Plan::new(&loaded.settings, recipe.spp, [&picture, &cross_check])
 }
 
 /// Returns the folder of a reference within that of the results; its name contains a hash of the plan.

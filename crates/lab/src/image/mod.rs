@@ -7,7 +7,7 @@ mod resample;
 
 pub use resample::resample;
 
-use formats::image::ImageData;
+use formats::image::{ImageData, Layers};
 use sha2::{Digest, Sha256};
 
 /// Linear colours, row by row from the top left.
@@ -20,6 +20,14 @@ pub struct Pixels {
 }
 
 impl Pixels {
+    /// Returns the channels `R`, `G` and `B` behind `prefix`. None: one is missing.
+    pub(crate) fn layer(layers: &Layers, prefix: &str) -> Option<Self> {
+        let names = ["R", "G", "B"].map(|channel| format!("{prefix}{channel}"));
+        let data = layers.triples(names.each_ref().map(String::as_str))?;
+        let size = layers.size();
+        Some(Self { size, data })
+    }
+
     /// Iterates over all channels of all pixels.
     pub fn channels(&self) -> impl Iterator<Item = f64> + '_ {
         let channels = self.data.iter().flatten();

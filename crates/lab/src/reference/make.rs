@@ -3,16 +3,13 @@
 use super::agreement::{Renders, agreement};
 use super::provenance::{EstimatorRecord, FORMAT, Provenance};
 use super::replicate::{Estimator, Replicates, film};
-use super::{AGAINST, Error, FILMS, PICTURE, PROVENANCE, REPLICATES, Reference, picture};
+use super::{AGAINST, Error, FILMS, PICTURE, PROVENANCE, Plan, REPLICATES, Reference, images};
 use crate::image::digest;
 use crate::results::Rays;
 use crate::seal::sha256;
 use bidir::ESTIMATOR_VERSION;
 use bidir::driver::{Progress, Resources, Settings};
 use bidir::film::{Aov, Layers};
-use bidir::integrator::IntegratorKind;
-use bidir::sampler::SamplerKind;
-use bidir::settings::Request;
 use formats::film::{Developed, FilmHeader, SettingsText, Subject, metadata};
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -33,59 +30,6 @@ pub struct Host<'a> {
     pub should_end: &'a dyn Fn() -> bool,
     /// Receives the number of samples in existing films.
     pub found: &'a dyn Fn(u64),
-}
-
-/// The settings of a reference.
-#[derive(Clone, Debug)]
-pub struct Plan {
-    /// The estimator of the image, and that of the cross-check. Their layers are ignored.
-    pub estimators: [Settings; 2],
-    /// Samples per pixel of each, including existing ones. Rounded up to a multiple of [`REPLICATES`].
-    pub spp: u64,
-}
-
-impl Plan {
-    /// Makes the default plan: bidirectional path tracing with all strategies renders the image, path tracing
-    /// cross-checks it, both with the independent sampler and with the maximum depth and seed of `scene`.
-    pub fn with_defaults(scene: &Settings, spp: u64) -> Self {
-        let of = |integrator| {
-            let mut settings = Settings {
-                sampler: SamplerKind::Independent,
-                seed: scene.seed,
-                ..Settings::new(integrator)
-            };
-            settings.path.max_depth = scene.path.max_depth;
-            settings
-        };
-        Self {
-            estimators: [of(IntegratorKind::Bdpt), of(IntegratorKind::Path)],
-            spp,
-        }
-    }
-
-    /// Makes the plan that adds `more` samples per pixel to a reference. None: it has settings that this
-    /// program does not know.
-    pub fn extended(provenance: &Provenance, more: u64) -> Option<Self> {
-        let [first, second] = provenance.estimators.each_ref().map(|record| {
-            let mut request = Request::read(&record.settings)?;
-            request.seed = Some(record.seed);
-            Some(request.apply(&Settings::default()))
-        });
-        Some(Self {
-            estimators: [first?, second?],
-            spp: provenance.estimators[0].spp.saturating_add(more),
-        })
-    }
-
-    /// Returns the number of passes of each replicate.
-    fn passes(&self) -> u64 {
-        self.spp.div_ceil(REPLICATES).max(1)
-    }
-
-    /// Returns the samples per pixel of each estimator, rounded up.
-    pub fn rounded_spp(&self) -> u64 {
-        self.passes().saturating_mul(REPLICATES)
-    }
 }
 
 /// Makes a reference in `folder`, which is created if needed. Continues from existing films, with the same
@@ -159,7 +103,7 @@ fn finish(
     plan: &Plan,
     made: [&Replicates; 2],
 ) -> Result<Reference, Error> {
-    let wholes = made.map(|replicates| picture::of(replicates.film.develop()));
+    let wholes = made.map(|replicates| images(replicates.film.develop()));
     let renders = [0, 1].map(|i| Renders {
         replicates: &made[i].pictures,
         whole: &wholes[i],

@@ -27,22 +27,22 @@
 //! the same bits as one made in a single run.
 
 mod agreement;
-mod cross_check;
 mod make;
-mod picture;
+mod plan;
 mod provenance;
 mod replicate;
 #[cfg(test)]
 mod tests;
 
 pub use agreement::Agreement;
-pub use make::{Host, Plan, clear, files, make};
+pub use make::{Host, clear, files, make};
+pub use plan::Plan;
 pub use provenance::{EstimatorRecord, FORMAT, Provenance};
 
 use crate::image::{Pixels, digest};
 use crate::statistics::Estimated;
 use bidir::driver::SessionError;
-use bidir::film::{FilmSettings, MergeError};
+use bidir::film::{FilmSettings, MergeError, Picture};
 use formats::film::ContinueError;
 use std::path::{Path, PathBuf};
 use thiserror::Error;
@@ -178,7 +178,7 @@ impl Reference {
         provenance.check_usable(folder)?;
         provenance.check_files(folder)?;
         let file = folder.join(PICTURE);
-        let [picture, variance] = picture::read(&file)?;
+        let [picture, variance] = read_images(&file)?;
         if digest(&[&picture, &variance]) != provenance.picture {
             let reason = format!("it is not the image that {PROVENANCE} describes");
             return Err(Error::damaged(&file, reason));
@@ -212,6 +212,22 @@ impl Reference {
             freedom: passes - 1.0,
         }
     }
+}
+
+/// Returns the image and the variances of a developed film.
+fn images(picture: Picture) -> [Pixels; 2] {
+    let size = [picture.width, picture.height];
+    [picture.pixels, picture.variance].map(|data| Pixels { size, data })
+}
+
+/// Reads an image and its variances.
+fn read_images(path: &Path) -> Result<[Pixels; 2], Error> {
+    let layers = formats::image::read_layers(path)?;
+    let layer = |prefix: &str| {
+        let lacks = || format!("it lacks one of the channels {prefix}R, {prefix}G, {prefix}B");
+        Pixels::layer(&layers, prefix).ok_or_else(|| Error::damaged(path, lacks()))
+    };
+    Ok([layer("")?, layer("Variance.")?])
 }
 
 /// Returns true if `folder` has a reference, intact or not.

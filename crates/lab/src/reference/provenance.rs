@@ -185,32 +185,24 @@ impl Provenance {
 
     /// Refuses the reference in `folder` unless it belongs to the scene with this digest and to this film.
     pub fn check(&self, folder: &Path, digest: &str, film: &FilmSettings) -> Result<(), Error> {
-        let difference = self.difference(digest, film);
-        difference.map_or(Ok(()), |reason| {
-            let folder = folder.to_owned();
-            Err(Error::Refused { folder, reason })
-        })
-    }
-
-    /// Describes the difference from the scene with this digest and film. None: there is none.
-    fn difference(&self, digest: &str, film: &FilmSettings) -> Option<String> {
-        if self.scene_digest != digest {
-            let (found, expected) = (short(&self.scene_digest), short(digest));
-            return Some(format!(
-                "another scene, or one that has changed since: its digest is {found}, not {expected}"
-            ));
-        }
-        let ([width, height], [w, h]) = (self.resolution, film.resolution);
-        if self.resolution != film.resolution {
-            return Some(format!(
-                "another film: of {width} x {height} pixels, not {w} x {h}"
-            ));
-        }
         let ([left, top], [right, bottom]) = (film.crop.min, film.crop.max);
-        let expected = [left, top, right, bottom];
+        let crop = [left, top, right, bottom];
         let text = |crop: [u32; 4]| crop.map(|edge| edge.to_string()).join(",");
-        let (found, wanted) = (text(self.crop), text(expected));
-        (self.crop != expected).then(|| format!("another crop: {found}, not {wanted}"))
+        let reason = if self.scene_digest != digest {
+            let (found, expected) = (short(&self.scene_digest), short(digest));
+            format!(
+                "another scene, or one that has changed since: its digest is {found}, not {expected}"
+            )
+        } else if self.resolution != film.resolution {
+            let ([width, height], [w, h]) = (self.resolution, film.resolution);
+            format!("another film: of {width} x {height} pixels, not {w} x {h}")
+        } else if self.crop != crop {
+            format!("another crop: {}, not {}", text(self.crop), text(crop))
+        } else {
+            return Ok(());
+        };
+        let folder = folder.to_owned();
+        Err(Error::Refused { folder, reason })
     }
 }
 

@@ -56,7 +56,7 @@ impl Estimator<'_> {
             let merged = |error| Error::merge(&path, &error);
             let begin = replicate * self.passes;
             let film = moved(&file.film, begin..begin + self.passes).map_err(merged)?;
-            let [picture, _] = super::picture::of(file.film.develop());
+            let [picture, _] = super::images(file.film.develop());
             all = Some(match all {
                 None => Replicates {
                     header: file.header,
