@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 pub const FORMAT: u32 = 1;
 
 /// The results of an experiment.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Results {
     /// [`FORMAT`].
     pub format: u32,
@@ -54,7 +54,7 @@ pub struct Machine {
 }
 
 /// A scene of an experiment.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct SceneInfo {
     /// Its name in this experiment.
     pub name: String,
@@ -147,7 +147,7 @@ impl Rays {
 }
 
 /// One render.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Record {
     /// The name of the scene.
     pub scene: String,

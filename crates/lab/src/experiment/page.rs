@@ -3,7 +3,7 @@
 use super::analysis::Section;
 use super::error::ExperimentError;
 use crate::image::Pixels;
-use crate::report::{self, ImageKind, Report, ReportImage};
+use crate::report::{self, Report, ReportImage};
 use crate::results::{Pyramid, Results};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -42,20 +42,12 @@ pub fn write_page(
 fn layers(folder: &Path, results: &Results) -> Result<Vec<BTreeMap<String, Pixels>>> {
     let read = |pyramid: &Pyramid| {
         let file = formats::image::read_layers(&folder.join(&pyramid.images))?;
-        let names = file.names().filter_map(|name| match name.as_str() {
-            "R" => Some(String::new()),
-            name => name.strip_suffix(".R").map(str::to_owned),
-        });
-        let layers = names.filter_map(|name| {
-            let prefix = if name.is_empty() {
-                String::new()
-            } else {
-                format!("{name}.")
-            };
-            let [r, g, b] = ["R", "G", "B"].map(|channel| format!("{prefix}{channel}"));
-            let data = file.triples([&r, &g, &b])?;
-            let size = pyramid.size;
-            Some((name, Pixels { size, data }))
+        let prefixes = file
+            .names()
+            .filter_map(|name| name.strip_suffix('R').map(str::to_owned));
+        let layers = prefixes.filter_map(|prefix| {
+            let name = prefix.trim_end_matches('.').to_owned();
+            Some((name, Pixels::layer(&file, &prefix)?))
         });
         Ok(layers.collect())
     };
@@ -71,20 +63,19 @@ fn images(folder: &Path, results: &Results) -> Result<Vec<ReportImage>> {
     let scenes = results.scenes.iter().filter(|scene| has_image(&scene.name));
     let references = scenes.filter_map(|scene| {
         let image = scene.reference_image.as_ref()?;
-        Some((&scene.name, ImageKind::Reference, image))
+        Some((&scene.name, "reference".to_owned(), true, image))
     });
     let renders = results.records.iter().filter_map(|record| {
-        let kind = ImageKind::Render {
-            method: record.method.clone(),
-            budget: record.budget.clone(),
-        };
-        Some((&record.scene, kind, record.image.as_ref()?))
+        let name = format!("{} · {}", record.method, record.budget);
+        Some((&record.scene, name, false, record.image.as_ref()?))
     });
-    let all = references.chain(renders).map(|(scene, kind, image)| {
+    let all = references.chain(renders);
+    let all = all.map(|(scene, name, is_reference, image)| {
         let image = formats::image::read(&folder.join(image), None)?;
         Ok(ReportImage {
             scene: scene.clone(),
-            kind,
+            name,
+            is_reference,
             pixels: Pixels::from(&image),
             flip: None,
         })

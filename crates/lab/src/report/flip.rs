@@ -1,7 +1,7 @@
 //! Maps of FLIP: what an observer sees between each render and the reference of its scene.
 
-use super::{ImageKind, ReportImage};
-use crate::image::{Pair, Pixels};
+use super::ReportImage;
+use crate::image::Pair;
 use crate::metric::Metric;
 use rayon::iter::{IntoParallelRefMutIterator, ParallelIterator};
 
@@ -12,22 +12,15 @@ pub(super) const MOST_PIXELS: usize = 1 << 22;
 /// Gives renders their maps against the reference of their scene, where that has their size: the
 /// difference at the exposure at which it is seen best. In order, as far as `MOST_PIXELS` goes.
 pub fn add_flip(images: &mut [ReportImage]) {
-    let references: Vec<(String, Pixels)> = images
-        .iter()
-        .filter(|image| image.kind == ImageKind::Reference)
-        .map(|image| (image.scene.clone(), image.pixels.clone()))
-        .collect();
-    let mut left = MOST_PIXELS;
-    let mut wanted = Vec::new();
-    for image in images
-        .iter_mut()
-        .filter(|image| image.kind != ImageKind::Reference)
-    {
-        let of_scene = references.iter().find(|(scene, _)| *scene == image.scene);
-        let count = image.pixels.data.len();
-        if let (Some((_, reference)), true) = (of_scene, count <= left) {
+    let (mut left, mut wanted) = (MOST_PIXELS, Vec::new());
+    let (references, renders): (Vec<_>, Vec<_>) =
+        images.iter_mut().partition(|image| image.is_reference);
+    for render in renders {
+        let reference = references.iter().find(|other| other.scene == render.scene);
+        let count = render.pixels.data.len();
+        if let (Some(reference), true) = (reference, count <= left) {
             left -= count;
-            wanted.push((image, reference));
+            wanted.push((render, &reference.pixels));
         }
     }
     wanted.par_iter_mut().for_each(|(image, reference)| {
@@ -39,34 +32,31 @@ pub fn add_flip(images: &mut [ReportImage]) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::image::Pixels;
 
-    fn image(scene: &str, kind: ImageKind, size: [usize; 2], value: f32) -> ReportImage {
-        let data = vec![[value; 3]; size[0] * size[1]];
+    fn image(scene: &str, is_reference: bool, size: [usize; 2], value: f32) -> ReportImage {
         ReportImage {
             scene: scene.to_owned(),
-            kind,
-            pixels: Pixels { size, data },
+            name: String::new(),
+            is_reference,
+            pixels: Pixels {
+                size,
+                data: vec![[value; 3]; size[0] * size[1]],
+            },
             flip: None,
-        }
-    }
-
-    fn render() -> ImageKind {
-        ImageKind::Render {
-            method: "all".to_owned(),
-            budget: "1 spp".to_owned(),
         }
     }
 
     #[test]
     fn renders_have_the_map_against_their_own_reference() {
-        let reference = |scene, value| image(scene, ImageKind::Reference, [4, 3], value);
+        let reference = |scene, value| image(scene, true, [4, 3], value);
         let mut images = [
             reference("a", 0.5),
-            image("a", render(), [4, 3], 0.5),
-            image("b", render(), [4, 3], 0.5),
+            image("a", false, [4, 3], 0.5),
+            image("b", false, [4, 3], 0.5),
             reference("b", 0.05),
-            image("b", render(), [5, 3], 0.5),
-            image("c", render(), [4, 3], 0.5),
+            image("b", false, [5, 3], 0.5),
+            image("c", false, [4, 3], 0.5),
         ];
         add_flip(&mut images);
         let has: Vec<_> = images.iter().map(|image| image.flip.is_some()).collect();
@@ -80,10 +70,10 @@ mod tests {
     fn large_images_are_bounded() {
         let side = 1 << 11;
         let mut images = [
-            image("a", ImageKind::Reference, [side, side + 1], 0.5),
-            image("a", render(), [side, side + 1], 0.4),
-            image("b", ImageKind::Reference, [4, 3], 0.5),
-            image("b", render(), [4, 3], 0.4),
+            image("a", true, [side, side + 1], 0.5),
+            image("a", false, [side, side + 1], 0.4),
+            image("b", true, [4, 3], 0.5),
+            image("b", false, [4, 3], 0.4),
         ];
         add_flip(&mut images);
         let has: Vec<_> = images.iter().map(|image| image.flip.is_some()).collect();

@@ -32,12 +32,13 @@ use crate::metric::ErrorMap;
 use crate::results::{Claim, Plot, Results, Table};
 use crate::statistics::RATIOS;
 use half::{base64, halves};
-use serde::Serialize;
+use serde::ser::SerializeStruct;
+use serde::{Serialize, Serializer};
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
 
 /// All that a page shows.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize)]
 pub struct Report<'a> {
     /// The results.
     pub results: &'a Results,
@@ -48,36 +49,27 @@ pub struct Report<'a> {
     /// The images to flip between.
     pub images: &'a [ReportImage],
     /// The images of each pyramid of the results, by the names of their layers.
+    #[serde(serialize_with = "layers")]
     pub layers: &'a [BTreeMap<String, Pixels>],
     /// The command that makes the experiment again.
     pub command: &'a str,
 }
 
-/// An image to flip to; one scene has each kind once.
-#[derive(Clone, Debug, PartialEq)]
+/// An image to flip to; one scene has each name once.
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ReportImage {
     /// The name of its scene.
     pub scene: String,
-    /// Its kind.
-    pub kind: ImageKind,
+    /// Its name.
+    pub name: String,
+    /// True if the others of the scene are compared with it.
+    pub is_reference: bool,
     /// Its pixels.
+    #[serde(flatten, serialize_with = "coded")]
     pub pixels: Pixels,
     /// FLIP of every pixel, where the page should show it; see [`add_flip`].
+    #[serde(serialize_with = "flip_bytes")]
     pub flip: Option<ErrorMap>,
-}
-
-/// The kind of an image.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum ImageKind {
-    /// The others of the scene are compared with it.
-    Reference,
-    /// A render.
-    Render {
-        /// The name of the method.
-        method: String,
-        /// The name of the budget.
-        budget: String,
-    },
 }
 
 const STYLE: &str = include_str!("../../page/report.css");
@@ -95,7 +87,13 @@ pub fn html(report: &Report<'_>) -> String {
 
 /// The element with the data.
 fn data(report: &Report<'_>) -> Element {
-    let json = serde_json::to_string(&Data::new(report)).expect("texts and numbers are JSON");
+    let data = Data {
+        report,
+        noises: reference_noise(report.results).collect(),
+        ratios: RATIOS,
+        most_flip_pixels: flip::MOST_PIXELS,
+    };
+    let json = serde_json::to_string(&data).expect("texts and numbers are JSON");
     element("script")
         .with("type", "application/json")
         .with("id", "data")
@@ -144,73 +142,43 @@ fn without_script(claims: &[Claim]) -> Vec<Element> {
 /// The data of a page, as `page/results.js` describes them.
 #[derive(Serialize)]
 struct Data<'a> {
-    results: &'a Results,
-    tables: &'a [Table],
-    plots: &'a [Plot],
-    images: Vec<Image<'a>>,
-    layers: Vec<BTreeMap<&'a str, String>>,
+    #[serde(flatten)]
+    report: &'a Report<'a>,
     noises: Vec<ReferenceNoise<'a>>,
     ratios: &'static str,
     most_flip_pixels: usize,
-    command: &'a str,
 }
 
-impl<'a> Data<'a> {
-    fn new(report: &Report<'a>) -> Self {
-        let coded = |layers: &'a BTreeMap<String, Pixels>| {
-            let layers = layers.iter();
-            layers
-                .map(|(name, pixels)| (name.as_str(), halves(&pixels.data)))
-                .collect()
-        };
-        Self {
-            results: report.results,
-            tables: report.tables,
-            plots: report.plots,
-            images: report.images.iter().map(Image::new).collect(),
-            layers: report.layers.iter().map(coded).collect(),
-            noises: reference_noise(report.results).collect(),
-            ratios: RATIOS,
-            most_flip_pixels: flip::MOST_PIXELS,
-            command: report.command,
-        }
-    }
+/// Writes the images of pyramids, by their names.
+fn layers<S: Serializer>(
+    pyramids: &[BTreeMap<String, Pixels>],
+    serializer: S,
+) -> Result<S::Ok, S::Error> {
+    let coded = pyramids.iter().map(|layers| {
+        let layers = layers.iter();
+        let coded = layers.map(|(name, pixels)| (name, halves(&pixels.data)));
+        coded.collect::<BTreeMap<_, _>>()
+    });
+    serializer.collect_seq(coded)
 }
 
-#[derive(Serialize)]
-struct Image<'a> {
-    scene: &'a str,
-    name: String,
-    is_reference: bool,
-    size: [usize; 2],
-    halves: String,
-    flip: Option<String>,
+/// Writes an image as its size and its pixels.
+fn coded<S: Serializer>(pixels: &Pixels, serializer: S) -> Result<S::Ok, S::Error> {
+    let mut coded = serializer.serialize_struct("Pixels", 2)?;
+    coded.serialize_field("size", &pixels.size)?;
+    coded.serialize_field("halves", &halves(&pixels.data))?;
+    coded.end()
 }
 
-impl<'a> Image<'a> {
-    fn new(image: &'a ReportImage) -> Self {
-        let name = match &image.kind {
-            ImageKind::Reference => "reference".to_owned(),
-            ImageKind::Render { method, budget } => format!("{method} · {budget}"),
-        };
-        Self {
-            scene: &image.scene,
-            name,
-            is_reference: image.kind == ImageKind::Reference,
-            size: image.pixels.size,
-            halves: halves(&image.pixels.data),
-            flip: image.flip.as_ref().map(flip_bytes),
-        }
-    }
-}
-
-/// A byte for each pixel: 254 for an error of 1, 255 for no number.
-fn flip_bytes(map: &ErrorMap) -> String {
-    let byte = |&error: &f64| {
+/// Writes a byte for each pixel: 254 for an error of 1, 255 for no number.
+#[expect(clippy::ref_option, reason = "serde passes a reference to the field")]
+fn flip_bytes<S: Serializer>(map: &Option<ErrorMap>, serializer: S) -> Result<S::Ok, S::Error> {
+    let byte = |error: &f64| {
         if error.is_nan() {
             return 255;
         }
         (error.clamp(0.0, 1.0) * 254.0).round() as u8
     };
-    base64(&map.data.iter().map(byte).collect::<Vec<_>>())
+    let coded = |map: &ErrorMap| base64(&map.data.iter().map(byte).collect::<Vec<_>>());
+    map.as_ref().map(coded).serialize(serializer)
 }

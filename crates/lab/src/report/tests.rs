@@ -1,80 +1,25 @@
 //! The page as a whole; `crates/viewer/browser/live/report.test.js` looks at one in a browser.
 
 use super::*;
-use crate::results::{
-    Axis, BudgetInfo, BudgetKind, Cell, Claim, FORMAT, Machine, MethodInfo, PlotKind, Pyramid,
-    Scale, SceneInfo, Series, StrategyInfo, Verdict,
-};
+use serde::Deserialize;
 
-/// The worst that a name can be.
+/// The worst that a name can be; names in `page.json` are like it.
 const HOSTILE: &str = "</script><img src=x onerror=alert(1)>\"'&";
 
-fn table(caption: &str) -> Table {
-    Table {
-        caption: caption.into(),
-        columns: vec!["method".into(), "relmse".into()],
-        rows: vec![vec![Cell::Text(HOSTILE.into()), Cell::Number(0.25)]],
-    }
+/// Results with tables and plots that belong to no claim.
+#[derive(Deserialize)]
+struct Made {
+    results: Results,
+    tables: Vec<Table>,
+    plots: Vec<Plot>,
 }
 
-fn curve(caption: &str, kind: PlotKind, points: &[[f64; 2]]) -> Plot {
-    let axis = |label: &str| Axis {
-        label: label.into(),
-        scale: Scale::Log,
-    };
-    Plot {
-        caption: caption.into(),
-        kind,
-        x: axis("rays per pixel"),
-        y: axis("error"),
-        series: vec![Series {
-            name: HOSTILE.into(),
-            points: points.to_vec(),
-            intervals: points.iter().map(|[_, y]| [0.9 * y, 1.1 * y]).collect(),
-        }],
-    }
+fn made() -> Made {
+    serde_json::from_str(include_str!("tests/page.json")).unwrap()
 }
 
-fn claim(id: &str, verdict: Verdict) -> Claim {
-    Claim {
-        id: id.into(),
-        claim: format!("What {id} says"),
-        source: format!("source of {id}"),
-        verdict,
-        found: format!("found for {id}"),
-        method: format!("test of {id}"),
-        tables: vec![table(&format!("table of {id}"))],
-        plots: vec![curve(
-            &format!("plot of {id}"),
-            PlotKind::Lines,
-            &[[1.0, 2.0], [10.0, 0.2]],
-        )],
-    }
-}
-
-fn pyramid() -> Pyramid {
-    let strategy = |s, t, rays| StrategyInfo {
-        s,
-        t,
-        mean: 0.25,
-        raw_mean: 0.5,
-        variance: None,
-        rays,
-        blocked: rays / 4,
-        raw_dropped: 0,
-    };
-    Pyramid {
-        scene: HOSTILE.into(),
-        method: HOSTILE.into(),
-        seed: 3,
-        spp: 2,
-        size: [4, 2],
-        vertices: 3,
-        mean: 1.0,
-        longer: 0.5,
-        strategies: vec![strategy(0, 2, 0), strategy(1, 2, 8)],
-        images: "images/room--strategies.exr".into(),
-    }
+fn results() -> Results {
+    made().results
 }
 
 fn layers() -> [BTreeMap<String, Pixels>; 1] {
@@ -87,49 +32,11 @@ fn layers() -> [BTreeMap<String, Pixels>; 1] {
         .into()]
 }
 
-fn results() -> Results {
-    let method = |name: &str, rays: &str| MethodInfo {
-        name: name.into(),
-        settings: [("mis", "power"), ("shadow-rays", rays)]
-            .map(|(key, value)| (key.to_owned(), value.to_owned()))
-            .into(),
-    };
-    Results {
-        format: FORMAT,
-        title: "Title & <b>".into(),
-        description: "First.\n\nSecond.".into(),
-        program: "bidir 7.8.9".into(),
-        machine: Machine::default(),
-        scenes: vec![SceneInfo {
-            name: "room".into(),
-            file: "room.pbrt".into(),
-            digest: "abc123".into(),
-            size: [2, 1],
-            reference: "made with care".into(),
-            reference_image: None,
-            reference_mse: None,
-        }],
-        methods: vec![method("first", "all"), method(HOSTILE, "per-pair")],
-        budgets: vec![BudgetInfo {
-            name: "64 spp".into(),
-            kind: BudgetKind::Samples,
-            amount: 64.0,
-        }],
-        records: Vec::new(),
-        pyramids: vec![pyramid()],
-        contributions: Vec::new(),
-        claims: vec![
-            claim("one", Verdict::Reproduced),
-            claim("two", Verdict::NotReproduced),
-            claim("three", Verdict::Undecided),
-        ],
-    }
-}
-
 fn images() -> Vec<ReportImage> {
-    let image = |kind, data: [[f32; 3]; 2]| ReportImage {
+    let image = |name: &str, is_reference, data: [[f32; 3]; 2]| ReportImage {
         scene: HOSTILE.into(),
-        kind,
+        name: name.into(),
+        is_reference,
         pixels: Pixels {
             size: [2, 1],
             data: data.to_vec(),
@@ -139,28 +46,17 @@ fn images() -> Vec<ReportImage> {
             data: vec![0.0, 1.0],
         }),
     };
-    let render = ImageKind::Render {
-        method: HOSTILE.into(),
-        budget: "64 spp".into(),
-    };
     vec![
-        image(ImageKind::Reference, [[1.0, 0.5, 0.0]; 2]),
-        image(render, [[1.0, f32::NAN, f32::INFINITY]; 2]),
+        image("reference", true, [[1.0, 0.5, 0.0]; 2]),
+        image(HOSTILE, false, [[1.0, f32::NAN, f32::INFINITY]; 2]),
     ]
 }
 
 fn page(results: &Results) -> String {
     html(&Report {
         results,
-        tables: &[table("a table of none")],
-        plots: &[
-            curve(
-                "a plot of none",
-                PlotKind::Histogram,
-                &[[1.0, 3.0], [2.0, 0.0]],
-            ),
-            curve("a plot without points", PlotKind::Lines, &[[0.0, 1.0]]),
-        ],
+        tables: &made().tables,
+        plots: &made().plots,
         images: &images(),
         layers: &layers(),
         command: "bidir experiment <file>",
@@ -185,9 +81,9 @@ fn the_data_come_back_as_they_were() {
     let back: Results = serde_json::from_value(data["results"].clone()).unwrap();
     assert_eq!(back, results);
     let tables: Vec<Table> = serde_json::from_value(data["tables"].clone()).unwrap();
-    assert_eq!(tables, [table("a table of none")]);
+    assert_eq!(tables, made().tables);
     let plots: Vec<Plot> = serde_json::from_value(data["plots"].clone()).unwrap();
-    assert_eq!(plots[1].caption, "a plot without points");
+    assert_eq!(plots, made().plots);
     assert_eq!(data["command"], "bidir experiment <file>");
     assert_eq!(data["ratios"], RATIOS);
     assert!(first.contains("<title>Title &amp; &lt;b&gt;</title>"));
@@ -205,7 +101,8 @@ fn pixels_are_in_the_page_as_they_are() {
     assert_eq!(reference["is_reference"], true);
     // 1.0, 0.5, 0.0 twice: 00 3c 00 38 00 00.
     assert_eq!(reference["halves"], "ADwAOAAAADwAOAAA");
-    assert_eq!(render["name"], format!("{HOSTILE} · 64 spp"));
+    assert_eq!(render["name"], HOSTILE);
+    assert_eq!(render["size"], serde_json::json!([2, 1]));
     assert_eq!(render["flip"], "AP4=");
     let layers = data["layers"][0].as_object().unwrap();
     let names: Vec<_> = layers.keys().map(String::as_str).collect();
@@ -268,16 +165,8 @@ fn every_metric_has_a_meaning() {
 
 #[test]
 fn a_page_of_nothing_is_a_page() {
-    let empty = Results {
-        scenes: Vec::new(),
-        methods: Vec::new(),
-        budgets: Vec::new(),
-        claims: Vec::new(),
-        pyramids: Vec::new(),
-        ..results()
-    };
     let page = html(&Report {
-        results: &empty,
+        results: &Results::default(),
         tables: &[],
         plots: &[],
         images: &[],

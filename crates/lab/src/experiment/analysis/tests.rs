@@ -1,6 +1,6 @@
 use super::*;
 use crate::experiment::Experiment;
-use crate::results::{BudgetKind, FORMAT, Machine, MethodInfo, Rays};
+use crate::results::{BudgetKind, MethodInfo, Rays};
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -23,18 +23,14 @@ fn record(method: &str, factor: f64, budget: f64, seed: u64) -> Record {
         seed,
         spp: budget as u64,
         seconds: 2.0,
-        processor_seconds: None,
-        training_seconds: None,
-        training_processor_seconds: None,
         rays: Rays {
             camera: if method == "first" { 500 } else { 1000 },
             ..Rays::default()
         },
-        connections_blocked: 0,
         metrics: BTreeMap::from([("rmse".to_owned(), error)]),
         efficiency_rays: 1.0 / (error * error * if method == "first" { 500.0 } else { 1000.0 }),
         efficiency_seconds: 1.0 / (error * error * 2.0),
-        image: None,
+        ..Record::default()
     }
 }
 
@@ -55,26 +51,15 @@ fn results(seeds: u64) -> Results {
         })
     });
     Results {
-        format: FORMAT,
-        title: String::new(),
-        description: String::new(),
-        program: String::new(),
-        machine: Machine::default(),
         scenes: vec![SceneInfo {
             name: "room".into(),
-            file: String::new(),
-            digest: String::new(),
             size: [5, 10],
-            reference: String::new(),
-            reference_image: None,
-            reference_mse: None,
+            ..SceneInfo::default()
         }],
         methods: vec![method("first"), method("second"), method("not run")],
         budgets: vec![budget(64.0), budget(16.0)],
         records: cells.collect(),
-        pyramids: Vec::new(),
-        contributions: Vec::new(),
-        claims: Vec::new(),
+        ..Results::default()
     }
 }
 
