@@ -26,35 +26,17 @@ const MOST_REPEATED: usize = 64 << 20;
 /// The default number of seeds.
 const SEEDS: u64 = 10;
 /// The keys of the whole description.
-const TOP: [&str; 18] = [
-    "title",
-    "description",
-    "seeds",
-    "first-seed",
-    "size",
-    "threads",
-    "metrics",
-    "pyramid",
-    "pyramid-spp",
-    "pyramid-scenes",
-    "contributions",
-    "quick",
-    "settings",
-    "scene",
-    "method",
-    "budget",
-    "claim",
-    "table",
-];
+const TOP: &str = "title description seeds first-seed size threads metrics pyramid pyramid-spp \
+    pyramid-scenes contributions quick settings scene method budget claim table";
 /// The hint for a setting without effect on an integrator that another table sets.
 const INHERITED: &str =
     "[settings] sets this integrator: give the method its own, or leave the setting out";
 /// The keys of `[[budget]]`.
-const BUDGET: [&str; 6] = ["name", "samples", "rays", "seconds", "methods", "scenes"];
+const BUDGET: &str = "name samples rays seconds methods scenes";
 /// The keys of `[contributions]`.
-const CONTRIBUTIONS: [&str; 3] = ["methods", "scenes", "spp"];
+const CONTRIBUTIONS: &str = "methods scenes spp";
 /// The keys of `[quick]`.
-const QUICK: [&str; 6] = ["seeds", "size", "samples", "rays", "seconds", "references"];
+const QUICK: &str = "seeds size samples rays seconds references";
 /// Older names of settings.
 const OLD_SETTINGS: [&str; 1] = ["emission"];
 /// The default samples per pixel of images of strategies.
@@ -79,13 +61,13 @@ impl Experiment {
             room: &room,
         }
         .parse()?;
-        top.only(&TOP, &[])?;
+        top.only(TOP, &[])?;
         let mut defaults = Request::default();
         for (i, mut section) in top.sections("settings")?.into_iter().enumerate() {
             if i > 0 {
                 return Err(section.fault("there is a second [settings]"));
             }
-            section.only(&borrowed(&names()), &OLD_SETTINGS)?;
+            section.only(&names().join(" "), &OLD_SETTINGS)?;
             defaults = settings(&mut section, None)?;
         }
         let folder = formats::file::folder_of(file);
@@ -97,12 +79,17 @@ impl Experiment {
         let budget = |section: &mut Section<'_>| budget(section, &names);
         let budgets = all(&mut top, "budget", |budget| &budget.name, budget)?;
         names.budgets = budgets.iter().map(|budget| budget.kind).collect();
+        let title = top.text("title")?;
+        let threads = top.get("threads", |threads| threads.up_to(Threads::MOST))?;
         let mut experiment = Self {
-            title: or(text_of(&mut top, "title")?, "Experiment"),
-            description: or(text_of(&mut top, "description")?, ""),
+            title: title.unwrap_or_else(|| "Experiment".to_owned()),
+            description: top.text("description")?.unwrap_or_default(),
             size: size(&mut top)?,
-            seeds: seeds(&mut top)?,
-            threads: threads(&mut top)?,
+            seeds: Seeds {
+                first: top.get("first-seed", |first| first.whole(0))?.unwrap_or(0),
+                count: top.get("seeds", |count| count.whole(1))?.unwrap_or(SEEDS),
+            },
+            threads: threads.unwrap_or(0),
             metrics: metrics(&mut top)?,
             scenes,
             absent,
@@ -134,41 +121,35 @@ fn list(section: &mut Section<'_>, key: &str, known: &[String]) -> Result<Vec<St
 }
 
 fn contributions(top: &mut Section<'_>, names: &Names) -> Result<Option<ContributionsSpec>> {
-    let Some(entry) = top.take("contributions") else {
-        return Ok(None);
-    };
-    let mut section = entry.section()?;
-    section.only(&CONTRIBUTIONS, &[])?;
-    Ok(Some(ContributionsSpec {
-        methods: list(&mut section, "methods", &names.methods)?,
-        scenes: list(&mut section, "scenes", &names.scenes)?,
-        spp: whole(&mut section, "spp", 2)?.unwrap_or(CONTRIBUTIONS_SPP),
-    }))
+    top.nested("contributions", CONTRIBUTIONS, |section| {
+        Ok(ContributionsSpec {
+            methods: list(section, "methods", &names.methods)?,
+            scenes: list(section, "scenes", &names.scenes)?,
+            spp: section
+                .get("spp", |spp| spp.whole(2))?
+                .unwrap_or(CONTRIBUTIONS_SPP),
+        })
+    })
 }
 
 fn quick(top: &mut Section<'_>) -> Result<Quick> {
-    let mut quick = Quick::default();
-    let Some(entry) = top.take("quick") else {
-        return Ok(quick);
-    };
-    let mut section = entry.section()?;
-    section.only(&QUICK, &[])?;
-    quick.seeds = whole(&mut section, "seeds", 1)?.unwrap_or(quick.seeds);
-    quick.size = section
-        .take("size")
-        .map(|entry| entry.positive())
-        .transpose()?;
-    for (key, factor) in [
-        ("samples", &mut quick.samples),
-        ("rays", &mut quick.rays),
-        ("seconds", &mut quick.seconds),
-        ("references", &mut quick.references),
-    ] {
-        if let Some(entry) = section.take(key) {
-            *factor = entry.positive()?;
-        }
-    }
-    Ok(quick)
+    let default = Quick::default();
+    let quick = top.nested("quick", QUICK, |section| {
+        let mut factor = |key, default| -> Result<f64> {
+            Ok(section.get(key, Entry::positive)?.unwrap_or(default))
+        };
+        Ok(Quick {
+            samples: factor("samples", default.samples)?,
+            rays: factor("rays", default.rays)?,
+            seconds: factor("seconds", default.seconds)?,
+            references: factor("references", default.references)?,
+            size: section.get("size", Entry::positive)?,
+            seeds: section
+                .get("seeds", |seeds| seeds.whole(1))?
+                .unwrap_or(default.seeds),
+        })
+    });
+    Ok(quick?.unwrap_or(default))
 }
 
 /// Reads the method whose strategies are rendered, with samples per pixel and scenes.
@@ -191,7 +172,7 @@ fn pyramid(
     if methods.iter().any(is_other) {
         let message = format!("the method `{name}` is not bidirectional");
         let hint = "strategies (s, t) are those of a method whose integrator is \"bdpt\"";
-        return Err(entry.fault_with(message, hint.to_owned()));
+        return Err(entry.fault_with(message, hint));
     }
     Ok(Some(PyramidSpec {
         method: name,
@@ -200,50 +181,15 @@ fn pyramid(
     }))
 }
 
-fn or(text: Option<String>, default: &str) -> String {
-    text.unwrap_or_else(|| default.to_owned())
-}
-
-fn text_of(section: &mut Section<'_>, key: &'static str) -> Result<Option<String>> {
-    let entry = section.take(key);
-    let text = entry.map(|entry| entry.text().map(|text| text.trim().to_owned()));
-    text.transpose()
-}
-
-fn whole(section: &mut Section<'_>, key: &'static str, least: u64) -> Result<Option<u64>> {
-    let entry = section.take(key);
-    entry.map(|entry| entry.whole(least)).transpose()
-}
-
-/// Reads the threads of each render. 0: the key is missing.
-fn threads(top: &mut Section<'_>) -> Result<usize> {
-    let Some(entry) = top.take("threads") else {
-        return Ok(0);
-    };
-    let count = entry.whole(1).map(|count| count as usize).ok();
-    let most = Threads::MOST;
-    count
-        .filter(|count| *count <= most)
-        .ok_or_else(|| entry.fault(format!("expected a whole number from 1 to {most}")))
-}
-
 /// Reads width and height, written `64x48`.
 fn size(section: &mut Section<'_>) -> Result<Option<[u32; 2]>> {
     let read = |text: &str| {
         let sides = text.split_once(['x', 'X']);
         let side = |side: &str| side.trim().parse().ok().filter(|side| *side > 0);
         let size = sides.and_then(|(width, height)| Some([side(width)?, side(height)?]));
-        size.ok_or_else(|| "expected WIDTHxHEIGHT, such as 320x240".to_owned())
+        size.ok_or("expected WIDTHxHEIGHT, such as 320x240")
     };
-    let entry = section.take("size");
-    entry.map(|entry| entry.read(read)).transpose()
-}
-
-fn seeds(top: &mut Section<'_>) -> Result<Seeds> {
-    Ok(Seeds {
-        first: whole(top, "first-seed", 0)?.unwrap_or(0),
-        count: whole(top, "seeds", 1)?.unwrap_or(SEEDS),
-    })
+    section.get("size", |entry| entry.read(read))
 }
 
 /// Reads the metrics in addition to `rmse`.
@@ -311,15 +257,13 @@ fn settings(section: &mut Section<'_>, inherited: Option<IntegratorKind>) -> Res
         None => Ok(request),
         Some((name, entry)) => {
             let hint = request.integrator.is_none().then_some(INHERITED);
-            Err(entry.fault_hinted(no_effect(name, integrator), hint))
+            Err(entry.fault_with(no_effect(name, integrator), hint))
         }
     }
 }
 
 fn method(section: &mut Section<'_>, defaults: &Request, of: &Names) -> Result<MethodSpec> {
-    let names = names();
-    let known = ["name", "scenes"].into_iter().chain(borrowed(&names));
-    section.only(&known.collect::<Vec<_>>(), &OLD_SETTINGS)?;
+    section.only(&format!("name scenes {}", names().join(" ")), &OLD_SETTINGS)?;
     Ok(MethodSpec {
         name: section.need("name")?.text()?.to_owned(),
         request: settings(section, defaults.integrator)?.over(defaults),
@@ -327,13 +271,9 @@ fn method(section: &mut Section<'_>, defaults: &Request, of: &Names) -> Result<M
     })
 }
 
-fn borrowed(names: &[String]) -> Vec<&str> {
-    names.iter().map(String::as_str).collect()
-}
-
 fn budget(section: &mut Section<'_>, names: &Names) -> Result<BudgetSpec> {
-    section.only(&BUDGET, &[])?;
-    let name = text_of(section, "name")?;
+    section.only(BUDGET, &[])?;
+    let name = section.text("name")?;
     let given = BudgetKind::NAMES.map(|(key, kind)| (key, kind, section.take(key)));
     let mut given = given
         .into_iter()
@@ -343,7 +283,7 @@ fn budget(section: &mut Section<'_>, names: &Names) -> Result<BudgetSpec> {
     };
     if let Some((other, _, entry)) = given.next() {
         let message = format!("this budget has both `{key}` and `{other}`");
-        return Err(entry.fault_with(message, "write one [[budget]] for each".to_owned()));
+        return Err(entry.fault_with(message, "write one [[budget]] for each"));
     }
     let amount = match kind {
         BudgetKind::Samples => entry.whole(1)? as f64,

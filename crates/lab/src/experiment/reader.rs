@@ -77,17 +77,18 @@ pub(super) struct Entry<'a> {
 }
 
 impl<'a> Section<'a> {
-    /// Refuses unknown keys, and suggests the nearest one in `known`. Keys in `old` are accepted but never
-    /// suggested.
-    pub(super) fn only(&self, known: &[&str], old: &[&str]) -> Result<()> {
-        let is_known = |name: &str| known.iter().chain(old).any(|known| *known == name);
-        let unknown = self.table.keys().filter(|key| !is_known(key.get_ref()));
+    /// Refuses unknown keys, and suggests the nearest one of the words of `known`. Keys in `old` are accepted but
+    /// never suggested.
+    pub(super) fn only(&self, known: &str, old: &[&str]) -> Result<()> {
+        let is_known = |name: &str| known.split(' ').any(|known| known == name);
+        let is_unknown = |name: &str| !is_known(name) && !old.contains(&name);
+        let unknown = self.table.keys().filter(|key| is_unknown(key.get_ref()));
         let Some(key) = unknown.min_by_key(|key| key.span().start) else {
             return Ok(());
         };
-        let hint = match nearest(key.get_ref(), known.iter().copied()) {
+        let hint = match nearest(key.get_ref(), known.split(' ')) {
             Some(near) => format!("did you mean `{near}`?"),
-            None => format!("known keys are {}", known.join(", ")),
+            None => format!("known keys are {}", known.replace(' ', ", ")),
         };
         let message = format!("there is no key `{}` here", key.get_ref());
         Err(self.source.fault(key.span(), message, Some(hint)))
@@ -100,11 +101,40 @@ impl<'a> Section<'a> {
             .map(|value| Entry::new(self.source, value))
     }
 
+    /// Reads the value of a key. None: the key is missing.
+    pub(super) fn get<T>(
+        &mut self,
+        key: &str,
+        read: impl FnOnce(&Entry<'a>) -> Result<T>,
+    ) -> Result<Option<T>> {
+        self.take(key).map(|entry| read(&entry)).transpose()
+    }
+
+    /// Reads a text of a key, without blanks around it. None: the key is missing.
+    pub(super) fn text(&mut self, key: &str) -> Result<Option<String>> {
+        self.get(key, |entry| entry.text().map(|text| text.trim().to_owned()))
+    }
+
+    /// Reads the table of a key, which has only `known` keys. None: the key is missing.
+    pub(super) fn nested<T>(
+        &mut self,
+        key: &str,
+        known: &str,
+        read: impl FnOnce(&mut Self) -> Result<T>,
+    ) -> Result<Option<T>> {
+        let Some(entry) = self.take(key) else {
+            return Ok(None);
+        };
+        let mut section = entry.section()?;
+        section.only(known, &[])?;
+        read(&mut section).map(Some)
+    }
+
     /// Copies the values of missing keys from another table.
-    pub(super) fn fill(&mut self, other: &Self, keys: &[&str]) {
+    pub(super) fn fill(&mut self, other: &Self, keys: &str) {
         for (key, value) in &other.table {
-            let name = key.get_ref();
-            if keys.contains(&&**name) && !self.table.contains_key(&**name) {
+            let name = &**key.get_ref();
+            if keys.split(' ').any(|key| key == name) && !self.table.contains_key(name) {
                 self.table.insert(key.clone(), value.clone());
             }
         }
@@ -178,15 +208,14 @@ impl<'a> Entry<'a> {
         self.source.fault(self.place.clone(), message.into(), None)
     }
 
-    /// Makes an error about this value, with a remedy.
-    pub(super) fn fault_with(&self, message: String, hint: String) -> ExperimentError {
-        self.source.fault(self.place.clone(), message, Some(hint))
-    }
-
     /// Makes an error about this value, with a remedy if there is one.
-    pub(super) fn fault_hinted(&self, message: String, hint: Option<&str>) -> ExperimentError {
-        let hint = hint.map(str::to_owned);
-        self.source.fault(self.place.clone(), message, hint)
+    pub(super) fn fault_with<'h>(
+        &self,
+        message: impl Into<String>,
+        hint: impl Into<Option<&'h str>>,
+    ) -> ExperimentError {
+        let hint = hint.into().map(str::to_owned);
+        self.source.fault(self.place.clone(), message.into(), hint)
     }
 
     /// Reads a table.
@@ -253,6 +282,18 @@ impl<'a> Entry<'a> {
         // JSON numbers are exact up to this limit.
         let number = number.filter(|number| (least..1 << 53).contains(number));
         number.ok_or_else(|| self.fault(format!("expected a whole number of at least {least}")))
+    }
+
+    /// Reads a whole number from 1 to `most`, which may be written as a text.
+    pub(super) fn up_to(&self, most: usize) -> Result<usize> {
+        let written = || self.written().ok()?.parse().ok();
+        let number = self
+            .whole(1)
+            .ok()
+            .or_else(written)
+            .map(|number| number as usize);
+        let number = number.filter(|number| (1..=most).contains(number));
+        number.ok_or_else(|| self.fault(format!("expected a whole number from 1 to {most}")))
     }
 
     /// Reads a finite number above zero.

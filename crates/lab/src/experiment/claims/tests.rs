@@ -3,8 +3,7 @@
 use super::*;
 use crate::experiment::{BUILTIN, ExperimentError, SceneSource, SceneSpec};
 use crate::results::{
-    BudgetInfo, Cell, Contributions, FORMAT, Machine, Rays, Record, Results, SceneInfo, Table,
-    Verdict,
+    BudgetInfo, Cell, Contributions, Rays, Record, Results, SceneInfo, Table, Verdict,
 };
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -56,11 +55,8 @@ fn records(scene: &str, method: &str, product: f64, spread: f64) -> Vec<Record> 
                 light: cost / 2,
                 ..Rays::default()
             },
-            connections_blocked: 0,
             metrics: metrics.map(|(name, value)| (name.to_owned(), value)).into(),
-            efficiency_rays: 0.0,
-            efficiency_seconds: 0.0,
-            image: None,
+            ..Record::default()
         }
     };
     let budgets = ["1 s", "100 rays per pixel"];
@@ -73,12 +69,8 @@ fn records(scene: &str, method: &str, product: f64, spread: f64) -> Vec<Record> 
 fn results(records: Vec<Record>) -> Results {
     let scene = |name: &str| SceneInfo {
         name: name.to_owned(),
-        file: String::new(),
-        digest: String::new(),
         size: [8, 6],
-        reference: String::new(),
-        reference_image: None,
-        reference_mse: None,
+        ..SceneInfo::default()
     };
     let budget = |name: &str, kind| BudgetInfo {
         name: name.to_owned(),
@@ -86,21 +78,13 @@ fn results(records: Vec<Record>) -> Results {
         amount: 1.0,
     };
     Results {
-        format: FORMAT,
-        title: String::new(),
-        description: String::new(),
-        program: String::new(),
-        machine: Machine::default(),
         scenes: ["A", "B"].map(scene).into(),
-        methods: Vec::new(),
         budgets: vec![
             budget("1 s", BudgetKind::Seconds),
             budget("100 rays per pixel", BudgetKind::Rays),
         ],
         records,
-        pyramids: Vec::new(),
-        contributions: Vec::new(),
-        claims: Vec::new(),
+        ..Results::default()
     }
 }
 
@@ -352,52 +336,6 @@ histogram = "log10"
     assert_eq!((&*series.name, series.points.len()), ("some", 1));
     assert_eq!(judged([1.0, 1.1, 0.9]).verdict, Verdict::NotReproduced);
     assert_eq!(judged([2.0, 3.1, 4.2]).verdict, Verdict::Undecided);
-}
-
-#[track_caller]
-fn refused(text: &str, expected: &str) {
-    let error = read(text).unwrap_err();
-    let all = format!("{error} {}", error.hint().unwrap_or_default());
-    assert!(all.contains(expected), "{all}");
-}
-
-#[test]
-fn mistakes_are_reported_with_their_place() {
-    refused(
-        &claim("measure = \"rmsee\"\nbelow = 1"),
-        "did you mean `rmse`?",
-    );
-    refused(
-        &claim("measure = \"rmse\""),
-        "expected `below`, `above`, or both",
-    );
-    refused(
-        &claim("measure = \"rmse\"\nover = \"al\"\nbelow = 1"),
-        "did you mean `all`?",
-    );
-    refused(
-        &claim("measure = \"rmse\"\nbudget = \"samples\"\nbelow = 1"),
-        "no [[budget]] is of this kind",
-    );
-    refused(
-        &claim("measure = \"rmse\"\nbelo = 1"),
-        "a.toml:20:1: there is no key `belo` here did you mean `below`?",
-    );
-    let twice = [
-        claim("measure = \"rmse\"\nbelow = 1"),
-        claim("measure = \"rmse\"\nbelow = 1"),
-    ];
-    refused(&twice.concat(), "there is another claim `it`");
-    let text = HEAD.replace("rays = 100", "rays = 100\nscenes = [\"C\"]");
-    let error = Experiment::read(&text, Path::new("a.toml")).unwrap_err();
-    assert!(
-        error.to_string().contains("a.toml:14:11: unknown name `C`"),
-        "{error}"
-    );
-    refused(
-        "[[table]]\nclaim = \"x\"\ncaption = \"c\"",
-        "there is no claim `x`",
-    );
 }
 
 #[test]

@@ -9,38 +9,21 @@ use super::super::expand::Binding;
 use super::super::names::{file_name, value_of};
 use super::super::reader::{Entry, Section};
 use super::super::{Absent, SceneSpec};
-use super::text_of;
 use crate::results::{BudgetKind, Scale};
 use bidir::names::UnknownName;
 
 type Result<T> = std::result::Result<T, ExperimentError>;
 
 /// The keys of a quantity.
-const QUANTITY: [&str; 7] = [
-    "measure",
-    "budget",
-    "scene",
-    "method",
-    "over",
-    "gain-over",
-    "than",
-];
+const QUANTITY: &str = "measure budget scene method over gain-over than";
 /// The other keys of `[[claim]]`.
-const CLAIM: [&str; 8] = [
-    "id", "source", "claim", "goal", "each", "part", "below", "above",
-];
+const CLAIM: &str = "id source claim goal each part below above";
 /// The other keys of `[[table]]`.
-const TABLE: [&str; 7] = [
-    "claim",
-    "section",
-    "caption",
-    "each",
-    "columns",
-    "plot",
-    "histogram",
-];
-const COLUMN: [&str; 3] = ["head", "value", "for"];
-const PLOT: [&str; 4] = ["x", "curves", "label", "log"];
+const TABLE: &str = "claim section caption each columns plot histogram";
+/// The other keys of a column.
+const COLUMN: &str = "head value for";
+const PLOT: &str = "x curves label log";
+
 /// The names that quantities can refer to.
 #[derive(Default)]
 pub(super) struct Names {
@@ -74,14 +57,11 @@ pub(super) fn known(entry: &Entry<'_>, names: &[String]) -> Result<String> {
 /// Reads a quantity.
 fn quantity(section: &mut Section<'_>, names: &Names) -> Result<Quantity> {
     let measure = section.need("measure")?.read(str::parse::<Measure>)?;
-    let budget = section.take("budget");
-    let budget = budget.map_or(Ok(BudgetChoice::First), |entry| {
+    let budget = section.get("budget", |entry| {
         let kind = entry.read(|name| value_of(&BudgetKind::NAMES, name))?;
-        if names.budgets.contains(&kind) {
-            Ok(BudgetChoice::Kind(kind))
-        } else {
-            Err(entry.fault("no [[budget]] is of this kind"))
-        }
+        let is_there = names.budgets.contains(&kind);
+        let choice = is_there.then_some(BudgetChoice::Kind(kind));
+        choice.ok_or_else(|| entry.fault("no [[budget]] is of this kind"))
     });
     let method = known(&section.need("method")?, &names.methods)?;
     let (method, over) = match (section.take("over"), section.take("gain-over")) {
@@ -92,14 +72,13 @@ fn quantity(section: &mut Section<'_>, names: &Names) -> Result<Quantity> {
         (Some(over), None) => (method, divisor(&over, names)?),
         (None, Some(over)) => (known(&over, &names.methods)?, Over::Method(method)),
     };
-    let than = section.take("than");
     Ok(Quantity {
         measure,
-        budget: budget?,
+        budget: budget?.unwrap_or(BudgetChoice::First),
         scene: known(&section.need("scene")?, &names.scenes)?,
         method,
         over,
-        than: than.map(|entry| known(&entry, &names.scenes)).transpose()?,
+        than: section.get("than", |entry| known(entry, &names.scenes))?,
     })
 }
 
@@ -126,15 +105,14 @@ pub(super) fn claims(top: &mut Section<'_>, names: &Names) -> Result<Vec<ClaimSp
 }
 
 fn claim(section: &mut Section<'_>, names: &Names) -> Result<ClaimSpec> {
-    section.only(&[&CLAIM[..], &QUANTITY].concat(), &[])?;
+    section.only(&[CLAIM, QUANTITY].join(" "), &[])?;
     let id = section.need("id")?;
-    let goal = section.take("goal");
-    let kind = match goal.map(|entry| entry.truth()).transpose()? {
+    let kind = match section.get("goal", Entry::truth)? {
         Some(true) => ClaimKind::Goal,
         _ => ClaimKind::Statement,
     };
     let claim = section.need("claim")?.text()?.to_owned();
-    let source = text_of(section, "source")?;
+    let source = section.text("source")?;
     let expected = expected(section)?;
     let name = file_name(id.text()?);
     if name.is_empty() {
@@ -155,7 +133,7 @@ fn claim(section: &mut Section<'_>, names: &Names) -> Result<ClaimSpec> {
 /// Reads a number of a claim, with its name.
 fn part(section: &Section<'_>, binding: &Binding, names: &Names) -> Result<(String, Quantity)> {
     let mut section = section.bound(binding)?;
-    let name = text_of(&mut section, "part")?;
+    let name = section.text("part")?;
     let quantity = quantity(&mut section, names)?;
     let default = || format!("{}, {}", quantity.method, quantity.scene);
     Ok((name.unwrap_or_else(default), quantity))
@@ -163,15 +141,14 @@ fn part(section: &Section<'_>, binding: &Binding, names: &Names) -> Result<(Stri
 
 /// Reads the range from `below`, `above`, or both.
 fn expected(section: &mut Section<'_>) -> Result<Expected> {
-    let [low, high] = ["above", "below"].map(|key| section.take(key));
+    let low = section.get("above", Entry::number)?;
+    let high = section.get("below", Entry::number)?;
     if low.is_none() && high.is_none() {
         return Err(section.fault("expected `below`, `above`, or both"));
     }
-    let number =
-        |entry: Option<Entry<'_>>, other: f64| entry.map_or(Ok(other), |entry| entry.number());
     Ok(Expected {
-        low: number(low, f64::NEG_INFINITY)?,
-        high: number(high, f64::INFINITY)?,
+        low: low.unwrap_or(f64::NEG_INFINITY),
+        high: high.unwrap_or(f64::INFINITY),
     })
 }
 
@@ -181,31 +158,29 @@ pub(super) fn tables(
     names: &Names,
     claims: &[ClaimSpec],
 ) -> Result<Vec<TableSpec>> {
-    let sections = top.sections("table")?.into_iter();
+    let mut sections = top.sections("table")?;
     sections
-        .map(|mut section| table(&mut section, names, claims))
+        .iter_mut()
+        .map(|section| table(section, names, claims))
         .collect()
 }
 
 fn table(section: &mut Section<'_>, names: &Names, claims: &[ClaimSpec]) -> Result<TableSpec> {
-    section.only(&[&TABLE[..], &QUANTITY].concat(), &[])?;
+    section.only(&[TABLE, QUANTITY].join(" "), &[])?;
     let place = place(section, claims)?;
     let caption = section.need("caption")?.text()?.to_owned();
-    let plot = section.take("plot");
-    let histogram = text_of(section, "histogram")?;
-    let bindings = section.bindings("each")?;
-    let mut columns = Vec::new();
-    let mut rows = Vec::new();
-    for binding in &bindings {
-        let (heads, cells): (Vec<_>, Vec<_>) =
-            row(section.bound(binding)?, names)?.into_iter().unzip();
+    let histogram = section.text("histogram")?;
+    let (mut columns, mut rows) = (Vec::new(), Vec::new());
+    for binding in section.bindings("each")? {
+        let row = row(section.bound(&binding)?, names)?.into_iter();
+        let (heads, cells) = row.unzip();
         columns = heads;
         rows.push(cells);
     }
     Ok(TableSpec {
         place,
         caption,
-        plot: plot.map(|plot| self::plot(plot, &columns)).transpose()?,
+        plot: section.nested("plot", PLOT, |section| plot(section, &columns))?,
         columns,
         rows,
         histogram,
@@ -237,12 +212,12 @@ fn row(mut section: Section<'_>, names: &Names) -> Result<Vec<(String, CellSpec)
     let mut cells = Vec::new();
     for column in columns.list("a list of columns")? {
         for mut column in column.section()?.expanded()? {
-            column.only(&[&COLUMN[..], &QUANTITY].concat(), &[])?;
+            column.only(&[COLUMN, QUANTITY].join(" "), &[])?;
             let head = column.need("head")?.text()?.to_owned();
             let cell = if let Some(value) = column.take("value") {
                 CellSpec::Value(value.written()?.to_owned())
             } else {
-                column.fill(&section, &QUANTITY);
+                column.fill(&section, QUANTITY);
                 CellSpec::Quantity(quantity(&mut column, names)?)
             };
             cells.push((head, cell));
@@ -252,9 +227,7 @@ fn row(mut section: Section<'_>, names: &Names) -> Result<Vec<(String, CellSpec)
 }
 
 /// Reads a plot of columns.
-fn plot(entry: Entry<'_>, heads: &[String]) -> Result<PlotSpec> {
-    let mut section = entry.section()?;
-    section.only(&PLOT, &[])?;
+fn plot(section: &mut Section<'_>, heads: &[String]) -> Result<PlotSpec> {
     let column = |entry: &Entry<'_>| {
         let head = entry.text()?;
         let place = heads.iter().position(|known| known == head);
@@ -264,8 +237,7 @@ fn plot(entry: Entry<'_>, heads: &[String]) -> Result<PlotSpec> {
     let curves = section.need("curves")?.list("a list of columns")?;
     let curves = curves.iter().map(column).collect::<Result<_>>()?;
     let label = section.need("label")?.text()?.to_owned();
-    let log = section.take("log");
-    let log = log.map_or(Ok(String::new()), |entry| entry.text().map(str::to_owned))?;
+    let log = section.text("log")?.unwrap_or_default();
     let scale = |axis| {
         if log.contains(axis) {
             Scale::Log

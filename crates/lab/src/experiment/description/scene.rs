@@ -6,7 +6,7 @@ use super::super::reader::{Entry, Section};
 use super::super::{
     Absent, Lamp, Presence, ReferenceRecipe, ReferenceSpec, Room, SceneSource, SceneSpec,
 };
-use super::{or, size, text_of};
+use super::size;
 use bidir::integrator::IntegratorKind;
 use bidir::settings::Request;
 use formats::scene::Files;
@@ -15,22 +15,12 @@ use std::path::{Component, Path, PathBuf};
 type Result<T> = std::result::Result<T, ExperimentError>;
 
 /// The keys of `[[scene]]`.
-const SCENE: [&str; 10] = [
-    "file",
-    "room",
-    "name",
-    "size",
-    "optional",
-    "reference",
-    "reference-of",
-    "reference-spp",
-    "reference-strategies",
-    "reference-cross-check",
-];
+const SCENE: &str = "file room name size optional reference reference-of reference-spp \
+    reference-strategies reference-cross-check";
 /// Older names of keys of `[[scene]]`.
 const OLD_SCENE: [&str; 1] = ["reference-witness"];
 /// The keys of `room`.
-const ROOM: [&str; 3] = ["light", "albedo", "triangles"];
+const ROOM: &str = "light albedo triangles";
 /// The largest number of triangles of a room.
 const MOST_TRIANGLES: usize = 10_000_000;
 
@@ -41,13 +31,7 @@ pub(super) fn all(
     defaults: &Request,
     memory: &Files,
 ) -> Result<(Vec<SceneSpec>, Vec<Absent>)> {
-    let read = |section: &mut Section<'_>| {
-        let mut scene = scene(section, folder, defaults)?;
-        if memory.has_in_memory(&scene.path) {
-            scene.source = SceneSource::Memory(memory.clone());
-        }
-        Ok(scene)
-    };
+    let read = |section: &mut Section<'_>| scene(section, folder, defaults, memory);
     let (mut there, mut absent) = (Vec::new(), Vec::new());
     for scene in super::all(top, "scene", |scene| &scene.name, read)? {
         match absence(&scene) {
@@ -88,93 +72,73 @@ fn with_variable(file: &str) -> PathBuf {
     }
 }
 
-/// The origin of a scene.
-struct Source {
-    /// The file, as messages and results name it.
-    file: String,
-    path: PathBuf,
-    files: SceneSource,
-    /// The place in the description that names the file. None: it is a room.
-    place: Option<Place>,
-}
-
-impl Source {
-    fn room(entry: Entry<'_>) -> Result<Self> {
-        let room = room_of(entry)?;
-        Ok(Self {
-            file: room.name().display().to_string(),
-            path: room.name(),
-            files: SceneSource::Room(room),
-            place: None,
-        })
-    }
-
-    fn file(entry: &Entry<'_>, folder: &Path, presence: Presence) -> Result<Self> {
-        let file = entry.text()?.to_owned();
-        let path = with_variable(&file);
-        let path = match (variable(&path), presence) {
-            (None, _) => joined(folder, &path),
-            (Some(_), Presence::Optional) => path,
-            (Some(name), Presence::Required) => {
-                return Err(entry.fault(format!("the environment variable {name} is not set")));
-            }
-        };
-        Ok(Self {
-            file,
-            path,
-            files: SceneSource::Disk,
-            place: Some(entry.at()),
-        })
-    }
-}
-
-fn scene(section: &mut Section<'_>, folder: &Path, defaults: &Request) -> Result<SceneSpec> {
-    section.only(&SCENE, &OLD_SCENE)?;
-    let optional = section.take("optional");
-    let presence = match optional.map(|entry| entry.truth()).transpose()? {
+fn scene(
+    section: &mut Section<'_>,
+    folder: &Path,
+    defaults: &Request,
+    memory: &Files,
+) -> Result<SceneSpec> {
+    section.only(SCENE, &OLD_SCENE)?;
+    let presence = match section.get("optional", Entry::truth)? {
         Some(true) => Presence::Optional,
         _ => Presence::Required,
     };
-    let source = match section.take("room") {
-        Some(room) => Source::room(room)?,
-        None => Source::file(&section.need("file")?, folder, presence)?,
+    let mut source = SceneSource::Disk;
+    let (path, file_place) = if let Some(room) = section.nested("room", ROOM, room)? {
+        source = SceneSource::Room(room);
+        (room.name(), None)
+    } else {
+        let entry = section.need("file")?;
+        (path(&entry, folder, presence)?, Some(entry))
     };
-    let stem = Path::new(&source.file).file_stem().unwrap_or_default();
-    let name = or(text_of(section, "name")?, &stem.to_string_lossy());
+    if memory.has_in_memory(&path) {
+        source = SceneSource::Memory(memory.clone());
+    }
+    let file = match &file_place {
+        Some(entry) => entry.text()?.to_owned(),
+        None => path.display().to_string(),
+    };
+    let stem = Path::new(&file).file_stem().unwrap_or_default();
+    let stem = stem.to_string_lossy().into_owned();
+    let name = section.text("name")?.unwrap_or(stem);
     let size = size(section)?;
-    let (reference, at) = reference(section, folder, defaults)?;
+    let (reference, reference_place) = reference(section, folder, defaults)?;
     Ok(SceneSpec {
         name,
-        path: source.path,
-        source: source.files,
+        file,
+        path,
+        source,
         size,
         reference,
-        file: source.file,
         presence,
-        file_place: source.place,
-        reference_place: at,
+        file_place: file_place.map(|entry| entry.at()),
+        reference_place,
     })
 }
 
+/// Reads the path of a scene's file. Its environment variable may be missing if the scene is optional.
+fn path(entry: &Entry<'_>, folder: &Path, presence: Presence) -> Result<PathBuf> {
+    let path = with_variable(entry.text()?);
+    match (variable(&path), presence) {
+        (None, _) => Ok(joined(folder, &path)),
+        (Some(_), Presence::Optional) => Ok(path),
+        (Some(name), Presence::Required) => {
+            Err(entry.fault(format!("the environment variable {name} is not set")))
+        }
+    }
+}
+
 /// Reads a generated room.
-fn room_of(entry: Entry<'_>) -> Result<Room> {
-    let mut section = entry.section()?;
-    section.only(&ROOM, &[])?;
+fn room(section: &mut Section<'_>) -> Result<Room> {
     let light = section.need("light")?;
     let albedo = section.need("albedo")?;
     let is_albedo = |albedo: &f64| *albedo > 0.0 && *albedo < 1.0;
     let value = Some(albedo.number()?).filter(is_albedo);
-    let count = section.need("triangles")?;
-    let triangles = count.written()?.parse().ok();
-    let triangles = triangles.filter(|count| (1..=MOST_TRIANGLES).contains(count));
+    let triangles = section.need("triangles")?.up_to(MOST_TRIANGLES);
     Ok(Room {
         light: light.read(|name| value_of(&Lamp::NAMES, name))?,
         albedo: value.ok_or_else(|| albedo.fault("expected a number between 0 and 1"))? as f32,
-        triangles: triangles.ok_or_else(|| {
-            count.fault(format!(
-                "expected a whole number from 1 to {MOST_TRIANGLES}"
-            ))
-        })?,
+        triangles: triangles?,
     })
 }
 
@@ -204,10 +168,8 @@ fn reference(
     defaults: &Request,
 ) -> Result<(ReferenceSpec, Option<Place>)> {
     if let Some(entry) = section.take("reference-of") {
-        return Ok((
-            ReferenceSpec::Of(entry.text()?.to_owned()),
-            Some(entry.at()),
-        ));
+        let of = ReferenceSpec::Of(entry.text()?.to_owned());
+        return Ok((of, Some(entry.at())));
     }
     let image = section.take("reference");
     let spp = section.take("reference-spp");
@@ -216,10 +178,8 @@ fn reference(
     match (image, spp) {
         (Some(image), None) => {
             if let Some(entry) = strategies.or(cross_check) {
-                return Err(entry.fault_with(
-                    "an existing reference cannot be changed".to_owned(),
-                    "leave this out, or have the reference made with `reference-spp`".to_owned(),
-                ));
+                let hint = "leave this out, or have the reference made with `reference-spp`";
+                return Err(entry.fault_with("an existing reference cannot be changed", hint));
             }
             let existing = ReferenceSpec::Existing(folder.join(image.text()?));
             Ok((existing, Some(image.at())))
@@ -259,10 +219,10 @@ fn cross_check_of(entry: &Entry<'_>) -> Result<IntegratorKind> {
     let mut request = Request::default();
     entry.read(|value| request.set("integrator", value))?;
     match request.integrator {
-        Some(IntegratorKind::Bdpt | IntegratorKind::Auto) | None => Err(entry.fault_with(
-            "an estimator cannot cross-check itself".to_owned(),
-            "references are made by `bdpt`: use path, light or lvc".to_owned(),
-        )),
+        Some(IntegratorKind::Bdpt | IntegratorKind::Auto) | None => {
+            let hint = "references are made by `bdpt`: use path, light or lvc";
+            Err(entry.fault_with("an estimator cannot cross-check itself", hint))
+        }
         Some(other) => Ok(other),
     }
 }

@@ -91,10 +91,13 @@ impl Workplace {
         outcome.results.unwrap()
     }
 
-    /// Returns the error of running a description.
+    /// Returns the error of running a description; its text and its hint have all `parts`.
     #[track_caller]
-    pub(crate) fn refusal(&self, text: &str, out: &str) -> ExperimentError {
-        self.run(text, out, &mut Watch::default()).unwrap_err()
+    pub(crate) fn refusal(&self, text: &str, out: &str, parts: &[&str]) -> ExperimentError {
+        let error = self.run(text, out, &mut Watch::default()).unwrap_err();
+        let said = format!("{error}; {}", error.hint().unwrap_or_default());
+        assert!(parts.iter().all(|part| said.contains(part)), "{said}");
+        error
     }
 }
 

@@ -3,121 +3,44 @@ use bidir_lab::experiment::{
     BudgetSpec, Experiment, ExperimentError, ReferenceRecipe, ReferenceSpec,
 };
 use bidir_lab::results::BudgetKind;
+use expect_test::expect_file;
+use std::path::Path;
 
-/// Checks message, place and hint of the error of a description.
-#[track_caller]
-fn check(text: &str, expected: &str, hint: Option<&str>) {
-    let place = Workplace::new();
-    let error = place.read(text).unwrap_err();
-    assert!(matches!(error, ExperimentError::Description(_)));
-    let said = error.to_string();
-    let name = place.path("test.toml").display().to_string();
-    assert_eq!(said.strip_prefix(&name), Some(expected));
-    assert_eq!(error.hint(), hint);
-}
+/// Tables that a description needs; each is left out where the description has its own.
+const NEEDED: [&str; 3] = [
+    "[[scene]]\nfor.name = [\"A\", \"B\"]\nname = \"{name}\"\nfile = \"a.pbrt\"\nreference-spp = 1\n",
+    "[[method]]\nfor.name = [\"all\", \"one\"]\nname = \"{name}\"\n",
+    "[[budget]]\nseconds = 1\n[[budget]]\nrays = 100\n",
+];
 
-#[test]
-fn errors_have_their_place() {
-    check(
-        "seeds = \n",
-        ":1:9: string values must be quoted, expected literal string",
-        None,
-    );
-    // A misspelt key is reported before the required key that is then missing.
-    let near = |name: &str| Some(format!("did you mean `{name}`?"));
-    check(
-        "sedes = 3\n",
-        ":1:1: there is no key `sedes` here",
-        near("seeds").as_deref(),
-    );
-    check(
-        &DESCRIPTION.replace("reference-spp", "reference-sp"),
-        ":6:1: there is no key `reference-sp` here",
-        near("reference-spp").as_deref(),
-    );
-    check(
-        &(DESCRIPTION.to_owned() + "[[budget]]\nsample = 2\n"),
-        ":13:1: there is no key `sample` here",
-        near("samples").as_deref(),
-    );
-    check("title = \"a\"\n", ":1:1: there is no [[scene]]", None);
-}
-
-#[test]
-fn wrong_values_are_refused_with_their_place() {
-    let all = DESCRIPTION.to_owned() + "[[budget]]\nsamples = 2\n";
-    check(
-        &all.replace("seeds", "sedes"),
-        ":2:1: there is no key `sedes` here",
-        Some("did you mean `seeds`?"),
-    );
-    check(
-        &all.replace("shadow-rays = \"per-pair\"", "mis = \"powr\""),
-        ":11:7: unknown name `powr`: did you mean `power`?",
-        None,
-    );
-    check(
-        &all.replace("samples = 2", "samples = 0"),
-        ":13:11: expected a whole number of at least 1",
-        None,
-    );
-    for threads in [
-        "0",
-        "1025",
-        "4294967296",
-        "9223372036854775807",
-        "-1",
-        "2.0",
-    ] {
-        check(
-            &all.replace("threads = 1", &format!("threads = {threads}")),
-            ":3:11: expected a whole number from 1 to 1024",
-            None,
-        );
+/// Returns the error of a description, with its hint.
+fn error_of(text: &str) -> String {
+    let is_needed = |table: &&str| {
+        let head = table.split('\n').next().unwrap_or_default();
+        !text.contains(head) && !text.contains("# nothing else")
+    };
+    let needed: String = NEEDED.into_iter().filter(is_needed).collect();
+    match Experiment::read(&format!("{text}\n{needed}"), Path::new("a.toml")) {
+        Err(error @ ExperimentError::Description(_)) => {
+            let hint = error.hint().map(|hint| format!("\n   hint: {hint}"));
+            format!("{error}{}", hint.unwrap_or_default())
+        }
+        other => format!("{other:?}"),
     }
-    check(
-        &all.replace("samples = 2", "samples = 2\nrays = 3"),
-        ":14:8: this budget has both `samples` and `rays`",
-        Some("write one [[budget]] for each"),
-    );
-    check(
-        &all.replace("samples = 2", ""),
-        ":12:1: expected one of `samples`, `rays` and `seconds`",
-        None,
-    );
-    check(
-        &all.replace("\"one\"", "\"All \""),
-        ":9:1: there is another method `All `",
-        None,
-    );
-    check(
-        &all.replace("reference-spp = 16", "size = 3"),
-        ":6:8: expected WIDTHxHEIGHT, such as 320x240",
-        None,
-    );
-    check(
-        &all.replace("shadow-rays = \"per-pair\"", "max-depth = 0x10"),
-        ":11:13: expected a decimal number",
-        None,
-    );
-    check(
-        &all.replace(
-            "shadow-rays = \"per-pair\"",
-            "candidates = \"12,1\"\nintegrator = \"path\"",
-        ),
-        ":11:14: `candidates` has no effect on the integrator `path`",
-        None,
-    );
-    check(
-        &("[[settings]]\nmis = \"power\"\n[[settings]]\n".to_owned() + &all),
-        ":3:1: there is a second [settings]",
-        None,
-    );
-    check(
-        &all.replace("reference-spp = 16", ""),
-        ":4:1: `reference`, `reference-of` or `reference-spp` is missing",
-        None,
-    );
+}
+
+/// A case is a line `## NAME`, a description, and its error behind `=>`.
+#[test]
+fn errors_are_as_listed() {
+    let cases = include_str!("errors.txt").split("## ").skip(1);
+    let case = |case: &str| {
+        let (name, rest) = case.split_once('\n').expect("a case has a name");
+        let (text, _) = rest.split_once("\n=> ").expect("a case has an error");
+        format!("## {name}\n{text}\n=> {}\n", error_of(text))
+    };
+    let cases: Vec<String> = cases.map(case).collect();
+    assert!(cases.len() > 50);
+    expect_file!["errors.txt"].assert_eq(&cases.join("\n"));
 }
 
 #[test]
@@ -130,61 +53,26 @@ fn paths_of_scenes_have_no_detours() {
     }
 }
 
+/// The scene file may set the integrator.
 #[test]
-fn settings_without_effect_on_the_integrator_of_a_method_are_refused() {
-    let of_all =
-        format!("{DESCRIPTION}[settings]\nintegrator = \"path\"\n[[budget]]\nsamples = 2\n");
-    let hint = "[settings] sets this integrator: give the method its own, or leave the setting out";
-    check(
-        &of_all,
-        ":11:15: `shadow-rays` has no effect on the integrator `path`",
-        Some(hint),
-    );
-    let own = of_all.replace("shadow-rays =", "integrator = \"bdpt\"\nshadow-rays =");
-    Workplace::new().read(&own).unwrap();
-    // The scene file may set the integrator.
+fn settings_without_effect_on_the_integrator_of_a_scene_are_refused() {
     let place = Workplace::new();
     let scene = std::fs::read_to_string(place.path("room.pbrt")).unwrap();
     let scene = scene.replace("Integrator \"bdpt\"", "Integrator \"path\"");
     std::fs::write(place.path("room.pbrt"), scene).unwrap();
     let text = DESCRIPTION.to_owned() + "[[budget]]\nsamples = 2\n";
-    assert_eq!(
-        place.refusal(&text, "out").to_string(),
-        "scene `room`: method `one`: `shadow-rays` has no effect on the integrator `path`, which the \
-         scene sets"
-    );
+    let message = "scene `room`: method `one`: `shadow-rays` has no effect on the integrator `path`, \
+                   which the scene sets; set `integrator`";
+    place.refusal(&text, "out", &[message]);
 }
 
 #[test]
-fn the_method_of_a_pyramid_is_bidirectional() {
-    let with = |lines: &str| format!("{lines}\n{DESCRIPTION}[[budget]]\nsamples = 2\n");
-    check(
-        &with("pyramid = \"al\""),
-        ":1:11: unknown name `al`: did you mean `all`?",
-        None,
+fn a_method_has_its_own_integrator_and_a_pyramid_its_samples() {
+    let own = DESCRIPTION.replace("shadow-rays =", "integrator = \"bdpt\"\nshadow-rays =");
+    let text = format!(
+        "pyramid = \"one\"\n{own}[settings]\nintegrator = \"path\"\n[[budget]]\nsamples = 2\n"
     );
-    check(
-        &with("pyramid = \"everything\""),
-        ":1:11: unknown name `everything`: expected all, one",
-        None,
-    );
-    check(
-        &with("pyramid = \"one\"").replace("shadow-rays = \"per-pair\"", "integrator = \"light\""),
-        ":1:11: the method `one` is not bidirectional",
-        Some("strategies (s, t) are those of a method whose integrator is \"bdpt\""),
-    );
-    check(
-        &with("pyramid-spp = 4"),
-        ":1:15: `pyramid-spp` needs `pyramid`",
-        None,
-    );
-    check(
-        &with("pyramid = \"all\"\npyramid-spp = 1"),
-        ":2:15: expected a whole number of at least 2",
-        None,
-    );
-    let place = Workplace::new();
-    let experiment = place.read(&with("pyramid = \"one\"")).unwrap();
+    let experiment = Workplace::new().read(&text).unwrap();
     let spp = |experiment: &Experiment| experiment.pyramid.as_ref().unwrap().spp;
     assert_eq!((spp(&experiment), spp(&experiment.quick())), (64, 8));
 }
@@ -233,14 +121,6 @@ fn older_names_are_accepted() {
     let older = text("reference-witness", "emission", "suited");
     let [today, older] = [today, older].map(|text| place.read(&text).unwrap());
     assert_eq!(format!("{today:?}"), format!("{older:?}"));
-    let both = text(
-        "reference-cross-check",
-        "emission = \"power\"\nlight-start",
-        "auto",
-    );
-    let error = place.read(&both).unwrap_err().to_string();
-    let both = "`emission` is the older name of `light-start`: write one of them";
-    assert!(error.ends_with(both), "{error}");
 }
 
 #[test]

@@ -40,24 +40,15 @@ fn write_changed(
 fn a_missing_file_is_reported_at_the_place_that_names_it() {
     let place = Workplace::new();
     let text = format!("{DESCRIPTION}{BUDGET}");
-    let error = place.refusal(&text.replace("\"room", "\"rom"), "out");
-    let expected = "test.toml:5:8: cannot open `";
-    assert!(error.to_string().contains(expected), "{error}");
-    assert!(
-        error.to_string().ends_with("rom.pbrt`: no such file"),
-        "{error}"
-    );
-    let error = place.refusal(&text.replace(MADE, "reference = \"none.exr\""), "out");
-    let expected = "test.toml:6:13: cannot open `";
-    assert!(error.to_string().contains(expected), "{error}");
+    let misspelt = text.replace("\"room", "\"rom");
+    let parts = ["test.toml:5:8: cannot open `", "rom.pbrt`: no such file"];
+    place.refusal(&misspelt, "out", &parts);
+    let missing = text.replace(MADE, "reference = \"none.exr\"");
+    place.refusal(&missing, "out", &["test.toml:6:13: cannot open `"]);
     // The error of an included file is placed in the scene file.
-    fs::write(
-        place.path("room.pbrt"),
-        format!("{SCENE}Include \"none.pbrt\""),
-    )
-    .unwrap();
-    let error = place.refusal(&text, "out").to_string();
-    assert!(error.contains("room.pbrt:18:9: "), "{error}");
+    let scene = format!("{SCENE}Include \"none.pbrt\"");
+    fs::write(place.path("room.pbrt"), scene).unwrap();
+    place.refusal(&text, "out", &["room.pbrt:18:9: "]);
 }
 
 #[test]
@@ -72,7 +63,7 @@ fn an_existing_reference_is_identified_by_its_pixels() {
     };
     assert_eq!(metrics(&compared), metrics(&results));
     write_changed(&place, &results, "image.exr", |pixels| pixels[7][1] += 0.5);
-    let error = place.refusal(&text, "out");
+    let error = place.refusal(&text, "out", &[]);
     assert!(matches!(error, ExperimentError::Mismatch(_)), "{error}");
     // The same pixels in another image or in a folder give the same experiment.
     write_changed(&place, &results, "moved.exr", |_| {});
@@ -91,16 +82,11 @@ fn pixels_that_are_not_finite_are_refused() {
     write_changed(&place, &results, "image.exr", |pixels| {
         (pixels[16 + 3][2], pixels[100][0]) = (f32::NAN, f32::INFINITY);
     });
-    let error = place.refusal(&given("image.exr"), "out");
-    let message = error.to_string();
-    assert!(
-        message.contains("image.exr: the reference of `room` has 2 pixels"),
-        "{message}"
-    );
-    assert!(
-        message.ends_with("the first at 3,1") && error.hint().is_some(),
-        "{message}"
-    );
+    let parts = [
+        "image.exr: the reference of `room` has 2 pixels that are not finite, the first at 3,1",
+        "render it again",
+    ];
+    place.refusal(&given("image.exr"), "out", &parts);
 }
 
 #[test]
@@ -166,9 +152,6 @@ fn a_cross_check_that_samples_all_paths_can_be_named() {
         provenance.contains("\"integrator\": \"lvc\""),
         "{provenance}"
     );
-    let error = place.refusal(&naming("bdpt"), "other");
-    assert!(error.to_string().contains(":7:25: "), "{error}");
-    assert!(error.hint().unwrap().contains("path, light or lvc"));
     // Older descriptions use another key.
     let old = naming("lvc").replace("reference-cross-check", "reference-witness");
     assert!(place.read(&old).is_ok());
@@ -181,13 +164,8 @@ fn strategies_without_paths_are_refused_and_lost_light_is_a_warning() {
         let method = format!("integrator = \"bdpt\"\nstrategies = \"{list}\"");
         format!("{DESCRIPTION}{BUDGET}").replace("shadow-rays = \"per-pair\"", &method)
     };
-    let error = place.refusal(&text("s0t0"), "none");
-    assert!(
-        error
-            .to_string()
-            .ends_with("method `one`: strategies s0t0 makes no path"),
-        "{error}"
-    );
+    let message = "method `one`: strategies s0t0 makes no path";
+    place.refusal(&text("s0t0"), "none", &[message]);
     let mut watch = Watch::default();
     place.run(&text("s2"), "some", &mut watch).unwrap();
     let lost = "method `one`: strategies s2 loses light: no strategy makes paths of 2 vertices";
@@ -214,10 +192,10 @@ fn strategies_without_paths_are_refused_and_lost_light_is_a_warning() {
 fn a_reference_whose_estimators_disagree_is_not_used() {
     let place = beneath_a_mirror();
     let text = format!("{DESCRIPTION}{BUDGET}").replace(MADE, "reference-spp = 1024");
+    let disagree = ["room", "its estimators disagree (p = ", "--against"];
     // The second run finds the existing reference.
     for _ in 0..2 {
-        let mut watch = Watch::default();
-        let error = place.run(&text, "out", &mut watch).unwrap_err();
+        let error = place.refusal(&text, "out", &disagree);
         let ExperimentError::Reference {
             scene,
             error: Error::Disagree { folder, p },
@@ -226,29 +204,10 @@ fn a_reference_whose_estimators_disagree_is_not_used() {
             panic!("{error}");
         };
         assert!(scene == "room" && *p < 1e-3 && folder.join("picture.exr").exists());
-        let message = error.to_string();
-        assert!(message.contains("room") && message.contains("its estimators disagree (p = "));
-        assert!(error.hint().unwrap().contains("--against"));
-        assert_eq!(watch.renders, 0);
     }
-    let folder = fs::read_dir(place.path("out/references"))
-        .unwrap()
-        .next()
-        .unwrap()
-        .unwrap();
-    let given = format!(
-        "reference = \"out/references/{}\"",
-        folder.file_name().display()
-    );
-    let error = place.refusal(&text.replace("reference-spp = 1024", &given), "other");
-    assert!(
-        matches!(
-            error,
-            ExperimentError::Reference {
-                error: Error::Disagree { .. },
-                ..
-            }
-        ),
-        "{error}"
-    );
+    let mut folders = fs::read_dir(place.path("out/references")).unwrap();
+    let folder = folders.next().unwrap().unwrap().file_name();
+    let given = format!("reference = \"out/references/{}\"", folder.display());
+    let text = text.replace("reference-spp = 1024", &given);
+    place.refusal(&text, "other", &disagree);
 }
