@@ -25,7 +25,6 @@ stat SEED="1":
 docs:
     cargo build --release
     ${CARGO_TARGET_DIR:-target}/release/bidir man --markdown > docs/reference/cli.md
-    BIDIR_WRITE_PAGES=1 cargo test --release -p bidir-lab --lib keys
     BIDIR_WRITE_PAGES=1 cargo test --release -p bidir-formats --lib limits
     BIDIR_WRITE_PAGES=1 cargo test --release -p bidir-cli --test cli choices
     python3 tools/tables
