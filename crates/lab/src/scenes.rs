@@ -8,92 +8,37 @@ use std::sync::Arc;
 type File = (&'static str, &'static [u8]);
 
 macro_rules! files {
-    ($($name:literal)*) => {
-        &[$(($name, include_bytes!(concat!("../../../scenes/", $name)))),*]
+    ($folder:literal $ending:literal $($name:literal)*) => {
+        [$((
+            concat!($folder, $name, $ending),
+            include_bytes!(concat!("../../../scenes/", $folder, $name, $ending)).as_slice(),
+        )),*]
     };
 }
 
 /// The scenes, and all files that they read.
-#[rustfmt::skip]
-const FILES: &[File] = files![
-    "room-direct.pbrt"
-    "room-indirect.pbrt"
-    "apartment.pbrt"
-    "apartment-dark.pbrt"
-    "parts/apartment-rooms.pbrt"
-    "parts/materials.pbrt"
-    "parts/room-furniture.pbrt"
-    "meshes/apartment-casings.ply"
-    "meshes/apartment-hall-wall.ply"
-    "meshes/apartment-kitchen-wall.ply"
-    "meshes/apartment-living-wall.ply"
-    "meshes/apartment-skirting.ply"
-    "meshes/armchair-feet.ply"
-    "meshes/armchair-frame.ply"
-    "meshes/armchair-seat.ply"
-    "meshes/bed-blanket.ply"
-    "meshes/bed-fold.ply"
-    "meshes/bed-frame.ply"
-    "meshes/bed-mattress.ply"
-    "meshes/bed-pillows.ply"
-    "meshes/bench-pad.ply"
-    "meshes/bookcase-2-book-blue.ply"
-    "meshes/bookcase-2-book-cream.ply"
-    "meshes/bookcase-2-book-green.ply"
-    "meshes/bookcase-2-book-ochre.ply"
-    "meshes/bookcase-2-book-plum.ply"
-    "meshes/bookcase-2-book-red.ply"
-    "meshes/bookcase-2-case.ply"
-    "meshes/bookcase-book-blue.ply"
-    "meshes/bookcase-book-cream.ply"
-    "meshes/bookcase-book-green.ply"
-    "meshes/bookcase-book-ochre.ply"
-    "meshes/bookcase-book-plum.ply"
-    "meshes/bookcase-book-red.ply"
-    "meshes/bookcase-case.ply"
-    "meshes/chair-frame.ply"
-    "meshes/chair-pad.ply"
-    "meshes/clay-vase-clay.ply"
-    "meshes/cupboard-high-knobs.ply"
-    "meshes/cupboard-low-knobs.ply"
-    "meshes/curtain-left-cloth.ply"
-    "meshes/curtain-right-cloth.ply"
-    "meshes/desk-lamp-arm.ply"
-    "meshes/desk-lamp-shade.ply"
-    "meshes/desk-wood.ply"
-    "meshes/door-handle.ply"
-    "meshes/glass-vase-glass.ply"
-    "meshes/globe-mount-mount.ply"
-    "meshes/half-door-handle.ply"
-    "meshes/kitchen-table-wood.ply"
-    "meshes/low-table-wood.ply"
-    "meshes/metal-bowl-metal.ply"
-    "meshes/night-table-wood.ply"
-    "meshes/pendant-lining.ply"
-    "meshes/pendant-rose.ply"
-    "meshes/pendant-shade.ply"
-    "meshes/pillow-cover.ply"
-    "meshes/plant-leaves.ply"
-    "meshes/plant-pot.ply"
-    "meshes/plant-stems.ply"
-    "meshes/room-rail-rail.ply"
-    "meshes/round-table-foot.ply"
-    "meshes/round-table-top.ply"
-    "meshes/sofa-feet.ply"
-    "meshes/sofa-frame.ply"
-    "meshes/sofa-seat.ply"
-    "meshes/stool-legs.ply"
-    "meshes/stool-seat.ply"
-    "meshes/table-lamp-foot.ply"
-    "meshes/table-lamp-shade.ply"
-    "meshes/tray-candle.ply"
-    "meshes/tray-tray.ply"
-    "meshes/uplighter-bowl.ply"
-    "meshes/uplighter-lining.ply"
-    "meshes/uplighter-stand.ply"
-    "meshes/wardrobe-doors.ply"
-    "meshes/wardrobe-knobs.ply"
-    "meshes/worktop-slab.ply"
+const SCENES: [File; 4] = files!["" ".pbrt"
+    "room-direct" "room-indirect" "apartment" "apartment-dark"
+];
+const PARTS: [File; 3] = files!["parts/" ".pbrt"
+    "apartment-rooms" "materials" "room-furniture"
+];
+const MESHES: [File; 71] = files!["meshes/" ".ply"
+    "apartment-casings" "apartment-hall-wall" "apartment-kitchen-wall" "apartment-living-wall"
+    "apartment-skirting" "armchair-feet" "armchair-frame" "armchair-seat" "bed-blanket"
+    "bed-fold" "bed-frame" "bed-mattress" "bed-pillows" "bench-pad" "bookcase-2-book-blue"
+    "bookcase-2-book-cream" "bookcase-2-book-green" "bookcase-2-book-ochre"
+    "bookcase-2-book-plum" "bookcase-2-book-red" "bookcase-2-case" "bookcase-book-blue"
+    "bookcase-book-cream" "bookcase-book-green" "bookcase-book-ochre" "bookcase-book-plum"
+    "bookcase-book-red" "bookcase-case" "chair-frame" "chair-pad" "clay-vase-clay"
+    "cupboard-high-knobs" "cupboard-low-knobs" "curtain-left-cloth" "curtain-right-cloth"
+    "desk-lamp-arm" "desk-lamp-shade" "desk-wood" "door-handle" "glass-vase-glass"
+    "globe-mount-mount" "half-door-handle" "kitchen-table-wood" "low-table-wood"
+    "metal-bowl-metal" "night-table-wood" "pendant-lining" "pendant-rose" "pendant-shade"
+    "pillow-cover" "plant-leaves" "plant-pot" "plant-stems" "room-rail-rail" "round-table-foot"
+    "round-table-top" "sofa-feet" "sofa-frame" "sofa-seat" "stool-legs" "stool-seat"
+    "table-lamp-foot" "table-lamp-shade" "tray-candle" "tray-tray" "uplighter-bowl"
+    "uplighter-lining" "uplighter-stand" "wardrobe-doors" "wardrobe-knobs" "worktop-slab"
 ];
 
 /// The folder at the beginning of their names.
@@ -101,8 +46,8 @@ const FOLDER: &str = "scenes";
 
 /// Returns the embedded scenes, without access to the disk.
 pub(crate) fn files() -> Files {
-    let files = FILES.iter();
-    let files = files.map(|(name, bytes)| (path(name), Arc::from(*bytes)));
+    let files = SCENES.into_iter().chain(PARTS).chain(MESHES);
+    let files = files.map(|(name, bytes)| (path(name), Arc::from(bytes)));
     Files::only(files.collect::<InMemory>())
 }
 
@@ -122,7 +67,7 @@ mod tests {
             resolution: Some([4, 3]),
             ..LoadOptions::default()
         };
-        for (name, _) in FILES.iter().filter(|(name, _)| !name.contains('/')) {
+        for (name, _) in SCENES {
             let loaded = load_from(&path(name), &options, &files()).unwrap();
             assert!(loaded.warnings.is_empty(), "{:?}", loaded.warnings);
             let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
