@@ -1,6 +1,6 @@
 //! The extent of an experiment: reductions by `--quick` and by flags.
 
-use super::{BudgetSpec, Experiment, ReferenceSpec, SceneSpec};
+use super::{BudgetSpec, Experiment, ReferenceSpec, is_in};
 use crate::results::BudgetKind;
 use bidir::names::UnknownName;
 
@@ -54,12 +54,9 @@ impl Quick {
         };
         let amount = budget.amount * factor;
         let is_whole = budget.kind == BudgetKind::Samples;
-        let amount = if is_whole { amount.ceil() } else { amount };
         BudgetSpec {
             full: budget.full / pixels,
-            methods: budget.methods.clone(),
-            scenes: budget.scenes.clone(),
-            ..BudgetSpec::new(budget.kind, amount)
+            ..budget.of(if is_whole { amount.ceil() } else { amount })
         }
     }
 }
@@ -102,9 +99,10 @@ impl Experiment {
         self.size = None;
         let mut budgets: Vec<BudgetSpec> = Vec::new();
         for budget in self.budgets.iter().map(|budget| quick.budget(budget)) {
+            let full = budget.full;
             let is_same = |other: &BudgetSpec| {
                 BudgetSpec {
-                    full: budget.full,
+                    full,
                     ..other.clone()
                 } == budget
             };
@@ -124,58 +122,47 @@ impl Experiment {
     /// Errors: a scene name is unknown.
     pub fn within(mut self, extent: &Extent) -> Result<Self, UnknownName> {
         let names = self.scene_names();
-        for name in &extent.scenes {
-            if !names.contains(name) {
-                let names: Vec<&str> = names.iter().map(String::as_str).collect();
-                return Err(UnknownName::new(name, &names));
-            }
+        let is_unknown = |name: &&String| !names.contains(name);
+        if let Some(name) = extent.scenes.iter().find(is_unknown) {
+            let names: Vec<&str> = names.iter().map(String::as_str).collect();
+            return Err(UnknownName::new(name, &names));
         }
-        if !extent.scenes.is_empty() {
-            self.scenes
-                .retain(|scene| extent.scenes.contains(&scene.name));
-            self.absent
-                .retain(|scene| extent.scenes.contains(&scene.name));
-        }
+        self.scenes
+            .retain(|scene| is_in(&extent.scenes, &scene.name));
+        self.absent
+            .retain(|scene| is_in(&extent.scenes, &scene.name));
         for scene in &mut self.scenes {
-            scene.extend(extent);
+            scene.size = extent.size.or(scene.size);
+            if let ReferenceSpec::Make(recipe) = &mut scene.reference {
+                recipe.spp = extent.reference_spp.unwrap_or(recipe.spp);
+            }
         }
         self.size = extent.size.or(self.size);
         self.seeds.count = extent.seeds.unwrap_or(self.seeds.count);
         for budget in &mut self.budgets {
-            *budget = budget.extended(extent);
+            let amount = match budget.kind {
+                BudgetKind::Samples => None,
+                BudgetKind::Rays => extent.rays,
+                BudgetKind::Seconds => extent.seconds,
+            };
+            if let Some(amount) = amount {
+                *budget = budget.of(amount);
+            }
         }
         Ok(self)
     }
 
     /// Returns the names of all scenes, including missing ones.
     pub(super) fn scene_names(&self) -> Vec<String> {
-        let there = self.scenes.iter().map(|scene| scene.name.clone());
-        there
-            .chain(self.absent.iter().map(|scene| scene.name.clone()))
-            .collect()
-    }
-}
-
-impl SceneSpec {
-    fn extend(&mut self, extent: &Extent) {
-        self.size = extent.size.or(self.size);
-        if let ReferenceSpec::Make(recipe) = &mut self.reference {
-            recipe.spp = extent.reference_spp.unwrap_or(recipe.spp);
-        }
+        let there = self.scenes.iter().map(|scene| &scene.name);
+        let absent = self.absent.iter().map(|scene| &scene.name);
+        there.chain(absent).cloned().collect()
     }
 }
 
 impl BudgetSpec {
-    /// Replaces the amount, and the full amount, by the override for its kind.
-    fn extended(&self, extent: &Extent) -> Self {
-        let amount = match self.kind {
-            BudgetKind::Samples => None,
-            BudgetKind::Rays => extent.rays,
-            BudgetKind::Seconds => extent.seconds,
-        };
-        let Some(amount) = amount else {
-            return self.clone();
-        };
+    /// Returns the same budget with another amount, by which it is named.
+    fn of(&self, amount: f64) -> Self {
         Self {
             methods: self.methods.clone(),
             scenes: self.scenes.clone(),
