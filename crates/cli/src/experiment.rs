@@ -32,9 +32,7 @@ pub(crate) fn run(args: &ExperimentArgs, console: Console) -> Result<Exit, Failu
     threads::start(args.threads.count, console);
     let mut experiment = read(args)?;
     experiment.threads = threads(args, experiment.threads, console);
-    let outcome = execute(args, console, &signals, |setup, watch| {
-        experiment::run(&experiment, setup, watch)
-    })?;
+    let outcome = execute(&experiment, args, console, &signals)?;
     let Some(results) = &outcome.results else {
         return Ok(stopped(args, &signals));
     };
@@ -150,10 +148,10 @@ fn threads(args: &ExperimentArgs, own: usize, console: Console) -> usize {
 
 /// Runs the missing renders, with a lock on the folder.
 fn execute(
+    experiment: &Experiment,
     args: &ExperimentArgs,
     console: Console,
     signals: &Signals,
-    run: impl FnOnce(&Setup, &mut Watch<'_>) -> Result<Outcome, ExperimentError>,
 ) -> Result<Outcome, Failure> {
     let folder = args.folder();
     std::fs::create_dir_all(&folder).map_err(|error| Failure::io(&folder, "make", &error))?;
@@ -174,7 +172,7 @@ fn execute(
         Display::Bar
     };
     let mut watch = Watch::new(console, display, signals);
-    let outcome = run(&setup, &mut watch);
+    let outcome = experiment::run(experiment, &setup, &mut watch);
     watch.finish();
     outcome.map_err(failure)
 }
@@ -183,10 +181,8 @@ fn execute(
 fn failure(error: ExperimentError) -> Failure {
     let exit = match &error {
         ExperimentError::Description(_)
-        | ExperimentError::NotBidirectional { .. }
-        | ExperimentError::NoReference(_)
-        | ExperimentError::Strategies { .. }
-        | ExperimentError::NoEffect { .. } => Exit::Scene,
+        | ExperimentError::Method { .. }
+        | ExperimentError::NoReference(_) => Exit::Scene,
         ExperimentError::Mismatch(_) | ExperimentError::Elsewhere { .. } => Exit::FilmMismatch,
         ExperimentError::Render { .. } => Exit::RenderFailed,
         _ => Exit::InputOutput,

@@ -5,13 +5,13 @@
 //! [`Prepared::add`]; and at the end calls [`run`](super::run()), which then finds all records. All machines
 //! have to be alike, since times are compared.
 
+use super::Experiment;
 use super::error::ExperimentError;
 use super::journal::{Journal, RecordsKey};
 use super::loaded_scene::{LoadedScene, Reference};
 use super::observer::Observer;
 use super::run::{Run, write_image};
-use super::run_set::{Begun, End, Ready, RunSet, Setup, begin};
-use super::{Experiment, pyramid, reference};
+use super::run_set::{End, RunSet, Setup, Started, start};
 use crate::image::Pixels;
 use crate::results::Record;
 use formats::scene::Files;
@@ -73,25 +73,14 @@ pub fn prepare(
     setup: &Setup,
     observer: &mut dyn Observer,
 ) -> Result<Option<Prepared>> {
-    let Begun { scenes, given, key } = begin(experiment, setup, observer)?;
-    let mut journal = Journal::start(setup, &key)?;
-    let Some(ready) = reference::obtain_all(experiment, scenes, given, setup, observer)? else {
+    let started = start(experiment, setup, observer)?;
+    let is_complete = |started: &Started<'_>| started.end == End::Complete;
+    let Some(started) = started.filter(is_complete) else {
         return Ok(None);
     };
-    let Ready {
-        scenes, references, ..
-    } = ready;
-    if pyramid::complete(experiment, &scenes, setup, &mut journal, observer)? == End::Stopped {
-        return Ok(None);
-    }
-    let run_set = RunSet {
-        experiment,
-        setup,
-        scenes: &scenes,
-        references: &references,
-    };
-    let blocks = blocks(&run_set, &journal);
-    let scenes = scenes.iter().zip(references);
+    let run_set = started.run_set;
+    let blocks = blocks(&run_set, &started.journal);
+    let scenes = run_set.scenes.iter().zip(run_set.references);
     let scenes = scenes.map(|(loaded, reference)| PreparedScene {
         name: loaded.spec.name.clone(),
         path: loaded.spec.path.clone(),
@@ -101,7 +90,7 @@ pub fn prepare(
     Ok(Some(Prepared {
         scenes: scenes.collect(),
         blocks,
-        key,
+        key: started.key,
         folder: setup.folder.clone(),
     }))
 }
@@ -162,13 +151,10 @@ pub fn render_block(
 ) -> Result<Option<Vec<Done>>> {
     let missing = || ExperimentError::Mismatch(PathBuf::from(&block.scene));
     let mut scenes = experiment.scenes.iter();
-    let spec = scenes
-        .find(|spec| spec.name == block.scene)
-        .ok_or_else(missing)?;
+    let spec = scenes.find(|spec| spec.name == block.scene);
     let mut budgets = experiment.budgets.iter();
-    let budget = budgets
-        .find(|budget| budget.name == block.budget)
-        .ok_or_else(missing)?;
+    let budget = budgets.find(|budget| budget.name == block.budget);
+    let (spec, budget) = spec.zip(budget).ok_or_else(missing)?;
     let loaded = LoadedScene::load(experiment, spec, files)?;
     let reference = Reference {
         pixels: reference.clone(),
@@ -179,11 +165,10 @@ pub fn render_block(
     let mut all = Vec::new();
     for name in &block.methods {
         let mut methods = experiment.methods.iter();
+        let method = methods.find(|method| method.name == *name);
         let run = Run {
             scene: &loaded,
-            method: methods
-                .find(|method| method.name == *name)
-                .ok_or_else(missing)?,
+            method: method.ok_or_else(missing)?,
             budget,
             seed: block.seed,
         };

@@ -49,32 +49,17 @@ pub enum ExperimentError {
         /// The differing parts, as recorded and here.
         difference: String,
     },
-    /// An image has another size than its reference.
-    #[error("{}: the reference of `{scene}` has {} x {} pixels, its images have {} x {}",
-        path.display(), found[0], found[1], expected[0], expected[1])]
-    Size {
+    /// The image of a reference cannot be used.
+    #[error("{}: the reference of `{scene}` has {text}", path.display())]
+    Image {
         /// The reference.
         path: PathBuf,
         /// The scene.
         scene: String,
-        /// Width and height of the reference.
-        found: [usize; 2],
-        /// Width and height of the images.
-        expected: [usize; 2],
-    },
-    /// A reference has pixels that are not finite.
-    #[error("{}: the reference of `{scene}` has {count} pixels that are not finite, the first at \
-         {},{}",
-        path.display(), first[0], first[1])]
-    NotFinite {
-        /// The reference.
-        path: PathBuf,
-        /// The scene.
-        scene: String,
-        /// The number of such pixels.
-        count: usize,
-        /// Column and row of the first one in reading order.
-        first: [usize; 2],
+        /// The fault.
+        text: String,
+        /// The remedy.
+        hint: &'static str,
     },
     /// A reference cannot be made or used.
     #[error("the reference of scene `{scene}`: {error}")]
@@ -84,38 +69,17 @@ pub enum ExperimentError {
         /// The cause.
         error: reference::Error,
     },
-    /// A method whose strategies or contributions are requested is not bidirectional in a scene.
-    #[error(
-        "scene `{scene}`: the {figures} of method `{method}` cannot be measured, as it is not \
-         bidirectional there"
-    )]
-    NotBidirectional {
-        /// The scene.
-        scene: String,
-        /// The method.
-        method: String,
-        /// The requested figures.
-        figures: &'static str,
-    },
-    /// The strategies of a method sample no path in a scene.
+    /// A method cannot be rendered in a scene, or cannot be measured there.
     #[error("scene `{scene}`: method `{method}`: {text}")]
-    Strategies {
+    Method {
         /// The scene.
         scene: String,
         /// The method.
         method: String,
-        /// The list of strategies, and its fault.
+        /// The cause.
         text: String,
-    },
-    /// A setting of a method has no effect on the integrator of a scene.
-    #[error("scene `{scene}`: method `{method}`: {text}, which the scene sets")]
-    NoEffect {
-        /// The scene.
-        scene: String,
-        /// The method.
-        method: String,
-        /// The setting and the integrator.
-        text: String,
+        /// The remedy. None: the cause implies it.
+        hint: Option<&'static str>,
     },
     /// A scene shares the reference of an unknown scene, of a later one, or of one with another size.
     #[error("scene `{0}`: `reference-of` names no scene before it that has images of its size")]
@@ -150,7 +114,8 @@ impl ExperimentError {
                 "continue there, or with the same --threads; else name another folder with -o, \
                  or start over in this one with --restart",
             ),
-            Self::NotFinite { .. } => Some("render it again, or give these pixels a colour"),
+            Self::Image { hint, .. } => Some(hint),
+            Self::Method { hint, .. } => *hint,
             Self::Reference {
                 error: reference::Error::Disagree { .. },
                 ..
@@ -159,10 +124,7 @@ impl ExperimentError {
                  another estimator (`reference-cross-check`), or name a `reference` made by \
                  `bidir reference --estimator … --against …`",
             ),
-            Self::NotBidirectional { .. } => Some("give the method integrator = \"bdpt\""),
-            Self::NoEffect { .. } => Some("set `integrator` in [settings] or in the method"),
             Self::NoScenes(_) => Some("BIDIR_SCENES names the folder that has pbrt-v4/"),
-            Self::Size { .. } => Some("give the scene the size of its reference"),
             _ => None,
         }
     }

@@ -10,6 +10,8 @@ use crate::seal::{self, Seal};
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
+type Result<T> = std::result::Result<T, ExperimentError>;
+
 /// The name of the file.
 pub(super) const FILE: &str = "records.ndjson";
 /// The version of its format.
@@ -37,15 +39,17 @@ pub(super) struct RecordsKey {
 impl RecordsKey {
     /// Describes the differences of program and machine, which times depend on. None: there are none.
     fn difference(&self, here: &Self) -> Option<String> {
-        let parts = |key: &Self| {
+        let parts = |Self {
+                         program, machine, ..
+                     }: &Self| {
+            let threads = format!("{} threads", machine.threads);
             let Machine {
                 processor,
-                threads,
                 isa,
                 system,
-            } = key.machine.clone();
-            let threads = format!("{threads} threads");
-            [key.program.clone(), processor, threads, isa, system]
+                ..
+            } = machine;
+            [program, processor, &threads, isa, system].map(String::clone)
         };
         let pairs = parts(self).into_iter().zip(parts(here));
         // An unknown processor may be the same one.
@@ -75,15 +79,6 @@ pub(super) struct Journal {
 }
 
 impl Journal {
-    /// Replaces the file by a journal without records.
-    ///
-    /// Errors: the file cannot be written.
-    pub(super) fn begin(folder: &Path, key: &RecordsKey) -> Result<Self, ExperimentError> {
-        let journal = Self::new(folder, key);
-        journal.write()?;
-        Ok(journal)
-    }
-
     fn new(folder: &Path, key: &RecordsKey) -> Self {
         let head = Head {
             format: FORMAT,
@@ -101,7 +96,7 @@ impl Journal {
     ///
     /// Errors: the file cannot be read, is damaged, or belongs to another experiment, or to another machine
     /// or program, whose times would not be comparable.
-    pub(super) fn open(folder: &Path, key: &RecordsKey) -> Result<Self, ExperimentError> {
+    pub(super) fn open(folder: &Path, key: &RecordsKey) -> Result<Self> {
         let mut journal = Self::new(folder, key);
         let bytes = match std::fs::read(&journal.path) {
             Ok(bytes) => bytes,
@@ -116,12 +111,7 @@ impl Journal {
     }
 
     /// Reads the content of the file.
-    fn read(
-        &mut self,
-        bytes: &[u8],
-        folder: &Path,
-        key: &RecordsKey,
-    ) -> Result<(), ExperimentError> {
+    fn read(&mut self, bytes: &[u8], folder: &Path, key: &RecordsKey) -> Result<()> {
         let text = std::str::from_utf8(bytes).map_err(|error| {
             let before = bytes.iter().take(error.valid_up_to());
             let line = 1 + before.filter(|byte| **byte == b'\n').count();
@@ -134,12 +124,7 @@ impl Journal {
     }
 
     /// Reads the first line.
-    fn read_head(
-        &mut self,
-        folder: &Path,
-        line: &str,
-        key: &RecordsKey,
-    ) -> Result<(), ExperimentError> {
+    fn read_head(&mut self, folder: &Path, line: &str, key: &RecordsKey) -> Result<()> {
         let others = || ExperimentError::Mismatch(folder.to_owned());
         if seal::check(line) == Seal::Broken {
             return self.check(line, 1);
@@ -159,7 +144,7 @@ impl Journal {
     }
 
     /// Reads a line with a record or with figures of strategies.
-    fn read_line(&mut self, line: &str, number: usize) -> Result<(), ExperimentError> {
+    fn read_line(&mut self, line: &str, number: usize) -> Result<()> {
         self.check(line, number)?;
         if let Ok(PyramidLine { pyramid }) = serde_json::from_str(line) {
             self.pyramids.push(pyramid);
@@ -174,7 +159,7 @@ impl Journal {
     }
 
     /// Compares a line with its checksum.
-    fn check(&self, line: &str, number: usize) -> Result<(), ExperimentError> {
+    fn check(&self, line: &str, number: usize) -> Result<()> {
         match seal::check(line) {
             Seal::Broken => Err(self.damaged(number, "its checksum is that of another text")),
             Seal::Missing => Err(self.damaged(number, "it has no checksum")),
@@ -188,29 +173,33 @@ impl Journal {
     }
 
     /// Opens or replaces the journal, as the setup asks, when an experiment starts.
-    pub(super) fn start(setup: &Setup, key: &RecordsKey) -> Result<Self, ExperimentError> {
+    pub(super) fn start(setup: &Setup, key: &RecordsKey) -> Result<Self> {
         match setup.start {
-            Start::Anew => Self::begin(&setup.folder, key),
             Start::Resume => Self::open(&setup.folder, key),
+            Start::Anew => {
+                let journal = Self::new(&setup.folder, key);
+                journal.write()?;
+                Ok(journal)
+            }
         }
     }
 
     /// Adds a record.
-    pub(super) fn add(&mut self, record: Record) -> Result<(), ExperimentError> {
+    pub(super) fn add(&mut self, record: Record) -> Result<()> {
         self.text += &line(&record);
         self.records.push(record);
         self.write()
     }
 
     /// Adds figures of strategies.
-    pub(super) fn add_pyramid(&mut self, pyramid: Pyramid) -> Result<(), ExperimentError> {
+    pub(super) fn add_pyramid(&mut self, pyramid: Pyramid) -> Result<()> {
         let found = PyramidLine { pyramid };
         self.text += &line(&found);
         self.pyramids.push(found.pyramid);
         self.write()
     }
 
-    fn write(&self) -> Result<(), ExperimentError> {
+    fn write(&self) -> Result<()> {
         formats::file::replace(&self.path, self.text.as_bytes())?;
         Ok(())
     }
@@ -225,13 +214,9 @@ impl Journal {
 
     /// Returns true if there is a record of the same run.
     pub(super) fn has_like(&self, record: &Record) -> bool {
-        let key = |of: &Record| {
-            (
-                of.seed,
-                [&of.scene, &of.method, &of.budget].map(String::clone),
-            )
-        };
-        self.records.iter().any(|other| key(other) == key(record))
+        let names = |of: &Record| [&of.scene, &of.method, &of.budget].map(String::clone);
+        let is_like = |other: &Record| other.seed == record.seed && names(other) == names(record);
+        self.records.iter().any(is_like)
     }
 
     pub(super) fn has(&self, run: &super::run::Run<'_>) -> bool {
@@ -275,7 +260,7 @@ mod tests {
         journal.text + &line(&record(1)) + &line(&record(2))
     }
 
-    fn read(bytes: &[u8]) -> Result<Journal, ExperimentError> {
+    fn read(bytes: &[u8]) -> Result<Journal> {
         let mut journal = Journal::new(Path::new(PLACE), &key());
         journal.read(bytes, Path::new(PLACE), &key())?;
         Ok(journal)

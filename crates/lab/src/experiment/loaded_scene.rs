@@ -105,11 +105,23 @@ impl<'a> LoadedScene<'a> {
         if settings.integrator == IntegratorKind::Bdpt {
             return Ok(settings);
         }
-        Err(ExperimentError::NotBidirectional {
+        let text = format!("its {figures} cannot be measured, as it is not bidirectional here");
+        Err(self.refusal(method, text, Some("give the method integrator = \"bdpt\"")))
+    }
+
+    /// Makes the error of a method in this scene.
+    pub(super) fn refusal(
+        &self,
+        method: &MethodSpec,
+        text: String,
+        hint: Option<&'static str>,
+    ) -> ExperimentError {
+        ExperimentError::Method {
             scene: self.spec.name.clone(),
             method: method.name.clone(),
-            figures,
-        })
+            text,
+            hint,
+        }
     }
 
     /// Starts a session of this scene. None: it was asked to stop in training.

@@ -5,7 +5,7 @@ use super::loaded_scene::{LoadedScene, Reference};
 use super::names::file_name;
 use super::observer::{Event, Observer};
 use super::run::write_image;
-use super::run_set::{Ready, Setup};
+use super::run_set::{RunSet, Setup};
 use super::settings::texts;
 use super::{Absent, Experiment, Presence, ReferenceRecipe, ReferenceSpec};
 use crate::image::Pixels;
@@ -43,13 +43,15 @@ pub(super) fn given(loaded: &LoadedScene<'_>) -> Result<Option<Reference>> {
 ///
 /// Errors: those of [`obtain`]; no scene is left.
 pub(super) fn obtain_all<'a>(
-    experiment: &Experiment,
+    experiment: &'a Experiment,
     scenes: Vec<LoadedScene<'a>>,
     given: Vec<Option<Reference>>,
-    setup: &Setup,
+    setup: &'a Setup,
     observer: &mut dyn Observer,
-) -> Result<Option<Ready<'a>>> {
-    let mut ready = Ready {
+) -> Result<Option<RunSet<'a>>> {
+    let mut ready = RunSet {
+        experiment,
+        setup,
         scenes: Vec::new(),
         references: Vec::new(),
         absent: experiment.absent.clone(),
@@ -58,7 +60,12 @@ pub(super) fn obtain_all<'a>(
         let given = given.or_else(|| shared(&ready, &loaded));
         let threads = experiment.threads;
         match obtain(&loaded, given, setup, threads, observer) {
-            Err(error) if loaded.spec.presence == Presence::Optional && is_contradicted(&error) => {
+            Err(
+                error @ ExperimentError::Reference {
+                    error: references::Error::Disagree { .. },
+                    ..
+                },
+            ) if loaded.spec.presence == Presence::Optional => {
                 let scene = Absent {
                     name: loaded.spec.name.clone(),
                     reason: error.to_string(),
@@ -82,21 +89,13 @@ pub(super) fn obtain_all<'a>(
 }
 
 /// Returns the reference of the scene that this one names as having the same light.
-fn shared(ready: &Ready<'_>, loaded: &LoadedScene<'_>) -> Option<Reference> {
+fn shared(ready: &RunSet<'_>, loaded: &LoadedScene<'_>) -> Option<Reference> {
     let ReferenceSpec::Of(name) = &loaded.spec.reference else {
         return None;
     };
     let mut scenes = ready.scenes.iter().zip(&ready.references);
     let found = scenes.find(|(other, _)| other.spec.name == *name && other.size() == loaded.size());
     found.map(|(_, reference)| reference.clone())
-}
-
-/// Returns true if the two estimators of a reference disagree, so that it is not used.
-fn is_contradicted(error: &ExperimentError) -> bool {
-    let ExperimentError::Reference { error, .. } = error else {
-        return false;
-    };
-    matches!(error, references::Error::Disagree { .. })
 }
 
 /// Obtains the reference of a scene: copies the image of the [`given`] one into the folder of the results,
@@ -114,23 +113,18 @@ fn obtain(
         (ReferenceSpec::Make(recipe), _) => {
             make(loaded, &plan(loaded, recipe), setup, threads, observer)
         }
-        (ReferenceSpec::Existing(_), Some(reference)) => copied(loaded, reference, setup).map(Some),
+        (ReferenceSpec::Existing(_), Some(mut reference)) => {
+            // The folder of the results holds everything that a report shows.
+            let name = copy(loaded);
+            write_image(&setup.folder.join(&name), &reference.pixels)?;
+            reference.image = Some(name);
+            Ok(Some(reference))
+        }
         (ReferenceSpec::Of(_), Some(reference)) => Ok(Some(reference)),
         (ReferenceSpec::Existing(_) | ReferenceSpec::Of(_), None) => {
             Err(ExperimentError::NoReference(loaded.spec.name.clone()))
         }
     }
-}
-
-/// Copies the image of an existing reference into the folder of the results, which holds everything that a
-/// report shows.
-fn copied(loaded: &LoadedScene<'_>, reference: Reference, setup: &Setup) -> Result<Reference> {
-    let name = copy(loaded);
-    write_image(&setup.folder.join(&name), &reference.pixels)?;
-    Ok(Reference {
-        image: Some(name),
-        ..reference
-    })
 }
 
 /// Returns the name of the copied image of an existing reference, in the folder of the results.
@@ -185,12 +179,10 @@ fn read(path: &Path, loaded: &LoadedScene<'_>) -> Result<Pixels> {
     let place = loaded.spec.reference_place.as_ref();
     let pixels = Pixels::from(&image.map_err(|error| Place::of_named(place, error))?);
     if pixels.size != loaded.size() {
-        return Err(ExperimentError::Size {
-            path: path.to_owned(),
-            scene: loaded.spec.name.clone(),
-            found: pixels.size,
-            expected: loaded.size(),
-        });
+        let ([w, h], [width, height]) = (pixels.size, loaded.size());
+        let text = format!("{w} x {h} pixels, its images have {width} x {height}");
+        let hint = "give the scene the size of its reference";
+        return Err(unusable(path, loaded, text, hint));
     }
     finite(pixels, path, loaded)
 }
@@ -201,13 +193,25 @@ fn finite(pixels: Pixels, path: &Path, loaded: &LoadedScene<'_>) -> Result<Pixel
     let Some(first) = pixels.data.iter().position(is_bad) else {
         return Ok(pixels);
     };
-    let width = pixels.size[0];
-    Err(ExperimentError::NotFinite {
+    let count = pixels.data.iter().filter(|pixel| is_bad(pixel)).count();
+    let [x, y] = [first % pixels.size[0], first / pixels.size[0]];
+    let text = format!("{count} pixels that are not finite, the first at {x},{y}");
+    let hint = "render it again, or give these pixels a colour";
+    Err(unusable(path, loaded, text, hint))
+}
+
+fn unusable(
+    path: &Path,
+    loaded: &LoadedScene<'_>,
+    text: String,
+    hint: &'static str,
+) -> ExperimentError {
+    ExperimentError::Image {
         path: path.to_owned(),
         scene: loaded.spec.name.clone(),
-        count: pixels.data.iter().filter(|pixel| is_bad(pixel)).count(),
-        first: [first % width, first / width],
-    })
+        text,
+        hint,
+    }
 }
 
 /// Computes the mean square error of an image from its variance layer. None: it has none.

@@ -64,34 +64,21 @@ pub struct Outcome {
 
 /// Renders every run without a record, and writes `results.json`.
 pub fn run(experiment: &Experiment, setup: &Setup, observer: &mut dyn Observer) -> Result<Outcome> {
-    let Begun { scenes, given, key } = begin(experiment, setup, observer)?;
-    let mut journal = Journal::start(setup, &key)?;
-    let Some(ready) = reference::obtain_all(experiment, scenes, given, setup, observer)? else {
+    let Some(mut started) = start(experiment, setup, observer)? else {
         return Ok(Outcome {
             end: End::Stopped,
             results: None,
         });
     };
-    let Ready {
-        scenes,
-        references,
-        absent,
-    } = ready;
-    let run_set = RunSet {
-        experiment,
-        setup,
-        scenes: &scenes,
-        references: &references,
-    };
-    let shown = pyramid::complete(experiment, &scenes, setup, &mut journal, observer)?;
-    let end = match shown {
-        End::Complete => run_set.render(&mut journal, observer)?,
-        End::Stopped => shown,
+    let (run_set, journal) = (&started.run_set, &mut started.journal);
+    let end = match started.end {
+        End::Complete => run_set.render(journal, observer)?,
+        End::Stopped => End::Stopped,
     };
     let mut results = run_set.results(journal.records());
-    results.pyramids = pyramid::found(experiment, &scenes, setup, &journal);
-    results.contributions = contributions::measure(experiment, &scenes)?;
-    for Absent { name, reason } in absent {
+    results.pyramids = pyramid::found(experiment, &run_set.scenes, setup, journal);
+    results.contributions = contributions::measure(experiment, &run_set.scenes)?;
+    for Absent { name, reason } in &run_set.absent {
         let _ = write!(
             results.description,
             "\n\nThe scene {name} is left out: {reason}."
@@ -111,28 +98,22 @@ pub fn run(experiment: &Experiment, setup: &Setup, observer: &mut dyn Observer) 
     })
 }
 
-/// An experiment before its first render.
-pub(super) struct Begun<'a> {
-    pub(super) scenes: Vec<LoadedScene<'a>>,
-    /// The existing reference of each scene, if any.
-    pub(super) given: Vec<Option<Reference>>,
+/// An experiment before its first run.
+pub(super) struct Started<'a> {
+    pub(super) run_set: RunSet<'a>,
     pub(super) key: RecordsKey,
+    pub(super) journal: Journal,
+    /// Complete if the images of strategies are.
+    pub(super) end: End,
 }
 
-/// The scenes with their references, and the omitted scenes.
-pub(super) struct Ready<'a> {
-    pub(super) scenes: Vec<LoadedScene<'a>>,
-    /// One for each scene.
-    pub(super) references: Vec<Reference>,
-    pub(super) absent: Vec<Absent>,
-}
-
-/// Creates the folders, and reads the scenes and the existing references.
-pub(super) fn begin<'a>(
+/// Creates the folders, reads the scenes, and renders references and images of strategies. None: the observer
+/// stopped it before the references were complete.
+pub(super) fn start<'a>(
     experiment: &'a Experiment,
-    setup: &Setup,
+    setup: &'a Setup,
     observer: &mut dyn Observer,
-) -> Result<Begun<'a>> {
+) -> Result<Option<Started<'a>>> {
     for folder in ["", "images", "references"] {
         let path = setup.folder.join(folder);
         std::fs::create_dir_all(&path).map_err(|error| ExperimentError::Folder { path, error })?;
@@ -143,10 +124,8 @@ pub(super) fn begin<'a>(
     if let ([], Some(absent)) = (&experiment.scenes[..], experiment.absent.last()) {
         return Err(ExperimentError::NoScenes(absent.reason.clone()));
     }
-    let scenes = experiment
-        .scenes
-        .iter()
-        .map(|spec| LoadedScene::load(experiment, spec, &Files::default()));
+    let load = |spec| LoadedScene::load(experiment, spec, &Files::default());
+    let scenes = experiment.scenes.iter().map(load);
     let scenes = scenes.collect::<Result<Vec<_>>>()?;
     for warning in scenes.iter().flat_map(|loaded| &loaded.warnings) {
         observer.notify(Event::Warning(warning));
@@ -161,7 +140,18 @@ pub(super) fn begin<'a>(
         program: setup.program.clone(),
         machine: machine(experiment, setup),
     };
-    Ok(Begun { scenes, given, key })
+    let mut journal = Journal::start(setup, &key)?;
+    let obtained = reference::obtain_all(experiment, scenes, given, setup, observer)?;
+    let Some(run_set) = obtained else {
+        return Ok(None);
+    };
+    let end = pyramid::complete(experiment, &run_set.scenes, setup, &mut journal, observer)?;
+    Ok(Some(Started {
+        run_set,
+        key,
+        journal,
+        end,
+    }))
 }
 
 /// Refuses methods whose strategies make no path in a scene, and warns of methods that lose light, once for
@@ -214,11 +204,7 @@ fn loss(method: &MethodSpec, loaded: &LoadedScene<'_>) -> Result<Option<String>>
     };
     let text = format!("strategies {} {lost}", path.strategies);
     if matches!(lost, LostLight::All { .. }) {
-        return Err(ExperimentError::Strategies {
-            scene: loaded.spec.name.clone(),
-            method: method.name.clone(),
-            text,
-        });
+        return Err(loaded.refusal(method, text, None));
     }
     Ok(Some(text))
 }
@@ -228,11 +214,11 @@ fn check_effect(method: &MethodSpec, loaded: &LoadedScene<'_>) -> Result<()> {
     let request = &method.request;
     let integrator = loaded.settings.integrator;
     match request.ignored(&loaded.settings).first() {
-        Some(name) if request.integrator.is_none() => Err(ExperimentError::NoEffect {
-            scene: loaded.spec.name.clone(),
-            method: method.name.clone(),
-            text: no_effect(name, integrator),
-        }),
+        Some(name) if request.integrator.is_none() => {
+            let text = format!("{}, which the scene sets", no_effect(name, integrator));
+            let hint = "set `integrator` in [settings] or in the method";
+            Err(loaded.refusal(method, text, Some(hint)))
+        }
         _ => Ok(()),
     }
 }
@@ -290,35 +276,25 @@ fn json(results: &Results) -> String {
 pub(super) struct RunSet<'a> {
     pub(super) experiment: &'a Experiment,
     pub(super) setup: &'a Setup,
-    pub(super) scenes: &'a [LoadedScene<'a>],
+    pub(super) scenes: Vec<LoadedScene<'a>>,
     /// One for each scene.
-    pub(super) references: &'a [Reference],
+    pub(super) references: Vec<Reference>,
+    /// The omitted scenes.
+    pub(super) absent: Vec<Absent>,
 }
 
 impl RunSet<'_> {
     /// Iterates over all runs in order, each with its reference.
     pub(super) fn runs(&self) -> impl Iterator<Item = (Run<'_>, &Reference)> {
-        let Self {
-            experiment,
-            scenes,
-            references,
-            ..
-        } = *self;
-        let seeds = experiment.seeds;
+        let seeds = self.experiment.seeds;
         let seeds = seeds.first..seeds.first + seeds.count;
-        let scenes = move |seed| {
-            scenes
-                .iter()
-                .zip(references)
-                .map(move |scene| (seed, scene))
-        };
-        seeds
-            .flat_map(scenes)
-            .flat_map(move |(seed, (loaded, reference))| {
-                let renders = experiment.renders(&loaded.spec.name);
+        seeds.flat_map(move |seed| {
+            let scenes = self.scenes.iter().zip(&self.references);
+            scenes.flat_map(move |(scene, reference)| {
+                let renders = self.experiment.renders(&scene.spec.name);
                 renders.map(move |(budget, method)| {
                     let run = Run {
-                        scene: loaded,
+                        scene,
                         method,
                         budget,
                         seed,
@@ -326,6 +302,7 @@ impl RunSet<'_> {
                     (run, reference)
                 })
             })
+        })
     }
 
     /// Renders every run without a record.
@@ -354,13 +331,8 @@ impl RunSet<'_> {
     }
 
     fn results(&self, records: &[Record]) -> Results {
-        let Self {
-            experiment,
-            setup,
-            scenes,
-            references,
-        } = *self;
-        let scenes = scenes.iter().zip(references);
+        let (experiment, setup) = (self.experiment, self.setup);
+        let scenes = self.scenes.iter().zip(&self.references);
         let budgets = experiment.budgets.iter().map(|budget| BudgetInfo {
             name: budget.name.clone(),
             kind: budget.kind,
@@ -398,11 +370,10 @@ impl RunSet<'_> {
         let methods = self.experiment.methods.iter().map(|method| {
             let mut settings: BTreeMap<String, String> = BTreeMap::new();
             let scenes = self.scenes.iter();
-            let scenes = scenes.filter(|loaded| loaded.has(self.experiment, method));
-            for (number, loaded) in scenes.enumerate() {
+            for loaded in scenes.filter(|loaded| loaded.has(self.experiment, method)) {
                 for (name, value) in texts(&method.request.apply(&loaded.settings)) {
                     let known = settings.entry(name).or_insert_with(|| value.clone());
-                    if number > 0 && *known != value {
+                    if *known != value {
                         "the scene's".clone_into(known);
                     }
                 }
