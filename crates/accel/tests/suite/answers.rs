@@ -3,7 +3,7 @@
 use bidir_accel::{Aabb, Primitive, Ray, accept_all};
 use glam::Vec3;
 
-use crate::oracle::{Single, hit_bits, plane_passage};
+use crate::oracle::{Single, plane_passage};
 use crate::scenes::{Mesh, Random, displace, mixed, triangle_soup};
 use crate::trees::build;
 
@@ -18,11 +18,7 @@ fn check_equals_brute_force(primitives: &[Primitive], random: &mut Random, rays:
         };
         for ray in [ray, Ray::new(ray.origin, ray.direction)] {
             let expected = single.closest(&ray, accept_all);
-            assert_eq!(
-                hit_bits(bvh.closest(&ray, accept_all)),
-                hit_bits(expected),
-                "{ray:?}"
-            );
+            bvh.check(&ray, accept_all, expected);
             assert_eq!(bvh.is_hit(&ray), expected.is_some(), "{ray:?}");
         }
     }
@@ -119,20 +115,15 @@ fn limits_include_their_ends() {
     assert_eq!(found(4.0, 1.0), None);
     assert_eq!(found(f32::NAN, 9.0), None);
     assert_eq!(found(0.0, f32::NAN), None);
-    for bad in [f32::NAN, f32::INFINITY] {
-        assert_eq!(
-            bvh.closest(&Ray::new(Vec3::splat(bad), Vec3::Z), accept_all),
-            None
-        );
-        assert_eq!(
-            bvh.closest(&Ray::new(Vec3::ZERO, Vec3::splat(bad)), accept_all),
-            None
-        );
+    for (origin, direction) in [
+        (Vec3::NAN, Vec3::Z),
+        (Vec3::INFINITY, Vec3::Z),
+        (Vec3::ZERO, Vec3::NAN),
+        (Vec3::ZERO, Vec3::INFINITY),
+        (Vec3::splat(0.1), Vec3::ZERO),
+    ] {
+        bvh.check(&Ray::new(origin, direction), accept_all, None);
     }
-    assert_eq!(
-        bvh.closest(&Ray::new(Vec3::splat(0.1), Vec3::ZERO), accept_all),
-        None
-    );
 }
 
 #[test]
@@ -203,14 +194,9 @@ fn filtered_primitives_do_not_exist() {
         let rejected = random.below(3) as u32;
         let by_primitive = |hit: &bidir_accel::Hit| hit.primitive % 3 != rejected;
         let by_place = |hit: &bidir_accel::Hit| hit.u + hit.v > 0.3;
-        let expected = single.closest(&ray, by_primitive);
-        assert_eq!(
-            hit_bits(bvh.closest(&ray, by_primitive)),
-            hit_bits(expected)
-        );
-        let expected = single.closest(&ray, by_place);
-        assert_eq!(hit_bits(bvh.closest(&ray, by_place)), hit_bits(expected));
-        assert_eq!(bvh.closest(&ray, |_| false), None);
+        bvh.check(&ray, by_primitive, single.closest(&ray, by_primitive));
+        bvh.check(&ray, by_place, single.closest(&ray, by_place));
+        bvh.check(&ray, |_| false, None);
     }
 }
 
@@ -261,22 +247,14 @@ fn ties_at_shared_vertices_equal_brute_force() {
             mesh.vertices[random.below(mesh.vertices.len())] - origin,
         );
         let expected = single.closest(&ray, accept_all);
-        assert_eq!(
-            hit_bits(bvh.closest(&ray, accept_all)),
-            hit_bits(expected),
-            "{ray:?}"
-        );
+        bvh.check(&ray, accept_all, expected);
         // With the hit as the limit, boxes and triangles meet it again.
         let limited = Ray {
             t_max: expected.map_or(0.0, |hit| hit.t),
             ..ray
         };
-        assert_eq!(
-            hit_bits(bvh.closest(&limited, accept_all)),
-            hit_bits(expected),
-            "{ray:?}"
-        );
-        assert!(bvh.is_blocked(&limited));
+        assert!(expected.is_some());
+        bvh.check(&limited, accept_all, expected);
     }
 }
 
@@ -322,7 +300,7 @@ fn nothing_is_a_scene() {
     let bvh = build(&[]);
     let ray = Ray::new(Vec3::ZERO, Vec3::X);
     assert_eq!(bvh.closest(&ray, accept_all), None);
-    assert!(!bvh.is_blocked(&ray));
+    assert!(!bvh.occluded(&ray, accept_all));
     assert_eq!(
         (bvh.bounds(), bvh.memory_bytes(), bvh.primitive_count()),
         (Aabb::EMPTY, 0, 0)

@@ -4,7 +4,7 @@ use bidir_accel::{Primitive, Ray, accept_all};
 
 use crate::oracle::hit_bits;
 use crate::scenes::{Mesh, Random, displace, mixed};
-use crate::trees::{build, build_one};
+use crate::trees::{build, build_one, on_threads};
 
 #[track_caller]
 fn check_isas_agree(primitives: &[Primitive], mut ray: impl FnMut(&mut Random) -> Ray) {
@@ -40,13 +40,7 @@ fn isas_agree_on_edges() {
 fn threads_do_not_matter() {
     // So many that sums have two parts, and that threads build subtrees.
     let primitives = mixed(&mut Random(22), 50_000);
-    let trees = [1, 2, 5].map(|threads| {
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(threads)
-            .build()
-            .unwrap();
-        pool.install(|| build_one(&primitives))
-    });
+    let trees = [1, 2, 5].map(|threads| on_threads(threads, || build_one(&primitives)));
     let mut random = Random(23);
     for bvh in &trees {
         assert_eq!(bvh.validate(), Ok(()));

@@ -4,7 +4,7 @@ use bidir_accel::{BuildError, BuildOptions, Bvh, Primitive, Ray, accept_all};
 use glam::Vec3;
 use proptest::prelude::*;
 
-use crate::oracle::{Single, hit_bits};
+use crate::oracle::Single;
 use crate::scenes::{Random, triangle_soup};
 use crate::trees::build;
 
@@ -22,7 +22,7 @@ fn check_rays(primitives: &[Primitive], random: &mut Random) {
     let rays: Vec<_> = (0..rays).map(|_| ray()).collect();
     for (ray, is_blocked) in rays.iter().zip(bvh.are_blocked(&rays)) {
         let hit = bvh.closest(ray, accept_all);
-        assert_eq!(bvh.is_blocked(ray), hit.is_some());
+        assert_eq!(bvh.occluded(ray, accept_all), hit.is_some());
         assert_eq!(is_blocked, hit.is_some());
         if let Some(hit) = hit {
             assert!(
@@ -139,8 +139,7 @@ proptest! {
         let rays: Vec<_> = rays.into_iter().map(|(o, d)| Ray::new(o, d)).collect();
         for (ray, is_blocked) in rays.iter().zip(bvh.are_blocked(&rays)) {
             let expected = single.closest(ray, accept_all);
-            prop_assert_eq!(hit_bits(bvh.closest(ray, accept_all)), hit_bits(expected));
-            prop_assert_eq!(bvh.is_blocked(ray), expected.is_some());
+            bvh.check(ray, accept_all, expected);
             prop_assert_eq!(is_blocked, expected.is_some());
         }
     }
@@ -154,7 +153,7 @@ proptest! {
         let rays: Vec<_> = rays.into_iter().map(|(o, d)| Ray::new(o, d)).collect();
         for (ray, is_blocked) in rays.iter().zip(bvh.are_blocked(&rays)) {
             let hit = bvh.closest(ray, accept_all);
-            prop_assert_eq!(bvh.is_blocked(ray), hit.is_some());
+            prop_assert_eq!(bvh.occluded(ray, accept_all), hit.is_some());
             prop_assert_eq!(is_blocked, hit.is_some());
             if let Some(hit) = hit {
                 prop_assert!(hit.t >= 0.0 && hit.t.is_finite());

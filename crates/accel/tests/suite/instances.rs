@@ -12,7 +12,13 @@ use glam::{DAffine3, DMat3, DVec3, Vec3};
 
 use crate::oracle::hit_bits;
 use crate::scenes::{Mesh, Random, displace, mixed, triangle_soup};
-use crate::trees::{Trees, build, build_one};
+use crate::trees::{Trees, build, build_one, on_threads};
+
+const TRIANGLE: Primitive = Primitive::Triangle([Vec3::ZERO, Vec3::X, Vec3::Y]);
+const HERE: Instance = Instance {
+    object: 0,
+    world_from_object: DAffine3::IDENTITY,
+};
 
 fn vector(random: &mut Random) -> DVec3 {
     random.ball().as_dvec3()
@@ -134,8 +140,7 @@ fn equal_brute_force_over_instances() {
         let accept = |hit: &Hit| (hit.instance + hit.primitive) % 3 != refused;
         let expected = closest_of_each(&each, &ray, accept);
         hits += usize::from(expected.is_some());
-        let hit = trees.closest(&ray, accept);
-        assert_eq!(hit_bits(hit), hit_bits(expected), "{ray:?}");
+        trees.check(&ray, accept, expected);
     }
     assert!(hits > 2500, "{hits} hits do not say much");
 }
@@ -177,19 +182,14 @@ fn closed_objects_do_not_leak() {
 
 #[test]
 fn own_primitives_come_first_in_ties() {
-    let triangle = Primitive::Triangle([Vec3::ZERO, Vec3::X, Vec3::Y]);
-    let instance = Instance {
-        object: 0,
-        world_from_object: DAffine3::IDENTITY,
-    };
     let ray = Ray::new(Vec3::new(0.2, 0.2, 2.0), -Vec3::Z);
-    let both = placed(&[triangle], &[&[triangle]], &[instance; 3]);
+    let both = placed(&[TRIANGLE], &[&[TRIANGLE]], &[HERE; 3]);
     let id = |bvh: &Trees| {
         let hit = bvh.closest(&ray, accept_all);
         hit.map(|hit| (hit.t.to_bits(), hit.instance))
     };
     assert_eq!(id(&both), Some((2.0_f32.to_bits(), 0)));
-    let only = placed(&[], &[&[triangle]], &[instance; 3]);
+    let only = placed(&[], &[&[TRIANGLE]], &[HERE; 3]);
     assert_eq!(id(&only), Some((2.0_f32.to_bits(), 1)));
     let behind = |hit: &Hit| hit.instance > 2;
     assert_eq!(only.closest(&ray, behind).map(|hit| hit.instance), Some(3));
@@ -198,14 +198,9 @@ fn own_primitives_come_first_in_ties() {
 /// A thousand instances in one place, of which a ray looks at none after somebody asked to stop.
 #[test]
 fn stopped_rays_look_at_no_more_instances() {
-    let triangle = Primitive::Triangle([Vec3::ZERO, Vec3::X, Vec3::Y]);
-    let instance = Instance {
-        object: 0,
-        world_from_object: DAffine3::IDENTITY,
-    };
     let ray = Ray::new(Vec3::new(0.2, 0.2, 2.0), -Vec3::Z);
     for isa in Isa::supported() {
-        let bvh = placed_one(&[], &[&[triangle]], &vec![instance; 1000]);
+        let bvh = placed_one(&[], &[&[TRIANGLE]], &[HERE; 1000]);
         let bvh = bvh.with_isa(isa).expect("supported");
         for (stops, expected) in [(false, 1000), (true, 1)] {
             let (flag, seen) = (AtomicBool::new(false), AtomicUsize::new(0));
@@ -233,13 +228,8 @@ fn threads_do_not_matter() {
     let object = mixed(&mut random, 30);
     let own = mixed(&mut random, 3000);
     let instances = instances(&mut random, 5000, 1);
-    let trees = [1, 5].map(|threads| {
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(threads)
-            .build()
-            .expect("threads");
-        pool.install(|| placed_one(&own, &[&object], &instances))
-    });
+    let trees =
+        [1, 5].map(|threads| on_threads(threads, || placed_one(&own, &[&object], &instances)));
     assert_eq!(trees[0].memory_bytes(), trees[1].memory_bytes());
     for _ in 0..5000 {
         let ray = random.ray();
@@ -250,20 +240,15 @@ fn threads_do_not_matter() {
 
 #[test]
 fn nothing_in_many_places_is_nothing() {
-    let instance = Instance {
-        object: 0,
-        world_from_object: DAffine3::IDENTITY,
-    };
-    let bvh = placed(&[], &[&[]], &[instance; 5]);
-    assert!(!bvh.is_blocked(&Ray::new(Vec3::ZERO, Vec3::X)));
+    let bvh = placed(&[], &[&[]], &[HERE; 5]);
+    assert!(!bvh.occluded(&Ray::new(Vec3::ZERO, Vec3::X), accept_all));
     assert_eq!((bvh.bounds(), bvh.instance_count()), (Aabb::EMPTY, 5));
 }
 
 #[test]
 fn bad_instances_are_refused() {
     let options = BuildOptions::default();
-    let triangle = Primitive::Triangle([Vec3::ZERO, Vec3::X, Vec3::Y]);
-    let object = Arc::new(build_one(&[triangle]));
+    let object = Arc::new(build_one(&[TRIANGLE]));
     let at = |object, scale| Instance {
         object,
         world_from_object: DAffine3::from_scale(scale),

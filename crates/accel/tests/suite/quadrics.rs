@@ -44,13 +44,17 @@ fn from_angles(theta: f64, phi: f64) -> DVec3 {
     DVec3::new(sin * libm::cos(phi), sin * libm::sin(phi), cos)
 }
 
-fn local_from_world(primitive: &Primitive) -> impl Fn(DVec3) -> DVec3 {
-    let map = match primitive {
+fn map_of(primitive: &Primitive) -> Affine3A {
+    match primitive {
         Primitive::Sphere(sphere) => sphere.local_from_world,
         Primitive::Disk(disk) => disk.local_from_world,
         Primitive::Cylinder(cylinder) => cylinder.local_from_world,
         Primitive::Triangle(_) => unreachable!("not a quadric"),
-    };
+    }
+}
+
+fn local_from_world(primitive: &Primitive) -> impl Fn(DVec3) -> DVec3 {
+    let map = map_of(primitive);
     let matrix = Mat3::from(map.matrix3).as_dmat3();
     move |p| matrix * p + Vec3::from(map.translation).as_dvec3()
 }
@@ -106,14 +110,8 @@ fn roots(
 
 /// True if a surface point moves in or out of the kept part with a change of `1e-4`.
 fn is_near_a_cut(primitive: &Primitive, o: DVec3, d: DVec3) -> bool {
-    let shifts = [
-        DVec3::X,
-        DVec3::Y,
-        DVec3::Z,
-        -DVec3::X,
-        -DVec3::Y,
-        -DVec3::Z,
-    ];
+    let axes = [DVec3::X, DVec3::Y, DVec3::Z];
+    let mut shifts = axes.into_iter().flat_map(|axis| [axis, -axis]);
     let kept = |o: DVec3| {
         passages(primitive, o, d)
             .iter()
@@ -121,7 +119,7 @@ fn is_near_a_cut(primitive: &Primitive, o: DVec3, d: DVec3) -> bool {
             .collect::<Vec<_>>()
     };
     let here = kept(o);
-    shifts.iter().any(|shift| kept(o + 1e-4 * *shift) != here)
+    shifts.any(|shift| kept(o + 1e-4 * shift) != here)
 }
 
 #[track_caller]
@@ -185,20 +183,43 @@ fn cylinders_agree_with_the_formula() {
     check_against_formula(cylinder);
 }
 
-fn unit_cylinder() -> Cylinder {
-    Cylinder {
+/// The azimuth of a whole turn.
+const WHOLE: f32 = std::f32::consts::TAU;
+
+fn sphere_of(radius: f32, [z_min, z_max]: [f32; 2], phi_max: f32) -> Sphere {
+    Sphere {
         local_from_world: Affine3A::IDENTITY,
-        radius: 1.0,
-        z_min: -1.0,
-        z_max: 1.0,
-        phi_max: 2.0 * std::f32::consts::PI,
+        radius,
+        z_min,
+        z_max,
+        phi_max,
     }
+}
+
+fn disk_of(radius: f32, inner_radius: f32, phi_max: f32) -> Disk {
+    Disk {
+        local_from_world: Affine3A::IDENTITY,
+        height: 0.0,
+        radius,
+        inner_radius,
+        phi_max,
+    }
+}
+
+fn cylinder_of(radius: f32, [z_min, z_max]: [f32; 2], phi_max: f32) -> Primitive {
+    Primitive::Cylinder(Cylinder {
+        local_from_world: Affine3A::IDENTITY,
+        radius,
+        z_min,
+        z_max,
+        phi_max,
+    })
 }
 
 /// A ray along the axis meets nothing, on the surface or off it.
 #[test]
 fn a_cylinder_has_no_caps() {
-    let bvh = build(&[Primitive::Cylinder(unit_cylinder())]);
+    let bvh = build(&[cylinder_of(1.0, [-1.0, 1.0], WHOLE)]);
     for x in [0.0, 0.5, 1.0, 2.0] {
         let ray = Ray::new(Vec3::new(x, 0.0, 3.0), -Vec3::Z);
         assert_eq!(bvh.closest(&ray, accept_all), None, "{x}");
@@ -207,198 +228,120 @@ fn a_cylinder_has_no_caps() {
     assert!(bvh.closest(&ray, accept_all).is_some());
 }
 
-fn unit_sphere() -> Sphere {
-    let phi_max = 2.0 * std::f32::consts::PI;
-    Sphere {
-        local_from_world: Affine3A::IDENTITY,
-        radius: 1.0,
-        z_min: -1.0,
-        z_max: 1.0,
-        phi_max,
-    }
-}
+/// The distance and the parameters of a ray that meets nothing.
+const MISS: [f32; 3] = [f32::NAN; 3];
 
-fn unit_disk() -> Disk {
-    let phi_max = 2.0 * std::f32::consts::PI;
-    Disk {
-        local_from_world: Affine3A::IDENTITY,
-        height: 0.0,
-        radius: 1.0,
-        inner_radius: 0.0,
-        phi_max,
-    }
-}
-
+/// Each row: origin, direction, and `t`, `u`, `v` of the hit.
 #[track_caller]
-fn check_hit(primitive: Primitive, [origin, direction]: [Vec3; 2], expected: Option<[f32; 3]>) {
-    let hit = build(&[primitive]).closest(&Ray::new(origin, direction), accept_all);
-    match (hit, expected) {
-        (Some(hit), Some(expected)) => {
-            let found = Vec3::new(hit.t, hit.u, hit.v);
-            let expected = Vec3::from_array(expected);
-            assert!(found.abs_diff_eq(expected, 1e-6), "{hit:?}, not {expected}");
-        }
-        (hit, expected) => assert_eq!(hit.is_some(), expected.is_some(), "{hit:?}"),
+fn check_hits(primitive: Primitive, rows: &[[[f32; 3]; 3]]) {
+    let bvh = build(&[primitive]);
+    for [origin, direction, expected] in rows.iter().map(|row| row.map(Vec3::from_array)) {
+        let hit = bvh.closest(&Ray::new(origin, direction), accept_all);
+        let found = hit.map_or(Vec3::NAN, |hit| Vec3::new(hit.t, hit.u, hit.v));
+        let is_same = found.abs_diff_eq(expected, 1e-6) || found.is_nan() && expected.is_nan();
+        assert!(is_same, "{origin} {direction}: {hit:?}, not {expected}");
     }
 }
 
 #[test]
 fn conventions_of_the_sphere() {
-    let whole = Primitive::Sphere(unit_sphere());
-    check_hit(whole, [Vec3::X * 3.0, -Vec3::X], Some([2.0, 0.0, 0.5]));
-    check_hit(whole, [Vec3::Y * 3.0, -Vec3::Y], Some([2.0, 0.25, 0.5]));
-    check_hit(whole, [Vec3::Y * -3.0, Vec3::Y], Some([2.0, 0.75, 0.5]));
-    check_hit(
-        whole,
-        [Vec3::new(1e-9, 1e-9, 3.0), -Vec3::Z],
-        Some([2.0, 0.125, 1.0]),
+    let whole = sphere_of(1.0, [-1.0, 1.0], WHOLE);
+    check_hits(
+        Primitive::Sphere(whole),
+        &[
+            [[3.0, 0.0, 0.0], [-1.0, 0.0, 0.0], [2.0, 0.0, 0.5]],
+            [[0.0, 3.0, 0.0], [0.0, -1.0, 0.0], [2.0, 0.25, 0.5]],
+            [[0.0, -3.0, 0.0], [0.0, 1.0, 0.0], [2.0, 0.75, 0.5]],
+            [[1e-9, 1e-9, 3.0], [0.0, 0.0, -1.0], [2.0, 0.125, 1.0]],
+            [[1e-9, 1e-9, -3.0], [0.0, 0.0, 1.0], [2.0, 0.125, 0.0]],
+            [[0.0; 3], [1.0, 0.0, 0.0], [1.0, 0.0, 0.5]],
+            [[3.0, 0.0, 0.0], [1.0, 0.0, 0.0], MISS],
+        ],
     );
-    check_hit(
-        whole,
-        [Vec3::new(1e-9, 1e-9, -3.0), Vec3::Z],
-        Some([2.0, 0.125, 0.0]),
-    );
-    check_hit(whole, [Vec3::ZERO, Vec3::X], Some([1.0, 0.0, 0.5]));
-    check_hit(whole, [Vec3::X * 3.0, Vec3::X], None);
     // The upper half, seen through its open bottom, and a quarter around +x.
-    let upper = Primitive::Sphere(Sphere {
-        z_min: 0.0,
-        ..unit_sphere()
-    });
-    check_hit(
+    let upper = Primitive::Sphere(sphere_of(1.0, [0.0, 1.0], WHOLE));
+    check_hits(
         upper,
-        [Vec3::new(0.0, 1e-9, -3.0), Vec3::Z],
-        Some([4.0, 0.25, 1.0]),
+        &[[[0.0, 1e-9, -3.0], [0.0, 0.0, 1.0], [4.0, 0.25, 1.0]]],
     );
-    let quarter = Primitive::Sphere(Sphere {
-        phi_max: 0.5 * std::f32::consts::PI,
-        ..unit_sphere()
-    });
-    check_hit(
-        quarter,
-        [Vec3::new(-3.0, 0.0, 0.0), Vec3::X],
-        Some([4.0, 0.0, 0.5]),
-    );
-    let diagonal = Vec3::new(1.0, 1.0, 0.0);
-    check_hit(
-        quarter,
-        [3.0 * diagonal, -diagonal],
-        Some([3.0 - 0.5_f32.sqrt(), 0.5, 0.5]),
+    check_hits(
+        Primitive::Sphere(sphere_of(1.0, [-1.0, 1.0], 0.25 * WHOLE)),
+        &[
+            [[-3.0, 0.0, 0.0], [1.0, 0.0, 0.0], [4.0, 0.0, 0.5]],
+            [
+                [3.0, 3.0, 0.0],
+                [-1.0, -1.0, 0.0],
+                [3.0 - 0.5_f32.sqrt(), 0.5, 0.5],
+            ],
+        ],
     );
     // An ellipsoid three units long.
-    let scale = Affine3A::from_scale(Vec3::new(1.0, 1.0, 3.0)).inverse();
     let long = Primitive::Sphere(Sphere {
-        local_from_world: scale,
-        ..unit_sphere()
+        local_from_world: Affine3A::from_scale(Vec3::new(1.0, 1.0, 3.0)).inverse(),
+        ..whole
     });
-    check_hit(
+    check_hits(
         long,
-        [Vec3::new(1e-9, 0.0, 5.0), -Vec3::Z],
-        Some([2.0, 0.0, 1.0]),
+        &[[[1e-9, 0.0, 5.0], [0.0, 0.0, -1.0], [2.0, 0.0, 1.0]]],
     );
-    let bounds = build(&[long]).bounds();
+    let extent = build(&[long]).bounds().extent();
     assert!(
-        bounds.extent().abs_diff_eq(Vec3::new(2.0, 2.0, 6.0), 1e-4),
-        "{bounds:?}"
+        extent.abs_diff_eq(Vec3::new(2.0, 2.0, 6.0), 1e-4),
+        "{extent}"
     );
 }
 
 #[test]
 fn conventions_of_the_disk() {
-    let whole = Primitive::Disk(unit_disk());
-    let above = |x: f32, y: f32| [Vec3::new(x, y, 2.0), -Vec3::Z];
-    check_hit(whole, above(0.25, 0.0), Some([2.0, 0.0, 0.75]));
-    check_hit(whole, above(0.0, -1.0), Some([2.0, 0.75, 0.0]));
-    check_hit(whole, above(0.8, 0.8), None);
-    check_hit(whole, [Vec3::ZERO, Vec3::X], None);
-    check_hit(whole, [Vec3::Z, Vec3::X], None);
+    let down = [0.0, 0.0, -1.0];
+    check_hits(
+        Primitive::Disk(disk_of(1.0, 0.0, WHOLE)),
+        &[
+            [[0.25, 0.0, 2.0], down, [2.0, 0.0, 0.75]],
+            [[0.0, -1.0, 2.0], down, [2.0, 0.75, 0.0]],
+            [[0.8, 0.8, 2.0], down, MISS],
+            [[0.0; 3], [1.0, 0.0, 0.0], MISS],
+            [[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], MISS],
+        ],
+    );
     let ring = Primitive::Disk(Disk {
-        inner_radius: 0.5,
         height: 1.0,
-        ..unit_disk()
+        ..disk_of(1.0, 0.5, WHOLE)
     });
-    check_hit(ring, above(0.0, 0.75), Some([1.0, 0.25, 0.5]));
-    check_hit(ring, above(0.25, 0.25), None);
+    check_hits(
+        ring,
+        &[
+            [[0.0, 0.75, 2.0], down, [1.0, 0.25, 0.5]],
+            [[0.25, 0.25, 2.0], down, MISS],
+        ],
+    );
 }
 
 #[test]
 fn pointless_parameters_are_never_hit() {
     let spheres = [
-        Sphere {
-            radius: 0.0,
-            ..unit_sphere()
-        },
-        Sphere {
-            radius: -1.0,
-            ..unit_sphere()
-        },
-        Sphere {
-            z_min: 0.5,
-            z_max: 0.2,
-            ..unit_sphere()
-        },
-        Sphere {
-            z_min: 0.5,
-            z_max: 0.5,
-            ..unit_sphere()
-        },
-        Sphere {
-            z_min: 2.0,
-            z_max: 3.0,
-            ..unit_sphere()
-        },
-        Sphere {
-            phi_max: 0.0,
-            ..unit_sphere()
-        },
-        Sphere {
-            phi_max: -1.0,
-            ..unit_sphere()
-        },
+        (0.0, [-1.0, 1.0], WHOLE),
+        (-1.0, [-1.0, 1.0], WHOLE),
+        (1.0, [0.5, 0.2], WHOLE),
+        (1.0, [0.5, 0.5], WHOLE),
+        (1.0, [2.0, 3.0], WHOLE),
+        (1.0, [-1.0, 1.0], 0.0),
+        (1.0, [-1.0, 1.0], -1.0),
     ];
     let disks = [
-        Disk {
-            radius: 0.0,
-            ..unit_disk()
-        },
-        Disk {
-            radius: -1.0,
-            ..unit_disk()
-        },
-        Disk {
-            inner_radius: 1.0,
-            ..unit_disk()
-        },
-        Disk {
-            phi_max: 0.0,
-            ..unit_disk()
-        },
+        (0.0, 0.0, WHOLE),
+        (-1.0, 0.0, WHOLE),
+        (1.0, 1.0, WHOLE),
+        (1.0, 0.0, 0.0),
     ];
-    let all = spheres
-        .map(Primitive::Sphere)
-        .into_iter()
-        .chain(disks.map(Primitive::Disk));
-    check_never_hit(all);
-}
-
-#[test]
-fn pointless_cylinders_are_never_hit() {
     let cylinders = [
-        Cylinder {
-            radius: 0.0,
-            ..unit_cylinder()
-        },
-        Cylinder {
-            z_min: 0.5,
-            z_max: 0.5,
-            ..unit_cylinder()
-        },
-        Cylinder {
-            phi_max: 0.0,
-            ..unit_cylinder()
-        },
+        (0.0, [-1.0, 1.0], WHOLE),
+        (1.0, [0.5, 0.5], WHOLE),
+        (1.0, [-1.0, 1.0], 0.0),
     ];
-    check_never_hit(cylinders.map(Primitive::Cylinder));
+    check_never_hit(spheres.map(|(r, z, phi)| Primitive::Sphere(sphere_of(r, z, phi))));
+    check_never_hit(disks.map(|(r, inner, phi)| Primitive::Disk(disk_of(r, inner, phi))));
+    check_never_hit(cylinders.map(|(r, z, phi)| cylinder_of(r, z, phi)));
 }
 
 #[track_caller]
@@ -423,19 +366,20 @@ fn check_never_hit(all: impl IntoIterator<Item = Primitive>) {
 fn maps_must_be_invertible_and_finite() {
     let flat = Affine3A::from_mat3(Mat3::from_diagonal(Vec3::new(1.0, 1.0, 0.0)));
     let far = Affine3A::from_translation(Vec3::new(0.0, f32::INFINITY, 0.0));
-    let good = Primitive::Sphere(unit_sphere());
+    let (sphere, disk) = (sphere_of(1.0, [-1.0, 1.0], WHOLE), disk_of(1.0, 0.0, WHOLE));
     for local_from_world in [flat, far] {
         for bad in [
             Primitive::Sphere(Sphere {
                 local_from_world,
-                ..unit_sphere()
+                ..sphere
             }),
             Primitive::Disk(Disk {
                 local_from_world,
-                ..unit_disk()
+                ..disk
             }),
         ] {
-            let error = Bvh::build(&[good, bad], &BuildOptions::default()).unwrap_err();
+            let primitives = [Primitive::Sphere(sphere), bad];
+            let error = Bvh::build(&primitives, &BuildOptions::default()).unwrap_err();
             assert_eq!(error, BuildError::NotFinite { primitive: 1 });
         }
     }
@@ -447,12 +391,7 @@ fn bounds_contain_the_surface() {
     for _ in 0..500 {
         for make in [sphere, disk, cylinder] {
             let primitive = make(&mut random);
-            let map = match &primitive {
-                Primitive::Sphere(sphere) => sphere.local_from_world,
-                Primitive::Disk(disk) => disk.local_from_world,
-                Primitive::Cylinder(cylinder) => cylinder.local_from_world,
-                Primitive::Triangle(_) => unreachable!("not a quadric"),
-            };
+            let map = map_of(&primitive);
             let bounds = primitive.bounds();
             let matrix = Mat3::from(map.matrix3).as_dmat3().inverse();
             for _ in 0..50 {

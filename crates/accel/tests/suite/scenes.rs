@@ -54,6 +54,15 @@ impl Random {
         Ray::new(2.0 * self.cube(), direction)
     }
 
+    /// A whole turn, or a part of one.
+    fn azimuth(&mut self) -> f32 {
+        if self.below(2) == 0 {
+            TAU
+        } else {
+            0.5 + 5.0 * self.unit()
+        }
+    }
+
     pub(crate) fn map(&mut self) -> Affine3A {
         let rotation = Quat::from_axis_angle(self.ball().normalize(), TAU * self.unit());
         let scale = Vec3::new(1.0, 0.3 + self.unit(), 0.3 + self.unit());
@@ -162,14 +171,9 @@ pub(crate) fn sphere(random: &mut Random) -> Primitive {
     if random.below(2) == 0 {
         cuts = [-radius * random.unit(), radius * random.unit()];
     }
-    let phi_max = if random.below(2) == 0 {
-        TAU
-    } else {
-        0.5 + 5.0 * random.unit()
-    };
-    let local_from_world = random.map();
+    let phi_max = random.azimuth();
     Primitive::Sphere(Sphere {
-        local_from_world,
+        local_from_world: random.map(),
         radius,
         z_min: cuts[0],
         z_max: cuts[1],
@@ -188,11 +192,7 @@ pub(crate) fn disk(random: &mut Random) -> Primitive {
         } else {
             radius * random.unit()
         },
-        phi_max: if random.below(2) == 0 {
-            TAU
-        } else {
-            0.5 + 5.0 * random.unit()
-        },
+        phi_max: random.azimuth(),
     })
 }
 
@@ -203,11 +203,7 @@ pub(crate) fn cylinder(random: &mut Random) -> Primitive {
         radius: 0.05 + 0.3 * random.unit(),
         z_min,
         z_max: z_min + 0.05 + 0.4 * random.unit(),
-        phi_max: if random.below(2) == 0 {
-            TAU
-        } else {
-            0.5 + 5.0 * random.unit()
-        },
+        phi_max: random.azimuth(),
     })
 }
 
