@@ -92,7 +92,15 @@ class Kills:
         for _ in range(self.work.random.randint(1, KILLS)):
             if self.kill(kind, command, folder, seconds).code == 0:
                 break
+        age(folder)
         return runs.run(command, folder, LIMITS).wrong(0)
+
+
+def age(folder):
+    """Makes temporary files so old that the next writer of their names removes them."""
+    for name in os.listdir(folder):
+        if ".bidir-" in name:
+            os.utime(os.path.join(folder, name), (0, 0))
 
 
 def resumed(kills, whole, folder):
@@ -123,6 +131,7 @@ def merged(kills, films, folder):
         inputs = [film] if number == 0 else ["whole.film", film]
         command = kills.work.bidir("merge", *inputs, "-o", "whole.film", "--image", "a.exr")
         kills.kill("merge", command, folder, 0.02)
+        age(folder)
         for _ in range(2):
             fault = runs.run(command, folder, LIMITS).wrong(0)
             if fault:

@@ -7,6 +7,7 @@ use crate::exit::{Exit, Failure};
 use crate::scene_io;
 use std::fs::{File, OpenOptions, TryLockError};
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 /// The right to write a film file, as long as it lives. None: there is nothing to lock, or the file system
 /// cannot. Names of temporary files keep writers apart even there.
@@ -36,7 +37,7 @@ impl FilmLock {
             Err(TryLockError::Error(_)) => return Ok(Self(None)),
         }
         for written in [&film, &previous(&film)] {
-            scene_io::remove_leftovers(written);
+            scene_io::remove_leftovers(written, Duration::ZERO);
         }
         Ok(Self(Some(file)))
     }

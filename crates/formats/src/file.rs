@@ -4,26 +4,23 @@
 //! atomic. They are synced to the disk before the rename, as a power cut could otherwise leave an empty
 //! file; then the folder is synced, so that the rename persists.
 //!
-//! The temporary file of `NAME` is called `.NAME.bidir-HOST-PROCESS-RANDOM.tmp`, so that names of
-//! different machines in a shared folder do not collide, and so that a leftover of a killed process shows
-//! its file and its writer. The writer holds a lock on it, which the system releases when the process is
-//! killed: so the next writer of `NAME` can [`remove_leftovers`] without removing files in use.
+//! The temporary file of `NAME` is called `.NAME.bidir-RANDOM.tmp`, so that no two writers share one, on
+//! whatever machines they run, and so that a leftover of a killed process shows its file. The next writer
+//! of `NAME` removes those that nobody has written to for an hour.
 
 use crate::error::{Error, Result};
 use bidir::names::nearest;
 use std::ffi::OsStr;
-use std::fs::{File, OpenOptions, TryLockError};
+use std::fs::File;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 use tempfile::NamedTempFile;
 
-/// Age at which a temporary file is a leftover on any machine: no write takes as long.
-const OLD: Duration = Duration::from_secs(24 * 60 * 60);
+/// Time without a change after which a temporary file is a leftover: no write pauses as long.
+const OLD: Duration = Duration::from_secs(60 * 60);
 /// Maximum length of the part of a name in a temporary file's name. Unit: bytes; file systems allow 255.
 const LONGEST_NAME: usize = 128;
-/// Number of attempts to lock a new temporary file before another process removes it as a leftover.
-const ATTEMPTS: u32 = 100;
 
 /// Replaces or creates a file. Readers that have it open keep the old bytes.
 ///
@@ -59,7 +56,7 @@ fn replace_with(
         if is_special(target) {
             return std::fs::write(target, bytes);
         }
-        remove_leftovers(target);
+        remove_leftovers(target, OLD);
         let mut file = temporary_for(target)?;
         file.write_all(bytes)?;
         file.as_file().sync_all()?;
@@ -144,139 +141,53 @@ fn nearest_entry(
     Some(near.to_owned())
 }
 
-/// Removes the temporary files of `path` that killed writers left behind: those of this machine that are
-/// not locked, and those of other machines that are older than a day, as locks may not work across
-/// machines. Errors are ignored.
-pub fn remove_leftovers(path: &Path) {
+/// Removes the temporary files of `path` that nobody has written to for so long. Errors are ignored.
+pub fn remove_leftovers(path: &Path, age: Duration) {
     let target = target_of(path);
     let Some(prefix) = target.file_name().map(prefix) else {
         return;
     };
-    let Ok(entries) = std::fs::read_dir(folder_of(&target)) else {
-        return;
-    };
-    let host = host();
-    for entry in entries.flatten() {
-        let name = entry.file_name();
-        let Some(writer) = writer_of(&name, &prefix) else {
-            continue;
-        };
-        let file = entry.path();
-        if writer == host {
-            remove_unlocked(&file);
-        } else if is_old(&file) {
+    let entries = std::fs::read_dir(folder_of(&target));
+    for entry in entries.into_iter().flatten().flatten() {
+        if is_temporary(&entry.file_name(), &prefix) && is_older(&entry.path(), age) {
             // An error means that another process has removed it.
-            let _ = std::fs::remove_file(&file);
+            let _ = std::fs::remove_file(entry.path());
         }
     }
 }
 
-/// Removes a temporary file of this machine if its writer is gone. Locks it first, so that a writer that
-/// has just created it notices.
-fn remove_unlocked(path: &Path) {
-    let Ok(file) = OpenOptions::new().write(true).open(path) else {
-        return;
-    };
-    let is_left = match file.try_lock() {
-        Ok(()) => true,
-        Err(TryLockError::WouldBlock) => false,
-        // The file system has no locks.
-        Err(TryLockError::Error(_)) => is_old(path),
-    };
-    if is_left {
-        let _ = std::fs::remove_file(path);
-    }
-}
-
-/// Returns true if a file was last written so long ago that its writer is gone.
-fn is_old(path: &Path) -> bool {
+/// Returns true if a file exists and was last written to so long ago, or in the future of this machine.
+fn is_older(path: &Path, age: Duration) -> bool {
     let changed = path.metadata().and_then(|metadata| metadata.modified());
-    let age = changed.ok().and_then(|changed| changed.elapsed().ok());
-    age.is_some_and(|age| age > OLD)
+    changed.is_ok_and(|changed| changed.elapsed().unwrap_or_default() >= age)
 }
 
-/// Returns the prefix of the names of temporary files of `name`. Long names that begin alike share it.
+/// Returns the prefix of the names of temporary files of `name`. Long names that end alike share it.
 fn prefix(name: &OsStr) -> String {
     let name = name.to_string_lossy();
-    let mut end = name.len().min(LONGEST_NAME);
-    while !name.is_char_boundary(end) {
-        end -= 1;
+    let mut begin = name.len().saturating_sub(LONGEST_NAME);
+    while !name.is_char_boundary(begin) {
+        begin += 1;
     }
-    format!(".{}.bidir-", &name[..end])
+    format!(".{}.bidir-", &name[begin..])
 }
 
-/// Returns the machine that wrote a temporary file. None: the name is not that of a temporary file with
-/// this prefix.
-fn writer_of<'a>(name: &'a OsStr, prefix: &str) -> Option<&'a str> {
-    let rest = name.to_str()?.strip_prefix(prefix)?;
-    let (owner, random) = rest.strip_suffix(".tmp")?.rsplit_once('-')?;
-    let (host, process) = owner.rsplit_once('-')?;
-    let is_ours = host.chars().all(is_plain)
-        && !process.is_empty()
-        && process.chars().all(|digit| digit.is_ascii_digit())
-        && random.chars().all(|letter| letter.is_ascii_alphanumeric());
-    is_ours.then_some(host)
+/// Returns true for the name of a temporary file with this prefix.
+fn is_temporary(name: &OsStr, prefix: &str) -> bool {
+    let rest = name.to_str().and_then(|name| name.strip_prefix(prefix));
+    let random = rest.and_then(|rest| rest.strip_suffix(".tmp"));
+    random.is_some_and(|random| random.chars().all(|letter| letter.is_ascii_alphanumeric()))
 }
 
-/// Creates an empty file beside `target`, locked if possible, which is removed when it is dropped.
+/// Creates an empty file beside `target`, which is removed when it is dropped.
 fn temporary_for(target: &Path) -> io::Result<NamedTempFile> {
     let prefix = target.file_name().map_or_else(|| ".bidir-".into(), prefix);
-    let prefix = format!("{prefix}{}-{}-", host(), std::process::id());
     let mut builder = tempfile::Builder::new();
     builder.prefix(&prefix).suffix(".tmp");
     // Temporary files are private by default, but the result has the permissions of any new file.
     #[cfg(unix)]
-    let public = std::os::unix::fs::PermissionsExt::from_mode(0o666);
-    #[cfg(unix)]
-    builder.permissions(public);
-    for _ in 0..ATTEMPTS {
-        let file = builder.tempfile_in(folder_of(target))?;
-        if is_held(file.as_file())? {
-            return Ok(file);
-        }
-    }
-    Err(io::ErrorKind::ResourceBusy.into())
-}
-
-/// Locks a new temporary file. False: another process is removing it as a leftover.
-fn is_held(file: &File) -> io::Result<bool> {
-    match file.try_lock() {
-        Ok(()) => is_linked(file),
-        Err(TryLockError::WouldBlock) => Ok(false),
-        // Without locks, the random name has to suffice.
-        Err(TryLockError::Error(_)) => Ok(true),
-    }
-}
-
-/// Returns true if an open file still has a name.
-#[cfg(unix)]
-fn is_linked(file: &File) -> io::Result<bool> {
-    Ok(std::os::unix::fs::MetadataExt::nlink(&file.metadata()?) > 0)
-}
-
-/// Returns true, as open files keep their names on this system.
-#[cfg(not(unix))]
-fn is_linked(_file: &File) -> io::Result<bool> {
-    Ok(true)
-}
-
-/// Returns the name of this machine for file names; `host` if it is unknown.
-fn host() -> String {
-    let name = std::fs::read_to_string("/proc/sys/kernel/hostname")
-        .or_else(|_| std::env::var("COMPUTERNAME"))
-        .or_else(|_| std::env::var("HOSTNAME"))
-        .unwrap_or_default();
-    let plain: String = name.chars().filter(|&c| is_plain(c)).take(64).collect();
-    if plain.is_empty() {
-        "host".into()
-    } else {
-        plain
-    }
-}
-
-/// Returns true for a character allowed in a machine's name. Dots are not, so that no file name matches.
-fn is_plain(letter: char) -> bool {
-    letter.is_ascii_alphanumeric() || "-_".contains(letter)
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    builder.tempfile_in(folder_of(target))
 }
 
 /// Syncs a folder to the disk if its file system and permissions allow that.
@@ -301,6 +212,8 @@ fn sync_folder(_folder: &Path) -> io::Result<()> {
 mod tests {
     use super::*;
     use crate::error::ErrorKind;
+    use std::collections::BTreeSet;
+    use std::time::SystemTime;
 
     #[test]
     fn the_bytes_are_replaced_and_nothing_else_is_left_behind() {
@@ -363,56 +276,6 @@ mod tests {
         assert!(is_special(null));
     }
 
-    #[test]
-    fn temporary_names_have_the_file_and_its_writer() {
-        let folder = tempfile::tempdir().unwrap();
-        let target = folder.path().join("a.film");
-        let files = [(); 2].map(|()| temporary_for(&target).unwrap());
-        let names = files.each_ref().map(|file| file.path().to_owned());
-        assert_ne!(names[0], names[1]);
-        let owner = format!(".a.film.bidir-{}-{}-", host(), std::process::id());
-        for name in &names {
-            let name = name.file_name().unwrap();
-            let text = name.to_str().unwrap();
-            let random = text.strip_prefix(&owner).unwrap().strip_suffix(".tmp");
-            assert!(random.is_some_and(|random| random.len() == 6), "{text}");
-            let prefix = prefix(OsStr::new("a.film"));
-            assert_eq!(writer_of(name, &prefix), Some(&*host()));
-        }
-    }
-
-    #[test]
-    fn names_of_any_length_have_temporary_files() {
-        let folder = tempfile::tempdir().unwrap();
-        for length in [LONGEST_NAME, LONGEST_NAME + 1, 250] {
-            let path = folder.path().join("n".repeat(length));
-            let left = folder.path().join(leftover(path.file_name().unwrap()));
-            File::create(&left).unwrap();
-            replace(&path, b"new").unwrap();
-            assert!(path.exists() && !left.exists(), "{length}");
-        }
-    }
-
-    /// Returns the name of a temporary file of `name` that a killed process of this machine left behind.
-    fn leftover(name: &OsStr) -> String {
-        format!("{}{}-1-aB3dE6.tmp", prefix(name), host())
-    }
-
-    #[test]
-    fn the_next_writer_removes_only_files_of_killed_writers() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("a.exr");
-        let mut living = temporary_for(&path).unwrap();
-        living.write_all(b"living").unwrap();
-        let left = folder.path().join(leftover(OsStr::new("a.exr")));
-        File::create(&left).unwrap();
-        replace(&path, b"new").unwrap();
-        assert!(!left.exists());
-        living.persist(&path).unwrap();
-        assert_eq!(std::fs::read(&path).unwrap(), b"living");
-        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
-    }
-
     #[cfg(unix)]
     #[test]
     fn concurrent_writers_do_not_remove_each_others_files() {
@@ -433,47 +296,45 @@ mod tests {
     }
 
     #[test]
-    fn leftovers_of_the_file_are_removed_and_nothing_else() {
+    fn old_temporary_files_of_the_name_are_removed_and_nothing_else() {
         let folder = tempfile::tempdir().unwrap();
-        let make = |name: String| {
-            let path = folder.path().join(name);
-            File::create(&path).unwrap()
+        let long = "n".repeat(250);
+        let make = |name: &str, age: Duration| {
+            let file = File::create(folder.path().join(name)).unwrap();
+            file.set_modified(SystemTime::now() - age).unwrap();
         };
-        let here = host();
-        let old = format!(".a.film.bidir-{here}-x-17-aB3dE6.tmp");
         for name in [
-            ".a.film.bidir-HERE-17-aB3dE6.tmp",
-            ".a.film.bidir-HERE-1-Z.tmp",
+            ".a.film.bidir-aB3dE6.tmp",
+            &format!(".{}.bidir-a.tmp", &long[250 - LONGEST_NAME..]),
         ] {
-            make(name.replace("HERE", &here));
+            make(name, OLD);
         }
-        let day = std::time::SystemTime::now() - OLD - Duration::from_secs(60);
-        make(old).set_modified(day).unwrap();
         let others = [
-            // Of another machine, whose writer may be running.
-            ".a.film.bidir-HERE-x-17-aB3dE6.tmp.",
-            ".a.film.bidir-HERE-y-17-aB3dE6.tmp",
             // Of other files.
-            ".a.bidir-HERE-17-aB3dE6.tmp",
-            ".b.film.bidir-HERE-17-aB3dE6.tmp",
-            ".a.film.previous.bidir-HERE-17-aB3dE6.tmp",
-            ".a.film.bidir-b.bidir-HERE-17-aB3dE6.tmp",
+            ".a.bidir-aB3dE6.tmp",
+            ".a.film.bidir-b.bidir-aB3dE6.tmp",
+            ".a.film.previous.bidir-aB3dE6.tmp",
             // Not temporary files.
-            "a.film",
-            ".a.film.bidir-HERE-17-aB3dE6",
-            ".a.film.bidir-HERE-x-aB3dE6.tmp",
+            ".a.film.bidir-aB3dE6",
+            ".a.film.bidir-aB3dE6.tmp.",
         ];
-        let mut others = others.map(|name| name.replace("HERE", &here));
-        for name in &others {
-            make(name.clone());
+        others.iter().for_each(|name| make(name, 2 * OLD));
+        let young = ".a.film.bidir-Young1.tmp";
+        make(young, OLD / 2);
+        let names = || {
+            let entries = std::fs::read_dir(folder.path()).unwrap();
+            let names = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap());
+            names.collect::<BTreeSet<_>>()
+        };
+        for name in ["a.film", &long] {
+            replace(&folder.path().join(name), b"new").unwrap();
         }
-        remove_leftovers(&folder.path().join("a.film"));
-        let entries = std::fs::read_dir(folder.path()).unwrap();
-        let names = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap());
-        let mut names: Vec<_> = names.collect();
-        names.sort();
-        others.sort();
-        assert_eq!(names, others);
+        let mut left: BTreeSet<_> = others.map(str::to_owned).into();
+        left.extend(["a.film", &long, young].map(str::to_owned));
+        assert_eq!(names(), left);
+        remove_leftovers(&folder.path().join("a.film"), Duration::ZERO);
+        left.remove(young);
+        assert_eq!(names(), left);
     }
 
     #[cfg(unix)]
