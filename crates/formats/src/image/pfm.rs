@@ -2,6 +2,7 @@
 
 use super::{ImageData, broken, check_size};
 use crate::error::Result;
+use std::str::FromStr;
 
 /// Decodes `PF` or `Pf`, width and height, a scale whose sign is the byte order, then rows from the bottom.
 pub(super) fn decode(bytes: &[u8]) -> Result<ImageData> {
@@ -11,14 +12,12 @@ pub(super) fn decode(bytes: &[u8]) -> Result<ImageData> {
         Some("Pf") => 1,
         _ => return Err(broken("it does not begin with PF or Pf")),
     };
-    let size: Option<usize> = word(&mut rest).and_then(|word| word.parse().ok());
-    let width = size.ok_or_else(|| broken("no width"))?;
-    let size: Option<usize> = word(&mut rest).and_then(|word| word.parse().ok());
-    let height = size.ok_or_else(|| broken("no height"))?;
-    let scale: Option<f32> = word(&mut rest).and_then(|word| word.parse().ok());
-    let scale = scale
-        .filter(|scale| scale.is_normal())
-        .ok_or_else(|| broken("no scale"))?;
+    let width: usize = number(&mut rest, "width")?;
+    let height: usize = number(&mut rest, "height")?;
+    let scale: f32 = number(&mut rest, "scale")?;
+    if !scale.is_normal() {
+        return Err(broken("no scale"));
+    }
     check_size([width as u64, height as u64], channels as u64, bytes)?;
     let row = width * channels;
     let (numbers, _) = rest.as_chunks::<4>();
@@ -41,6 +40,11 @@ pub(super) fn decode(bytes: &[u8]) -> Result<ImageData> {
         channels,
         data,
     })
+}
+
+fn number<T: FromStr>(rest: &mut &[u8], name: &str) -> Result<T> {
+    let number = word(rest).and_then(|word| word.parse().ok());
+    number.ok_or_else(|| broken(format!("no {name}")))
 }
 
 /// Takes the next word and one byte of white space after it, as binary numbers may follow.

@@ -39,31 +39,35 @@ pub(super) fn decode(format: Format, bytes: &[u8], encoding: Encoding) -> Result
         4 if !has_alpha => 3,
         channels => channels,
     };
-    let data = if kept == channels {
-        data
-    } else {
-        keep_channels(&data, channels, kept)
+    let kept_data = match kept {
+        all if all == channels => data,
+        kept => {
+            let pixels = data.chunks_exact(channels);
+            pixels.flat_map(|pixel| &pixel[..kept]).copied().collect()
+        }
     };
     Ok(ImageData {
         width: width as usize,
         height: height as usize,
         channels: kept,
-        data,
+        data: kept_data,
     })
 }
 
 /// Returns the number of channels and the linear values.
 fn linear(decoded: DynamicImage, encoding: Encoding) -> (usize, Vec<f32>) {
     let channels = usize::from(decoded.color().channel_count());
+    let bytes = |stored: &[u8]| to_linear(stored, u8::MAX.into(), encoding);
+    let words = |stored: &[u16]| to_linear(stored, u16::MAX, encoding);
     let data = match decoded {
-        DynamicImage::ImageLuma8(image) => bytes_to_linear(&image.into_raw(), encoding),
-        DynamicImage::ImageLumaA8(image) => bytes_to_linear(&image.into_raw(), encoding),
-        DynamicImage::ImageRgb8(image) => bytes_to_linear(&image.into_raw(), encoding),
-        DynamicImage::ImageRgba8(image) => bytes_to_linear(&image.into_raw(), encoding),
-        DynamicImage::ImageLuma16(image) => words_to_linear(&image.into_raw(), encoding),
-        DynamicImage::ImageLumaA16(image) => words_to_linear(&image.into_raw(), encoding),
-        DynamicImage::ImageRgb16(image) => words_to_linear(&image.into_raw(), encoding),
-        DynamicImage::ImageRgba16(image) => words_to_linear(&image.into_raw(), encoding),
+        DynamicImage::ImageLuma8(image) => bytes(&image),
+        DynamicImage::ImageLumaA8(image) => bytes(&image),
+        DynamicImage::ImageRgb8(image) => bytes(&image),
+        DynamicImage::ImageRgba8(image) => bytes(&image),
+        DynamicImage::ImageLuma16(image) => words(&image),
+        DynamicImage::ImageLumaA16(image) => words(&image),
+        DynamicImage::ImageRgb16(image) => words(&image),
+        DynamicImage::ImageRgba16(image) => words(&image),
         DynamicImage::ImageRgb32F(image) => image.into_raw(),
         // Also kinds that the crate may add.
         other => return (4, other.into_rgba32f().into_raw()),
@@ -71,25 +75,7 @@ fn linear(decoded: DynamicImage, encoding: Encoding) -> (usize, Vec<f32>) {
     (channels, data)
 }
 
-fn bytes_to_linear(stored: &[u8], encoding: Encoding) -> Vec<f32> {
-    let table = encoding.table(u8::MAX.into());
-    stored
-        .iter()
-        .map(|&byte| table[usize::from(byte)])
-        .collect()
-}
-
-fn words_to_linear(stored: &[u16], encoding: Encoding) -> Vec<f32> {
-    let table = encoding.table(u16::MAX);
-    stored
-        .iter()
-        .map(|&word| table[usize::from(word)])
-        .collect()
-}
-
-fn keep_channels(data: &[f32], channels: usize, kept: usize) -> Vec<f32> {
-    data.chunks_exact(channels)
-        .flat_map(|pixel| &pixel[..kept])
-        .copied()
-        .collect()
+fn to_linear<T: Copy + Into<usize>>(stored: &[T], max: u16, encoding: Encoding) -> Vec<f32> {
+    let table = encoding.table(max);
+    stored.iter().map(|&value| table[value.into()]).collect()
 }

@@ -192,6 +192,12 @@ fn flattened(corners: &[DVec3]) -> Option<Vec<DVec2>> {
 mod tests {
     use super::*;
 
+    fn corners(text: &str) -> Vec<[f32; 2]> {
+        let number = |word: &str| word.parse().expect("a number");
+        let corner = |pair: &str| pair.split_once(' ').map(|(x, y)| [number(x), number(y)]);
+        text.split(", ").filter_map(corner).collect()
+    }
+
     /// Splits a polygon in the plane z = x. Returns the areas of its triangles in the plane z = 0, and the
     /// number of polygons that cross themselves.
     fn split(corners: &[[f32; 2]], tests: u64) -> Result<(Vec<f64>, usize), Broken> {
@@ -233,55 +239,29 @@ mod tests {
     #[test]
     fn polygons_are_covered_once() {
         // A pentagon, an arrow head, an L, a comb, a square with corners on its sides.
-        check(&[[0., 0.], [2., 0.], [3., 1.], [1., 3.], [-1., 1.]], 7.0);
-        check(&[[0., 0.], [4., 0.], [1., 1.], [0., 4.]], 4.0);
-        check(
-            &[[0., 0.], [2., 0.], [2., 1.], [1., 1.], [1., 2.], [0., 2.]],
-            3.0,
-        );
-        let teeth = [
-            [7., 3.],
-            [6., 1.],
-            [5., 3.],
-            [4., 1.],
-            [3., 3.],
-            [2., 1.],
-            [1., 3.],
-        ];
-        let corners = [&[[0., 0.], [8., 0.], [8., 3.]][..], &teeth, &[[0., 3.]]];
-        check(&corners.concat(), 18.0);
-        check(
-            &[
-                [0., 0.],
-                [1., 0.],
-                [2., 0.],
-                [2., 1.],
-                [2., 2.],
-                [1., 2.],
-                [0., 2.],
-                [0., 1.],
-            ],
-            4.0,
-        );
+        check(&corners("0 0, 2 0, 3 1, 1 3, -1 1"), 7.0);
+        check(&corners("0 0, 4 0, 1 1, 0 4"), 4.0);
+        check(&corners("0 0, 2 0, 2 1, 1 1, 1 2, 0 2"), 3.0);
+        let comb = "0 0, 8 0, 8 3, 7 3, 6 1, 5 3, 4 1, 3 3, 2 1, 1 3, 0 3";
+        check(&corners(comb), 18.0);
+        check(&corners("0 0, 1 0, 2 0, 2 1, 2 2, 1 2, 0 2, 0 1"), 4.0);
     }
 
     #[test]
     fn a_hole_may_be_joined_by_a_double_side() {
-        let outer = [[0., 0.], [3., 0.], [3., 3.], [0., 3.], [0., 0.]];
-        let hole = [[1., 1.], [1., 2.], [2., 2.], [2., 1.], [1., 1.]];
-        check(&[&outer[..], &hole].concat(), 8.0);
+        let outer_and_hole = "0 0, 3 0, 3 3, 0 3, 0 0, 1 1, 1 2, 2 2, 2 1, 1 1";
+        check(&corners(outer_and_hole), 8.0);
     }
 
     #[test]
     fn polygons_that_cross_themselves_are_counted() {
-        let bow = [[0., 0.], [3., 3.], [3., 0.], [0., 1.]];
-        let even = [[0., 0.], [1., 1.], [1., 0.], [0., 1.]];
-        let spike = [[0., 0.], [4., 0.], [4., 4.], [2., -1.], [0., 4.]];
-        for corners in [&bow[..], &even, &spike] {
-            let Ok((areas, crossing)) = split(corners, 1000) else {
+        let even = "0 0, 1 1, 1 0, 0 1";
+        let spike = "0 0, 4 0, 4 4, 2 -1, 0 4";
+        for polygon in ["0 0, 3 3, 3 0, 0 1", even, spike].map(corners) {
+            let Ok((areas, crossing)) = split(&polygon, 1000) else {
                 panic!("too many tests");
             };
-            assert_eq!((areas.len(), crossing), (corners.len() - 2, 1));
+            assert_eq!((areas.len(), crossing), (polygon.len() - 2, 1));
         }
     }
 
