@@ -15,6 +15,7 @@
 
 use crate::names::named;
 use crate::strategy::Strategy;
+use serde::{Deserialize, Serialize};
 
 /// The sums of a pixel of the picture: camera samples, splats and squares of pass totals, each of
 /// red, green and blue.
@@ -138,7 +139,8 @@ pub struct Layers {
 }
 
 /// Which images of strategies are kept.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum StrategyImages {
     /// Weighted ones: parts of the picture.
     #[default]

@@ -14,23 +14,12 @@ pub struct LayerNames {
     pub strategy_vertices: usize,
     /// The kinds of images of these strategies.
     #[serde(default, skip_serializing_if = "is_weighted")]
-    pub strategy_images: StrategyImagesName,
-}
-
-/// [`StrategyImages`] as a word.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum StrategyImagesName {
-    /// Weighted images only, which is the default.
-    #[default]
-    Weighted,
-    /// Weighted and raw images.
-    WeightedAndRaw,
+    pub strategy_images: StrategyImages,
 }
 
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks by reference")]
-fn is_weighted(images: &StrategyImagesName) -> bool {
-    *images == StrategyImagesName::Weighted
+fn is_weighted(images: &StrategyImages) -> bool {
+    *images == StrategyImages::Weighted
 }
 
 impl LayerNames {
@@ -46,8 +35,8 @@ impl LayerNames {
         let aovs: Vec<_> = aovs.collect::<Option<_>>()?;
         let layers = Layers::new(&aovs, &self.light_groups, self.strategy_vertices);
         let layers = match self.strategy_images {
-            StrategyImagesName::Weighted => layers,
-            StrategyImagesName::WeightedAndRaw => layers.with_raw(),
+            StrategyImages::Weighted => layers,
+            StrategyImages::WeightedAndRaw => layers.with_raw(),
         };
         (*self == Self::from(&layers)).then_some(layers)
     }
@@ -55,20 +44,12 @@ impl LayerNames {
 
 impl From<&Layers> for LayerNames {
     fn from(layers: &Layers) -> Self {
-        let name = |aov: &Aov| {
-            let mut names = Aov::NAMES.iter();
-            names
-                .find(|(_, known)| known == aov)
-                .map(|(name, _)| (*name).to_owned())
-        };
+        let names = layers.aovs().iter().map(|aov| aov.name().to_owned());
         Self {
-            aovs: layers.aovs().iter().filter_map(name).collect(),
+            aovs: names.collect(),
             light_groups: layers.light_groups().to_vec(),
             strategy_vertices: layers.strategy_vertices(),
-            strategy_images: match layers.strategy_images() {
-                StrategyImages::Weighted => StrategyImagesName::Weighted,
-                StrategyImages::WeightedAndRaw => StrategyImagesName::WeightedAndRaw,
-            },
+            strategy_images: layers.strategy_images(),
         }
     }
 }

@@ -40,7 +40,7 @@ mod tests;
 pub use developed::Developed;
 pub use header::{FilmHeader, Stopping};
 pub use identity::{Subject, counts_by_name, metadata, program, training_samples, untrained};
-pub use layers::{LayerNames, StrategyImagesName};
+pub use layers::LayerNames;
 pub use render::{ContinueError, Render};
 pub use settings::SettingsText;
 
