@@ -3,9 +3,9 @@
 //! Nothing here panics, whatever the bytes: a broken file is an [`Error`] with a place, a kind and a hint.
 //! Counts are checked before memory is reserved for them.
 
-mod bytes;
 #[cfg(test)]
 mod byte_cases;
+mod bytes;
 #[cfg(test)]
 mod cases;
 mod error;

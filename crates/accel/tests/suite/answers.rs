@@ -300,7 +300,7 @@ fn nothing_is_a_scene() {
     let bvh = build(&[]);
     let ray = Ray::new(Vec3::ZERO, Vec3::X);
     assert_eq!(bvh.closest(&ray, accept_all), None);
-    assert!(!bvh.occluded(&ray, accept_all));
+    assert!(!bvh.is_blocked(&ray));
     assert_eq!(
         (bvh.bounds(), bvh.memory_bytes(), bvh.primitive_count()),
         (Aabb::EMPTY, 0, 0)

@@ -22,7 +22,7 @@ fn check_rays(primitives: &[Primitive], random: &mut Random) {
     let rays: Vec<_> = (0..rays).map(|_| ray()).collect();
     for (ray, is_blocked) in rays.iter().zip(bvh.are_blocked(&rays)) {
         let hit = bvh.closest(ray, accept_all);
-        assert_eq!(bvh.occluded(ray, accept_all), hit.is_some());
+        assert_eq!(bvh.is_blocked(ray), hit.is_some());
         assert_eq!(is_blocked, hit.is_some());
         if let Some(hit) = hit {
             assert!(
@@ -153,7 +153,7 @@ proptest! {
         let rays: Vec<_> = rays.into_iter().map(|(o, d)| Ray::new(o, d)).collect();
         for (ray, is_blocked) in rays.iter().zip(bvh.are_blocked(&rays)) {
             let hit = bvh.closest(ray, accept_all);
-            prop_assert_eq!(bvh.occluded(ray, accept_all), hit.is_some());
+            prop_assert_eq!(bvh.is_blocked(ray), hit.is_some());
             prop_assert_eq!(is_blocked, hit.is_some());
             if let Some(hit) = hit {
                 prop_assert!(hit.t >= 0.0 && hit.t.is_finite());

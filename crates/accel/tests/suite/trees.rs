@@ -29,31 +29,19 @@ impl Trees {
         expected
     }
 
-    /// Checks the closest of the accepted hits, to the bit, and whether there is any.
+    /// Checks the closest of the accepted hits, to the bit.
     #[track_caller]
     pub(crate) fn check(&self, ray: &Ray, accept: impl Fn(&Hit) -> bool, expected: Option<Hit>) {
         let hit = self.closest(ray, &accept);
         assert_eq!(hit_bits(hit), hit_bits(expected), "{ray:?}");
-        assert_eq!(self.occluded(ray, &accept), expected.is_some(), "{ray:?}");
-    }
-
-    #[track_caller]
-    pub(crate) fn occluded(&self, ray: &Ray, accept: impl Fn(&Hit) -> bool) -> bool {
-        let expected = self.0[0].occluded(ray, &accept);
-        for bvh in &self.0[1..] {
-            let (occluded, isa) = (bvh.occluded(ray, &accept), bvh.isa());
-            assert_eq!(occluded, expected, "{isa}: {ray:?}");
-        }
-        expected
     }
 
     /// True if there is any hit, by one tree and one question, other ones with every `turn`.
     pub(crate) fn is_hit_in_turn(&self, turn: usize, ray: &Ray) -> bool {
         let bvh = &self.0[turn % self.0.len()];
-        match turn / self.0.len() % 4 {
+        match turn / self.0.len() % 3 {
             0 => bvh.closest(ray, accept_all).is_some(),
-            1 => bvh.occluded(ray, accept_all),
-            2 => are_blocked(bvh, std::slice::from_ref(ray))[0],
+            1 => are_blocked(bvh, std::slice::from_ref(ray))[0],
             _ => bvh.is_blocked(ray),
         }
     }
@@ -82,7 +70,6 @@ impl Trees {
     #[track_caller]
     pub(crate) fn is_hit(&self, ray: &Ray) -> bool {
         let expected = self.closest(ray, accept_all).is_some();
-        assert_eq!(self.occluded(ray, accept_all), expected, "{ray:?}");
         assert_eq!(self.is_blocked(ray), expected, "{ray:?}");
         let many = self.are_blocked(std::slice::from_ref(ray));
         assert_eq!(many, [expected], "{ray:?}");
