@@ -39,3 +39,16 @@ pub(crate) fn of_reading(read: Result<Vec<String>>) -> String {
         Ok(warnings) => warnings.join("\n"),
     }
 }
+
+/// Returns a line with its escapes, those of JSON, replaced by the characters that they stand for.
+pub(crate) fn unescaped(line: &str) -> String {
+    serde_json::from_str(&format!("\"{line}\"")).unwrap()
+}
+
+/// Returns a file that is written as `NAME: CONTENT`, with escapes: its name, and a byte for each character.
+pub(crate) fn file(line: &str) -> (&str, Vec<u8>) {
+    let (name, content) = line.split_once(": ").unwrap();
+    let content = unescaped(content);
+    let bytes = content.chars().map(|c| u8::try_from(c).unwrap());
+    (name, bytes.collect())
+}

@@ -3,8 +3,6 @@
 //! Nothing here panics, whatever the bytes: a broken file is an [`Error`] with a place, a kind and a hint.
 //! Counts are checked before memory is reserved for them.
 
-#[cfg(test)]
-mod byte_cases;
 mod bytes;
 #[cfg(test)]
 mod cases;

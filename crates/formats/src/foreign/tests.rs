@@ -1,4 +1,4 @@
-use crate::byte_cases as cases;
+use crate::cases;
 use crate::scene::{LoadOptions, load};
 use expect_test::expect_file;
 use std::path::Path;
@@ -20,9 +20,9 @@ fn message(path: &Path) -> String {
 fn files_of_other_programs_are_named() {
     let folder = tempfile::tempdir().unwrap();
     cases::check(&expect_file!["./cases.txt"], |input| {
-        let (name, content) = input.split_once(": ").unwrap();
+        let (name, content) = cases::file(input);
         let path = folder.path().join(name);
-        std::fs::write(&path, cases::bytes(content)).unwrap();
+        std::fs::write(&path, content).unwrap();
         message(&path)
     });
 }

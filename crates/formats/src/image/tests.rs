@@ -190,8 +190,8 @@ fn pfm_is_read_from_the_bottom_in_either_byte_order() {
 #[test]
 fn broken_and_unknown_images_are_errors() {
     cases::check(&expect_file!["./cases.txt"], |input| {
-        let (name, content) = input.split_once(": ").unwrap();
-        let decoded = decode_file(Path::new(name), &cases::bytes(content), None);
+        let (name, content) = cases::file(input);
+        let decoded = decode_file(Path::new(name), &content, None);
         decoded.unwrap_err().to_string()
     });
     assert!(decode(Format::Exr, b"not exr", None).is_err());

@@ -89,8 +89,9 @@ fn comments_of_headers_are_no_text() {
 fn errors_of_broken_files_name_element_and_line() {
     cases::check(&expect_file!["./cases.txt"], |change| {
         let (from, to) = change.split_once(" => ").unwrap();
-        assert!(QUAD.contains(from), "{from}");
-        let broken = QUAD.replacen(from, to, 1);
+        let [from, to] = [from, to].map(cases::unescaped);
+        assert!(QUAD.contains(&from), "{from}");
+        let broken = QUAD.replacen(&from, &to, 1);
         let error = parse(broken.as_bytes()).unwrap_err();
         error.in_file(Path::new("m.ply")).to_string()
     });
