@@ -52,7 +52,7 @@ impl Aabb {
         0.5 * self.min + 0.5 * self.max
     }
 
-    /// Length along each axis.
+    /// Returns the length along each axis.
     #[inline]
     pub fn extent(&self) -> Vec3 {
         self.max - self.min

@@ -114,7 +114,7 @@ impl Tree {
         unsafe { self.nodes.get_unchecked(index) }
     }
 
-    /// Boxes that together contain all that the tree has: those of its third level.
+    /// Returns boxes that together contain the whole tree: those of its third level.
     pub(crate) fn outline(&self) -> Vec<Aabb> {
         let mut boxes = vec![(self.bounds, Child::node(0))];
         for _ in 0..OUTLINE_LEVELS {
@@ -148,7 +148,7 @@ impl Tree {
         unsafe { self.blocks.get_unchecked(first..first + count) }
     }
 
-    /// Makes an empty tree with room for what so many triangles usually need.
+    /// Makes an empty tree with the room that this number of triangles usually needs.
     fn with_room(triangles: usize) -> Self {
         Self {
             nodes: Vec::with_capacity(triangles / 12),

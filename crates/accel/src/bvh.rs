@@ -106,7 +106,7 @@ impl Bvh {
         })
     }
 
-    /// The same tree for other instructions, those of its objects left alone: they do not matter.
+    /// Makes the tree use other instructions. Those of its objects stay: they are not used.
     pub fn with_isa(self, isa: Isa) -> Result<Self, BuildError> {
         let isa = supported(isa)?;
         Ok(Self { isa, ..self })

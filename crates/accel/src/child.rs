@@ -80,7 +80,7 @@ impl Child {
         (self.0 >> Self::KIND_SHIFT == 1).then_some(self.elements())
     }
 
-    /// Returns the first element of a leaf, and how many they are.
+    /// Returns the first element of a leaf, and the number of its elements.
     #[inline(always)]
     fn elements(self) -> (usize, usize) {
         let length = (self.0 >> Self::LENGTH_SHIFT) as usize % Self::MAX_LEAF + 1;

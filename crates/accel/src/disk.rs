@@ -18,9 +18,9 @@ pub struct Disk {
     pub local_from_world: Affine3A,
     /// The z at which the plane meets the z axis, in local units.
     pub height: f32,
-    /// Of the rim, in local units.
+    /// The radius of the rim, in local units.
     pub radius: f32,
-    /// Of the hole, in local units; 0 for none.
+    /// The radius of the hole, in local units; 0 for none.
     pub inner_radius: f32,
     /// In radians; at 2π (up to rounding) or above nothing is cut.
     pub phi_max: f32,

@@ -97,7 +97,7 @@ fn edge(a: DVec3, b: DVec3, d: DVec3) -> f64 {
     }
 }
 
-/// [`edge`] as the sum of its six triple products without any rounding but the last.
+/// Returns [`edge`] as the sum of its six triple products, rounded once.
 #[cold]
 #[inline(never)]
 fn edge_exact(a: DVec3, b: DVec3, d: DVec3) -> f64 {

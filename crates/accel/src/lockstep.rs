@@ -346,7 +346,7 @@ impl LeafQueue {
     }
 }
 
-/// Eight elements from `first` on.
+/// Returns the eight elements from `first` on.
 ///
 /// # Safety
 ///

@@ -43,7 +43,7 @@ pub(crate) fn with_room<T>(count: usize) -> Vec<T> {
 /// Asks before the memory is touched. A refusal changes nothing.
 #[cfg(target_os = "linux")]
 fn ask_for_large_pages<T>(empty: &mut Vec<T>) {
-    /// Of the smallest pages; the range of the advice must begin at a multiple.
+    /// The size of the smallest pages; the range of the advice must begin at a multiple.
     const PAGE: usize = 4096;
     let begin: *mut u8 = empty.as_mut_ptr().cast();
     let skipped = begin.align_offset(PAGE);

@@ -102,7 +102,7 @@ impl Node {
             .collect()
     }
 
-    /// Which boxes the ray meets at distances up to `limit` (of [`widen`]): a mask with the bit of each
+    /// Returns which boxes the ray meets at distances up to `limit` (of [`widen`]): a mask with the bit of each
     /// box, and the distances at which they are entered.
     #[inline(always)]
     pub(crate) fn intersect<V: F32x8>(&self, ray: &BoxLanes<V>, limit: f32) -> (u32, V) {
@@ -125,7 +125,7 @@ impl Node {
         (entry.le(exit), entry)
     }
 
-    /// Per box a word: the bits of a distance above those of the child.
+    /// Returns a word for each box: the bits of its distance above those of its child.
     #[inline(always)]
     pub(crate) fn entries<V: F32x8>(&self, distances: V) -> [u64; WIDTH] {
         distances.over(Child::all_bits(&self.children))

@@ -45,7 +45,7 @@ pub trait Primitives: Sync {
     /// Returns the number of primitives. It is asked once for a tree.
     fn count(&self) -> usize;
 
-    /// Primitive `index`, below [`count`](Self::count): the same each time.
+    /// Returns primitive `index`, below [`count`](Self::count): the same each time.
     ///
     /// Panics: building may panic if it is another.
     fn primitive(&self, index: usize) -> Primitive;

@@ -32,7 +32,7 @@ pub(crate) trait F32x4:
     fn min(self, other: Self) -> Self;
     /// Returns `self > other ? self : other`: a NaN in either operand selects `other`.
     fn max(self, other: Self) -> Self;
-    /// Magnitudes.
+    /// Returns the magnitudes.
     fn abs(self) -> Self;
     /// Returns `self·factor + term`, the product rounded or not.
     fn mul_add(self, factor: Self, term: Self) -> Self;

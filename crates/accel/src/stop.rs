@@ -24,7 +24,7 @@ impl<'a> Stop<'a> {
         Self(Some(flag))
     }
 
-    /// True once the flag is set.
+    /// Returns true once the flag is set.
     #[inline(always)]
     pub fn is_asked(self) -> bool {
         self.0.is_some_and(|flag| flag.load(Ordering::Relaxed))

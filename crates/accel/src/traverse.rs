@@ -173,7 +173,7 @@ pub(crate) fn clean(ray: &Ray) -> Option<Ray> {
     })
 }
 
-/// Stands for a hit of which nothing is asked.
+/// A placeholder for a hit whose values nobody reads.
 const ANY_HIT: Hit = Hit {
     t: 0.0,
     instance: 0,

@@ -112,7 +112,7 @@ impl TriangleBlock {
         [vertex(0), vertex(1), vertex(2)]
     }
 
-    /// Which of its triangles the ray may hit; `sure`: limits of `t` for those that are surely within.
+    /// Returns which of its triangles the ray may hit; `sure`: limits of `t` for those that are surely within.
     #[inline(always)]
     pub(crate) fn candidates<V: F32x4>(
         &self,

@@ -65,7 +65,7 @@ impl Locus {
         }
     }
 
-    /// The same place between these media.
+    /// Puts the place between these media.
     #[inline]
     #[must_use]
     pub fn within(self, media: MediumSides) -> Self {
@@ -93,7 +93,7 @@ impl Locus {
         self.kind == LocusKind::Infinity
     }
 
-    /// |cosθ| between the normal and `w`; 1 where there is no surface.
+    /// Returns |cosθ| between the normal and `w`; 1 where there is no surface.
     #[inline]
     pub fn abs_cos(&self, w: Vec3) -> f32 {
         match self.kind {

@@ -25,7 +25,7 @@ impl Spectrum {
     /// One in every lane.
     pub const ONE: Self = Self([1.0; 4]);
 
-    /// The same value in every lane.
+    /// Returns the value in every lane.
     #[inline]
     pub const fn splat(value: f32) -> Self {
         Self([value; 4])

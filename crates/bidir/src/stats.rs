@@ -84,7 +84,7 @@ pub struct Stats {
     pub candidates: u64,
     /// The fate of the contributions of each strategy.
     pub strategies: StrategyTable,
-    /// The same of those that the film keeps images of.
+    /// Counts of the strategies that have images.
     pub strategy_images: StrategyTable<LayerCounts>,
     /// Contributions dropped.
     pub dropped: u64,

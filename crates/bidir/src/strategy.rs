@@ -24,7 +24,7 @@ impl Strategy {
         }
     }
 
-    /// Returns the strategy of `s` light vertices for paths of as many vertices.
+    /// Returns the strategy of `s` light vertices for paths of the same length.
     pub(crate) fn with_light_vertices(self, s: u16) -> Self {
         Self {
             s,

@@ -50,13 +50,13 @@ impl View {
         })
     }
 
-    /// The same with another filtering of textures.
+    /// Takes another filtering of textures.
     #[must_use]
     pub fn with_filtering(self, filtering: TextureFiltering) -> Self {
         Self { filtering, ..self }
     }
 
-    /// The same, through another camera and on another film.
+    /// Takes another camera and another film.
     ///
     /// Errors: the film's crop is empty or outside of it.
     pub fn moved(&self, camera: Camera, film: FilmSettings) -> Result<Self, EmptyCrop> {

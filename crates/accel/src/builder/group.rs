@@ -252,8 +252,8 @@ impl<'a> Group<'a> {
     }
 }
 
-/// References of a part that one thread looks at. Not a matter of threads: a sum of parts may
-/// depend on how they are cut, in the sign of a zero.
+/// References per chunk. Fixed, so that the result does not depend on the number of threads: sums
+/// of boxes may differ in the sign of a zero.
 const PART: usize = 1 << 15;
 
 /// Adds what `look` finds at the references to `total`, which is empty: at all of them at once, or at parts, whose

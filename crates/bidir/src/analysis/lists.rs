@@ -13,10 +13,10 @@ use crate::view::View;
 use std::fmt;
 use std::ops::RangeInclusive;
 
-/// Up to so many vertices, paths with specular vertices are looked at: longer ones need no other
+/// The most vertices of the paths with specular vertices that are looked at: longer ones need no other
 /// strategies.
 const LONGEST_PATTERN: usize = 7;
-/// At most so many of the lost patterns are named.
+/// The most lost patterns that are named.
 const EXAMPLES: usize = 3;
 
 /// Light that a list of strategies loses. Its text follows the name of the list.
@@ -110,7 +110,7 @@ fn examples(lost: &[Vec<bool>]) -> Vec<String> {
     }
 }
 
-/// [`LostLight::All`] where no strategy of the list makes a path within the limit of length.
+/// Returns [`LostLight::All`] where no strategy of the list makes a path within the limit of length.
 pub(crate) fn no_path(integrator: IntegratorKind, settings: &PathSettings) -> Option<LostLight> {
     let list = &settings.strategies;
     if !integrator.has_candidates() || list.is_all() {
@@ -181,7 +181,7 @@ fn kinds(scene: &Scene, view: &View) -> Vec<LightKind> {
     kinds
 }
 
-/// All ways for `n` vertices to scatter with a specular one among them; both ends are diffuse.
+/// Returns all patterns of scattering at `n` vertices with diffuse ends and a specular vertex between.
 fn patterns(n: usize) -> impl Iterator<Item = Vec<bool>> {
     let inside = n - 2;
     (1_usize..1 << inside).map(move |bits| {
@@ -190,7 +190,7 @@ fn patterns(n: usize) -> impl Iterator<Item = Vec<bool>> {
     })
 }
 
-/// In Heckbert's letters.
+/// Returns the pattern in Heckbert's notation.
 fn name(is_diffuse: &[bool]) -> String {
     let last = is_diffuse.len() - 1;
     let letter = |(i, is_diffuse): (usize, &bool)| match i {
@@ -203,7 +203,7 @@ fn name(is_diffuse: &[bool]) -> String {
     letters.join(" ")
 }
 
-/// Numbers in rising order as ranges.
+/// Groups ascending numbers into ranges.
 fn ranges(numbers: &[usize]) -> Vec<RangeInclusive<usize>> {
     let mut ranges: Vec<RangeInclusive<usize>> = Vec::new();
     for &number in numbers {

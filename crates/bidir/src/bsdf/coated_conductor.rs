@@ -154,7 +154,7 @@ impl CoatedConductor {
         })
     }
 
-    /// About the part of light that each lobe scatters. It depends on |cosθ| alone.
+    /// Returns the approximate albedo of each lobe. It depends on |cosθ| alone.
     #[inline]
     fn shares(&self, seen: &MetalSeen) -> [Spectrum; 3] {
         let coat = Spectrum::splat(seen.coat.reflected);

@@ -88,7 +88,7 @@ impl CoatedDiffuse {
         self.base.is_black() && self.thrown.is_black()
     }
 
-    /// That of the interface.
+    /// Returns the roughness of the interface.
     pub(super) fn gloss(&self) -> f32 {
         self.coat.ggx.gloss()
     }

@@ -21,7 +21,7 @@ pub struct Conductor {
     pub k: Spectrum,
     /// The distribution of facets.
     pub ggx: Ggx,
-    /// What leaves after more than one facet, of the light that one loses; black: it is lost.
+    /// The part of the light lost by one facet that leaves after several; black: it is lost.
     multiple: Spectrum,
     /// k̄.
     lost: f32,
@@ -49,7 +49,7 @@ impl Conductor {
         }
     }
 
-    /// False where light that facets send to others is lost.
+    /// Returns false where light between facets is lost.
     #[inline]
     fn is_multiple(&self) -> bool {
         self.lost > 0.0

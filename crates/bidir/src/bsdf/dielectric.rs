@@ -22,7 +22,7 @@ pub struct Dielectric {
     pub eta: f32,
     /// The distribution of facets.
     pub ggx: Ggx,
-    /// What facets lose.
+    /// The light that single facets lose.
     pub(super) lost: Sides,
 }
 
@@ -161,7 +161,7 @@ impl Dielectric {
         multiple::of_interface(self.ggx, self.eta_across(w), w)
     }
 
-    /// Scattering by more than one facet, none of them at the rim.
+    /// Returns the scattering by more than one facet, away from the rim.
     #[inline]
     pub(super) fn multiple(&self, [wo, wi]: [Vec3; 2]) -> Multiple {
         let probs = [wo, wi].map(|w| self.lost_of(w));
@@ -189,7 +189,7 @@ impl Dielectric {
         Spread::new(self.ggx).sample(side, u)
     }
 
-    /// Scattering by one facet.
+    /// Evaluates scattering by one facet.
     #[inline]
     fn eval_once(&self, wo: Vec3, wi: Vec3, mode: TransportMode) -> BsdfValue {
         let Some((m, lobe)) = self.facet(wo, wi) else {
@@ -217,7 +217,7 @@ impl Dielectric {
         }
     }
 
-    /// Refraction between two directions by facets with normal `m`.
+    /// Evaluates refraction between two directions by facets with normal `m`.
     #[inline]
     pub(super) fn crossing(&self, wo: Vec3, wi: Vec3, m: Vec3) -> Crossing {
         let (d, eta) = (self.ggx.d(m), self.eta_across(wo));

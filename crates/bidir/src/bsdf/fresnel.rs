@@ -24,7 +24,7 @@ pub fn dielectric(cos_i: f32, eta: f32) -> f32 {
     (sqr(parallel) + sqr(perpendicular)) / 2.0
 }
 
-/// Schlick's weight (1-μ)⁵ [Schlick94, eq. 15].
+/// Returns Schlick's weight (1-μ)⁵ [Schlick94, eq. 15].
 #[inline]
 pub fn schlick(cos: f32) -> f32 {
     let x = (1.0 - cos).clamp(0.0, 1.0);

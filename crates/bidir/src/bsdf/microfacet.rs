@@ -98,7 +98,7 @@ impl Ggx {
         1.0 / (1.0 + self.lambda(wo) + self.lambda(wi))
     }
 
-    /// Reflection between two directions on one side.
+    /// Evaluates reflection between two directions on one side.
     #[inline]
     pub fn mirror(self, wo: Vec3, wi: Vec3) -> Mirror {
         let m = (wo + wi).normalize();
@@ -132,7 +132,7 @@ impl Ggx {
         1.0 - self.mean_alpha().min(1.0)
     }
 
-    /// These slopes, each with the variance `scale`² α² of another surface's added.
+    /// Returns these slopes, each with the variance `scale`² α² of another surface's added.
     #[inline]
     #[must_use]
     pub fn broadened(self, other: Self, scale: f32) -> Self {

@@ -285,7 +285,7 @@ impl Bsdf {
         }
     }
 
-    /// False where light stays on the side it comes from.
+    /// Returns false where light stays on the side it comes from.
     #[inline]
     pub fn transmits(&self) -> bool {
         match self {

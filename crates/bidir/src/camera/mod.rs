@@ -81,7 +81,7 @@ impl Camera {
         }
     }
 
-    /// The same camera elsewhere.
+    /// Moves the camera to another pose.
     #[must_use]
     pub fn with_pose(mut self, pose: Pose) -> Self {
         match &mut self {
@@ -97,7 +97,7 @@ impl Camera {
         matches!(self, Self::Orthographic(_))
     }
 
-    /// The same view on a film with `factor` times as many pixels to each side, all positive.
+    /// Returns the same view on a film with `factor` times as many pixels to each side, all positive.
     #[must_use]
     pub fn resized(self, factor: Vec2) -> Self {
         match self {
@@ -148,7 +148,7 @@ impl Camera {
         }
     }
 
-    /// Importance W_e of the unit direction `w` at any point of the lens; zero backwards.
+    /// Returns the importance W_e of the unit direction `w` at any point of the lens; zero backwards.
     #[inline]
     pub fn importance(&self, w: Vec3) -> f32 {
         match self {

@@ -148,7 +148,7 @@ impl Perspective {
         }
     }
 
-    /// Distance times the width of a pixel in the middle of the view, one unit in front.
+    /// Returns distance times the width of a pixel in the middle of the view, one unit in front.
     #[inline]
     pub(super) fn pixel_width(&self, p: Vec3) -> f32 {
         p.distance(self.pose.origin) / self.raster_density.sqrt()

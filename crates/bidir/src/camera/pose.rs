@@ -130,7 +130,7 @@ impl Pose {
         highest.map_or(self.up, |(axis, _)| *axis)
     }
 
-    /// The same frame elsewhere.
+    /// Moves the frame.
     #[must_use]
     pub fn shifted(self, by: Vec3) -> Self {
         Self {

@@ -122,7 +122,7 @@ impl Spherical {
         p.distance(self.pose.origin)
     }
 
-    /// Distance times the width of a pixel, at the horizon where they are wider than elsewhere.
+    /// Returns distance times the width of a pixel, at the horizon where they are wider than elsewhere.
     #[inline]
     pub(super) fn pixel_width(&self, p: Vec3) -> f32 {
         let area = self.resolution.x * self.resolution.y;

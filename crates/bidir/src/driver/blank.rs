@@ -18,7 +18,7 @@ const SIDE: u32 = 16;
 struct Sight {
     /// Points where a surface is seen.
     hits: usize,
-    /// Those where it is seen from its back.
+    /// The samples that see it from its back.
     backs: usize,
 }
 

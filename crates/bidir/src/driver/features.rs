@@ -70,7 +70,7 @@ impl Features {
         aovs.flat_map(|&aov| self.value(aov).into_iter().take(aov.sums()))
     }
 
-    /// Returns the numbers of an image: as many of them as it has sums.
+    /// Returns the numbers of an image, one for each of its sums.
     fn value(&self, aov: Aov) -> [f32; 3] {
         let of = |get: fn(&FirstSurface) -> [f32; 3]| self.surface.as_ref().map_or([0.0; 3], get);
         match aov {

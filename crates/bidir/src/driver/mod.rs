@@ -62,7 +62,7 @@ impl Resources {
 
 /// Receives progress from all threads, and says if the render goes on.
 pub trait Progress: Sync {
-    /// Some `samples` more are done.
+    /// Reports `samples` finished samples.
     fn advance(&self, samples: u64);
 
     /// Asks to give up the running pass, which is then forgotten. All threads look at it before every ray, and on the

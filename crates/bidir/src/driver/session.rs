@@ -115,7 +115,7 @@ impl<'a> Session<'a> {
         Self::with_effort(scene, view, settings, resources, Effort::WHOLE)
     }
 
-    /// The same with training of some effort, on which the bits of the image depend.
+    /// Makes a session with training of some effort, on which the bits of the image depend.
     ///
     /// Errors: as [`Self::new`].
     pub fn with_effort(
@@ -391,7 +391,7 @@ impl<'a> Session<'a> {
         self.film.develop().relative_error()
     }
 
-    /// True after those numbers of passes at which a render that ends by its [`Self::noise`] looks at it,
+    /// Returns true for the numbers of passes after which a render that ends by its [`Self::noise`] looks at it,
     /// from 16 on: developing a film takes time. A function of the number alone, so that a render that
     /// was interrupted ends where it would have ended.
     pub fn looks_at_noise(passes: u64) -> bool {

@@ -83,7 +83,7 @@ impl Film {
         aovs.chain(parts).collect()
     }
 
-    /// Camera samples of a pixel.
+    /// Returns the camera samples of a pixel.
     fn samples(&self) -> f64 {
         self.passes.len().max(1) as f64
     }

@@ -171,7 +171,7 @@ impl Layers {
         }
     }
 
-    /// The same with raw images of the strategies that have images.
+    /// Adds raw images of the strategies that have images.
     #[must_use]
     pub fn with_raw(self) -> Self {
         let strategies = match self.strategy_vertices {
@@ -265,7 +265,7 @@ impl Layers {
         }
     }
 
-    /// All strategies that have images, in the order of their parts.
+    /// Returns all strategies that have images, in the order of their parts.
     pub fn kept_strategies(&self) -> impl Iterator<Item = Strategy> + use<> {
         let rows = 2..=self.strategy_vertices;
         rows.flat_map(|n| (0..n).map(move |s| Strategy::new(s, n - s)))

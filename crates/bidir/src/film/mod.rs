@@ -53,10 +53,10 @@ pub enum MergeError {
     /// Both hold the same passes.
     #[error("both have the passes {0}")]
     Overlap(PassSet),
-    /// They show different pixels.
+    /// The films show different pixels.
     #[error("their resolutions or crops differ")]
     Geometry,
-    /// They keep different images.
+    /// The films keep different images.
     #[error("their layers differ")]
     Layers,
 }
@@ -188,7 +188,7 @@ impl Film {
         Ok(())
     }
 
-    /// The same, where no pass was added yet, without a second set of sums.
+    /// Merges as [`Self::merge`] does, without a second set of sums where no pass was added yet.
     pub fn adopt(&mut self, other: Self) -> Result<(), MergeError> {
         if !self.passes.is_empty() {
             return self.merge(&other);

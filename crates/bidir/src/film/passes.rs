@@ -39,7 +39,7 @@ impl PassSet {
         &self.ranges
     }
 
-    /// Is `pass` held?
+    /// Returns true where `pass` is held.
     pub fn contains(&self, pass: u64) -> bool {
         self.ranges[self.first_ending_after(pass)..]
             .first()

@@ -89,8 +89,8 @@ impl FilmSettings {
         Some((self.crop.index(x, y)?, weight))
     }
 
-    /// Light subpaths of a pass where each sample has its own: one for each pixel that is rendered. If
-    /// k samples share one there are 1/k as many, and weights and the light image count with that.
+    /// Returns the number of light subpaths of a pass in which each sample has its own: one for each pixel that is
+    /// rendered. If k samples share a subpath, weights and the light image count 1/k of this number.
     pub fn light_paths(&self) -> u64 {
         self.crop.area()
     }

@@ -56,7 +56,7 @@ const _: () = assert!(
 #[derive(Clone, Debug)]
 pub struct LightProposals {
     cells: Cells,
-    /// By the cell of camera vertices.
+    /// One row for each cell of camera vertices.
     rows: Vec<ProposalRow>,
     /// For each cell of light vertices κ / κ_c for a unit of (1 - ε) Γ; 0 where κ_c is 0.
     count_factors: [f64; Cells::NAMES],
@@ -83,12 +83,12 @@ pub struct PairSums {
     pub light_vertices: Vec<f64>,
     /// Σ X², by the cell of camera vertices first. Unit: squared luminance, of any scale.
     pub squares: Vec<f64>,
-    /// Of how many connections it is known whether they arrived, and how many did.
+    /// The number of connections that were traced, and of those that arrived.
     pub arrived: Vec<[u32; 2]>,
 }
 
 impl PairSums {
-    /// Of cells with so many light vertices for each light subpath; nothing is known of pairs.
+    /// Makes sums that know nothing of pairs, of cells with these numbers of light vertices for each light subpath.
     pub fn uniform(light_vertices: Vec<f64>) -> Self {
         Self {
             light_vertices,
@@ -109,7 +109,7 @@ impl PairSums {
         *arrived += u32::from(has_arrived);
     }
 
-    /// By the cell of camera vertices Σ_c √(κ_c Σ X²).
+    /// Returns for each cell of camera vertices Σ_c √(κ_c Σ X²).
     pub(crate) fn roots(&self) -> Vec<f64> {
         let rows = self.squares.chunks_exact(Cells::COUNT);
         rows.map(|squares| {
@@ -276,7 +276,7 @@ pub(crate) fn inverse_prob(units: u16, counts: [u32; 2]) -> f32 {
     UNITS as f32 * all * of_cell / sum
 }
 
-/// Returns how many of 2^32 numbers lead to so many units.
+/// Returns the count among 2^32 numbers that lead to this number of units.
 #[inline]
 const fn numbers_of(units: u16) -> f64 {
     units as f64 * UNITS as f64
@@ -288,7 +288,7 @@ fn first_cell_of_part(last: &LastUnits, part: usize) -> u8 {
     last[1..Cells::COUNT].partition_point(|&last| last < begin) as u8
 }
 
-/// Returns √V̂ in units if so many connections were traced and arrived. Pairs of cells that training did not see count
+/// Returns √V̂ in units by the numbers of connections traced and arrived. Pairs of cells that training did not see count
 /// as visible, and none counts as hidden for sure.
 fn root_visibility(arrived: Option<&[u32; 2]>) -> u8 {
     let [traced, arrived] = arrived.copied().unwrap_or_default();

@@ -126,7 +126,7 @@ impl AreaLight {
         self.alpha = Some(alpha);
     }
 
-    /// False where all its primitives are degenerate.
+    /// Returns false where all its primitives are degenerate.
     pub fn has_area(&self) -> bool {
         self.inverse_area > 0.0
     }

@@ -88,7 +88,7 @@ pub struct InfiniteLight {
 }
 
 impl InfiniteLight {
-    /// The same radiance from everywhere.
+    /// Makes a sky of constant radiance.
     pub fn constant(radiance: Rgb) -> Self {
         let radiance = Radiance::Constant(radiance);
         Self {
@@ -125,7 +125,7 @@ impl InfiniteLight {
         4.0 * PI * mean * PI * sqr(context.radius)
     }
 
-    /// Radiance from the unit direction `to_light`.
+    /// Returns the radiance from the unit direction `to_light`.
     #[inline]
     pub(super) fn radiance(&self, to_light: Vec3) -> Rgb {
         match &self.radiance {

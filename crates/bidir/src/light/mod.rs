@@ -197,7 +197,7 @@ impl Light {
         matches!(self, Self::Distant(_) | Self::Infinite(_))
     }
 
-    /// About how much light it sends into the scene, for the choice of lights. Unit: W, luminance.
+    /// Returns the approximate power that enters the scene, for the choice of lights. Unit: W, luminance.
     pub fn power(&self, context: &LightContext<'_>) -> f32 {
         match self {
             Self::Area(light) => light.power(),
@@ -218,7 +218,7 @@ impl Light {
         }
     }
 
-    /// Radiance from `at` along the unit direction `w` away from the light; intensity for point
+    /// Returns the radiance from `at` along the unit direction `w` away from the light; intensity for point
     /// and spot lights, irradiance on a facing surface for a distant light, σ_a L_e in a medium.
     #[inline]
     pub fn emitted(&self, context: &LightContext<'_>, at: &LightPoint, w: Vec3) -> Rgb {

@@ -152,7 +152,7 @@ impl Cells {
 
     #[inline]
     fn pdf(&self, point: Vec3) -> f32 {
-        /// Of the side of the box: points of its faces may lie beyond them, by rounding.
+        /// The tolerance, as part of the side of the box: points of its faces may lie beyond them, by rounding.
         const ERROR: f32 = 1e-5;
         let p = self.cube_from_world.transform_point3(point);
         let within = p.clamp(Vec3::ZERO, Vec3::splat(ONE_MINUS_EPSILON));

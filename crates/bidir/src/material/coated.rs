@@ -55,7 +55,7 @@ impl CoatSettings {
 struct Axis(Vec<f32>);
 
 impl Axis {
-    /// One slope where it is constant; else some from 0 to 1, closer where they are small.
+    /// Returns one slope where it is constant; else some from 0 to 1, closer where they are small.
     fn of(roughness: &Roughness) -> Self {
         let is_constant = |texture: &FloatTexture| matches!(texture, FloatTexture::Constant(_));
         if is_constant(&roughness.u) && is_constant(&roughness.v) {
@@ -244,12 +244,12 @@ pub struct CoatedConductorMaterial {
     pub(super) roughness: Roughness,
     layers: Layers,
     metal_axis: Axis,
-    /// By slope of the interface, then of the metal.
+    /// Tables by the slope of the interface, then of the metal.
     reflections: Arc<[Reflections]>,
 }
 
 impl CoatedConductorMaterial {
-    /// Metal of `index` and `roughness`.
+    /// Makes metal of `index` and `roughness`.
     pub fn new(coat: CoatSettings, index: super::ConductorIndex, roughness: Roughness) -> Self {
         let layers = Layers::new(&coat);
         let metal_axis = Axis::of(&roughness);

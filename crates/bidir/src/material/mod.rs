@@ -91,7 +91,7 @@ impl ConductorIndex {
         }
     }
 
-    /// Real and imaginary part.
+    /// Returns the real and the imaginary part.
     #[inline]
     fn eval(&self, at: &TexturePoint, lanes: Lanes) -> (Spectrum, Spectrum) {
         match self {
@@ -203,7 +203,7 @@ impl Material {
         }
     }
 
-    /// Returns the material that a mixture is at a point, chosen by the number `u`; itself where it is none.
+    /// Returns the material of a mixture that the number `u` chooses at a point; other materials as they are.
     #[inline]
     pub fn choose(&self, at: &TexturePoint, u: impl FnOnce() -> f32) -> &Self {
         match self {

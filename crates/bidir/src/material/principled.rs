@@ -115,8 +115,8 @@ pub struct Anisotropy {
 }
 
 impl Anisotropy {
-    /// Strength, and the direction as cosine and sine in the shading frame, whose y is on the side of ∂p/∂v or its
-    /// opposite.
+    /// Returns strength, and the direction as cosine and sine in the shading frame, whose y is on the side of ∂p/∂v
+    /// or its opposite.
     #[inline]
     fn eval(&self, at: &TexturePoint) -> (f32, Vec2) {
         let on_surface = |[x, y]: [f32; 2]| Vec2::new(x, y * at.handedness.sign());

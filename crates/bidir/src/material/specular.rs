@@ -11,7 +11,7 @@ use crate::math::sqr;
 use crate::texture::{FloatTexture, Range};
 
 impl Material {
-    /// False only if no point of it scatters by Dirac distributions. True if its textures leave it open.
+    /// Returns false only if no point of it scatters by Dirac distributions; true if its textures leave it open.
     pub fn may_be_specular(&self) -> bool {
         match self {
             Self::Diffuse { .. } | Self::DiffuseTransmission { .. } => false,
@@ -94,7 +94,7 @@ impl PrincipledMaterial {
         self.coat.may_be_positive() && is_smooth(sqr(self.coat_roughness.shares().least))
     }
 
-    /// By the slope along the grain, which is the larger one.
+    /// Returns true where facets are smooth along the grain, in which they are roughest.
     fn has_smooth_facets(&self) -> bool {
         let across = sqr(self.roughness.shares().least);
         let strength = match self.anisotropy.texture {

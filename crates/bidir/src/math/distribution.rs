@@ -7,7 +7,7 @@
 use super::ONE_MINUS_EPSILON;
 use glam::{Vec2, Vec3};
 
-/// Up to so many cells, a search without a guide table is as fast.
+/// The most cells for which a search without a guide table is as fast.
 const FEW: usize = 8;
 
 /// A piecewise-constant distribution over `[0, 1)`: also the choice of one of `n` things.
@@ -98,7 +98,7 @@ impl Distribution1d {
         self.cdf.len() - 1
     }
 
-    /// Never: there is at least one cell.
+    /// Returns false: there is at least one cell.
     pub fn is_empty(&self) -> bool {
         false
     }
@@ -204,7 +204,7 @@ pub struct Distribution3d {
 }
 
 impl Distribution3d {
-    /// Returns the distribution proportional to `weights`, x fastest, of so many cells along x and y.
+    /// Returns the distribution proportional to `weights`, x fastest, in planes of `nx` by `ny` cells.
     pub fn new(weights: &[f32], [nx, ny]: [usize; 2]) -> Self {
         let planes: Vec<_> = weights
             .chunks_exact((nx * ny).max(1))

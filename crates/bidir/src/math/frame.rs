@@ -14,7 +14,7 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// Some frame around the unit vector `z`, without branches on its direction [Duff17, listing 3].
+    /// Makes a frame around the unit vector `z`, without branches on its direction [Duff17, listing 3].
     #[inline]
     pub fn from_z(z: Vec3) -> Self {
         let sign = 1f32.copysign(z.z);
@@ -44,13 +44,13 @@ impl Frame {
         }
     }
 
-    /// World to local.
+    /// Returns the local vector of one of the world.
     #[inline]
     pub fn to_local(&self, v: Vec3) -> Vec3 {
         Vec3::new(self.x.dot(v), self.y.dot(v), self.z.dot(v))
     }
 
-    /// Local to world.
+    /// Returns the world vector of a local one.
     #[inline]
     pub fn to_world(&self, v: Vec3) -> Vec3 {
         self.x * v.x + self.y * v.y + self.z * v.z

@@ -24,7 +24,7 @@ pub(crate) fn dot_each(v: Vec3, of: &Vec3x4) -> Vec4 {
     v.x * of[0] + v.y * of[1] + v.z * of[2]
 }
 
-/// Four vectors, each with a number.
+/// Transposes four vectors, each with a number.
 #[inline]
 pub(crate) fn gather([a, b, c, d]: [(Vec3, f32); 4]) -> (Vec3x4, Vec4) {
     let row = |(v, number): (Vec3, f32)| v.extend(number);

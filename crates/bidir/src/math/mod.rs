@@ -22,7 +22,7 @@ pub const INV_PI: f32 = std::f32::consts::FRAC_1_PI;
 /// The largest `f32` below 1: the upper bound of every random number.
 pub const ONE_MINUS_EPSILON: f32 = 1.0 - f32::EPSILON / 2.0;
 
-/// Sine and cosine of `x` in radians.
+/// Returns the sine and cosine of `x` in radians.
 #[inline]
 pub fn sin_cos(x: f32) -> (f32, f32) {
     (libm::sinf(x), libm::cosf(x))

@@ -52,7 +52,7 @@ pub fn uniform_cone(u: Vec2, height: f32) -> Vec3 {
     Vec3::new(sin_theta * cos_phi, sin_theta * sin_phi, 1.0 - drop)
 }
 
-/// Barycentric coordinates `(b1, b2)` of a uniform point of a triangle \[Heitz19\].
+/// Returns the barycentric coordinates `(b1, b2)` of a uniform point of a triangle \[Heitz19\].
 /// Measure: area, density 1/area.
 #[inline]
 pub fn triangle(u: Vec2) -> Vec2 {

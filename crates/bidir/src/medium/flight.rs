@@ -159,7 +159,7 @@ fn reach<const N: usize>(
     extinction: impl Fn([f32; N]) -> Spectrum,
 ) -> f32 {
     const STEPS: usize = 12;
-    /// Of the drawn depth.
+    /// The relative error of the drawn depth.
     const ERROR: f32 = 1e-6;
     let sigma = |values| extinction(values)[drawn.lane] * unit;
     let [begin, end] = piece.range;

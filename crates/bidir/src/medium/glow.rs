@@ -74,7 +74,7 @@ impl Medium {
     /// The largest σ_t L_e, so that products with volumes stay finite.
     pub const BRIGHTEST: f32 = 1e18;
 
-    /// The same medium, which glows as well. None: L_e is negative or not finite, σ_t L_e may be above
+    /// Makes the medium emit light. None: L_e is negative or not finite, σ_t L_e may be above
     /// [`BRIGHTEST`](Self::BRIGHTEST), or the grid of L_e has not the cells of the medium's.
     pub fn glowing(self, glow: Glow) -> Option<Self> {
         let most = glow.most();

@@ -44,7 +44,7 @@ impl MediumId {
     /// The most media of a scene, besides the vacuum.
     pub const MOST: usize = u8::MAX as usize;
 
-    /// Medium number `index` of a scene that has so many; the vacuum is none of them. None: beyond
+    /// Returns the medium with this index in the scene, which does not count the vacuum. None: beyond
     /// [`MOST`](Self::MOST).
     pub(crate) fn new(index: usize) -> Option<Self> {
         u8::try_from(index + 1).ok().map(Self)
@@ -70,7 +70,7 @@ impl MediumSides {
     /// Vacuum all around.
     pub const VACUUM: Self = Self::all(MediumId::VACUUM);
 
-    /// One medium all around.
+    /// Puts one medium on both sides.
     pub const fn all(medium: MediumId) -> Self {
         Self {
             outside: medium,

@@ -44,7 +44,7 @@ pub enum Purpose {
     Flight,
     /// The third coordinate of a light subpath's start, in a medium that glows.
     LightDepth,
-    /// The same of the light point of next-event estimation.
+    /// The third coordinate of the light point of next-event estimation, in a medium that glows.
     NextEventDepth,
 }
 

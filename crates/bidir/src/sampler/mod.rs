@@ -51,7 +51,7 @@ pub enum Domain {
     TrainingLight,
 }
 
-/// Point number `k` of the Kronecker sequence that begins with `u`: u + k (1 ∕ φ, 1 ∕ φ²) modulo 1, where
+/// Returns point `k` of the Kronecker sequence that begins with `u`: u + k (1 ∕ φ, 1 ∕ φ²) modulo 1, where
 /// φ³ = φ + 1. If `u` is uniform each of them is, and together they fill the square evenly.
 #[inline]
 pub fn kronecker_point(u: Vec2, k: u16) -> Vec2 {
@@ -61,7 +61,7 @@ pub fn kronecker_point(u: Vec2, k: u16) -> Vec2 {
     point.min(Vec2::splat(ONE_MINUS_EPSILON))
 }
 
-/// Number `k` of the sequence u + k / φ modulo 1, φ² = φ + 1: a third coordinate of [`kronecker_point`]s.
+/// Returns number `k` of the sequence u + k / φ modulo 1, φ² = φ + 1: a third coordinate of [`kronecker_point`]s.
 #[inline]
 pub fn kronecker_number(u: f32, k: u16) -> f32 {
     const STEP: f64 = 0.618_033_988_749_894_8;

@@ -37,7 +37,7 @@ impl<'a> RayDraws<'a> {
         }
     }
 
-    /// The same, of a ray that nobody waits for once `stop` is asked for: it then ends anywhere, at once.
+    /// Lets the ray end anywhere, at once, when `stop` is asked for.
     #[inline]
     pub(crate) fn until(self, stop: Stop<'a>) -> Self {
         Self { stop, ..self }

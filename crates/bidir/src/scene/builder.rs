@@ -152,12 +152,12 @@ impl SceneBuilder {
         self
     }
 
-    /// Shape number `shape`.
+    /// Returns shape number `shape`.
     pub fn shape_of(&self, shape: usize) -> &Shape {
         &self.shapes[shape]
     }
 
-    /// Shape number `shape`, to be turned.
+    /// Returns shape number `shape`, to be turned.
     pub fn shape_mut(&mut self, shape: usize) -> &mut Shape {
         &mut self.shapes[shape]
     }

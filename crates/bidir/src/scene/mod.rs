@@ -61,7 +61,7 @@ struct Surface {
 }
 
 impl Surface {
-    /// Nothing but a boundary between `media`, if they differ.
+    /// Makes a boundary between `media`, if they differ.
     fn boundary(media: MediumSides) -> Self {
         let sides = media.is_boundary().then_some(media);
         Self {
@@ -112,7 +112,7 @@ pub struct Scene {
     /// The primitives of the world first, then those of the objects.
     primitives: Vec<PrimitiveRef>,
     instances: Vec<Placed>,
-    /// The textures of surfaces that are not all there.
+    /// The textures of alpha.
     alphas: Vec<FloatTexture>,
     /// True where rays pass no surface, and need not ask.
     is_opaque: bool,
@@ -154,7 +154,7 @@ impl Scene {
         &self.lights
     }
 
-    /// Light number `i`.
+    /// Returns light number `i`.
     #[inline]
     pub fn light(&self, i: u32) -> &Light {
         &self.lights[i as usize]
@@ -215,13 +215,13 @@ impl Scene {
         surfaces.map(|surface| self.material(surface.material))
     }
 
-    /// Material number `i`.
+    /// Returns material number `i`.
     #[inline]
     pub fn material(&self, i: u32) -> &Material {
         &self.materials[i as usize]
     }
 
-    /// All shapes, those of objects once, in the object's space.
+    /// Returns all shapes, those of objects once, in the object's space.
     pub fn shapes(&self) -> &[Shape] {
         &self.shapes
     }
@@ -295,7 +295,7 @@ impl Scene {
         self.surface_of(ray, hit, placed, primitive)
     }
 
-    /// The same where the target of the hit is known.
+    /// Returns the surface where the target of the hit is known.
     #[inline]
     fn surface_of(
         &self,

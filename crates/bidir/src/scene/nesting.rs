@@ -22,7 +22,7 @@ use std::cmp::Ordering;
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::ControlFlow;
 
-/// What fills a closed surface. Of the volumes around a point the one of the highest priority fills it, of several the
+/// The material within a closed surface. Of the volumes around a point the one of the highest priority fills it, of several the
 /// one that encloses least.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Volume {
@@ -101,7 +101,7 @@ impl Ord for PlacedVolume {
 }
 
 impl Around {
-    /// Those at the start of a ray with these crossings.
+    /// Returns the volumes around the start of a ray with these crossings.
     fn start(events: &[Event]) -> Self {
         let mut around = Self::default();
         for event in events {
@@ -248,7 +248,7 @@ impl Scene {
         None
     }
 
-    /// These boundaries, and all surfaces of volumes from the start of a ray to infinity, in order.
+    /// Returns these boundaries, and all surfaces of volumes from the start of a ray to infinity, in order.
     fn events(&self, ray: &Ray, stop: Stop<'_>, boundaries: Crossings) -> Vec<Event> {
         let boundary = |crossing| Event { crossing, of: None };
         let mut events: Vec<_> = boundaries.into_iter().map(boundary).collect();
@@ -442,7 +442,7 @@ pub(super) fn keep_touching(surfaces: &mut [Surface], mut boxes: Vec<(u32, Aabb)
     !touching.is_empty()
 }
 
-/// Returns the volumes of boxes that touch another, of boxes by their smallest x.
+/// Returns the volumes whose boxes touch another; `boxes` are sorted by their smallest x.
 fn touching(boxes: &[(u32, Aabb)]) -> BTreeSet<u32> {
     /// The most boxes that each is compared with; where there are more, all count as touching.
     const MOST: usize = 256;

@@ -73,7 +73,7 @@ pub struct Chosen {
 pub struct Draws<'a>(pub &'a SampleStream);
 
 impl Draws<'_> {
-    /// Draw number `i`, of 48 bits: probabilities span more orders than 24 bits can tell apart.
+    /// Returns draw number `i`, of 48 bits: probabilities span more orders than 24 bits can tell apart.
     /// Range: `[0, 1)`.
     #[inline]
     pub fn get(&self, i: usize) -> f64 {

@@ -29,7 +29,7 @@ pub struct RayRoulette {
 }
 
 impl RayRoulette {
-    /// Roulette with this part of the image's mean luminance as its threshold; filters with negative lobes
+    /// Makes a roulette with this part of the image's mean luminance as its threshold; filters with negative lobes
     /// may have a negative mean, by which everything is traced.
     pub fn new(part: f32, mean_luminance: f32) -> Self {
         Self {

@@ -7,7 +7,7 @@ use std::str::FromStr;
 /// A value, or what suits the integrator.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Choice<T> {
-    /// The integrator's own, written `auto`; `suited` is the older spelling.
+    /// The integrator's own choice, written `auto` or `suited`.
     Automatic,
     /// This one.
     Fixed(T),

@@ -239,7 +239,7 @@ impl Request {
         settings
     }
 
-    /// These settings, and those of `below` where there is none.
+    /// Returns these settings, and those of `below` where there is none.
     #[must_use]
     pub fn over(&self, below: &Self) -> Self {
         let mut map = below.map();

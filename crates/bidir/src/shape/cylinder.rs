@@ -77,8 +77,7 @@ impl Cylinder {
         self.area
     }
 
-    /// The same cylinder in the world, for one of an object; its densities are still those of the
-    /// object.
+    /// Returns the cylinder of an object in the world, with the densities of the object.
     #[inline]
     pub(super) fn at(&self, to_world: &WorldFromObject) -> Self {
         Self {
@@ -114,7 +113,7 @@ impl Cylinder {
         Vec2::new(azimuth_part(local, self.phi_max), upwards.clamp(0.0, 1.0))
     }
 
-    /// Along azimuth, and upwards.
+    /// Returns the derivatives along azimuth, and upwards.
     pub(super) fn differentials(&self, point: Vec3) -> Differentials {
         let local = self.placement.local_from_world.transform_point3(point);
         let normal = local.with_z(0.0).normalize_or(Vec3::X);

@@ -55,7 +55,7 @@ impl Disk {
         local * self.placement.area_scale(Vec3::Z)
     }
 
-    /// The same disk in the world, for one of an object; its densities are still those of the object.
+    /// Returns the disk of an object in the world, with the densities of the object.
     #[inline]
     pub(super) fn at(&self, to_world: &WorldFromObject) -> Self {
         Self {
@@ -90,7 +90,7 @@ impl Disk {
         Vec2::new(azimuth_part(local, self.phi_max), inwards.clamp(0.0, 1.0))
     }
 
-    /// Along azimuth, and inwards.
+    /// Returns the derivatives along azimuth, and inwards.
     pub(super) fn differentials(&self, point: Vec3) -> Differentials {
         let local = self.placement.local_from_world.transform_point3(point);
         let along = Vec3::new(-local.y, local.x, 0.0) * self.phi_max;
@@ -101,7 +101,7 @@ impl Disk {
             .differentials([along, inwards], Vec3::Z, unchanged, self.orientation)
     }
 
-    /// Evenly over the area: azimuth, then the square of the radius.
+    /// Draws a point evenly over the area: azimuth, then the square of the radius.
     #[inline]
     pub(super) fn sample(&self, u: Vec2) -> ShapeSample {
         let (outer2, inner2) = (sqr(self.radius), sqr(self.inner_radius));

@@ -106,7 +106,7 @@ impl Mesh {
         corners.surface_point(b, position_error(corners.magnitude()))
     }
 
-    /// The same for a mesh that belongs to an object under `to_world`: the point of a mesh of moved vertices,
+    /// Returns the surface point of an object's mesh under `to_world`: that of a mesh of moved vertices,
     /// with the error of the map added.
     #[inline]
     pub(super) fn surface_point_at(
@@ -195,7 +195,7 @@ impl Corners {
         }
     }
 
-    /// Unit: m².
+    /// Returns the area. Unit: m².
     #[inline]
     fn area(&self) -> f32 {
         let [a, b, c] = self.positions;

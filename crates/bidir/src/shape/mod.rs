@@ -106,7 +106,7 @@ impl Shape {
         }
     }
 
-    /// Primitive `i` for the intersector.
+    /// Returns primitive `i` for the intersector.
     pub fn primitive(&self, i: usize) -> accel::Primitive {
         match self {
             Self::Mesh(mesh) => accel::Primitive::Triangle(mesh.triangle(i)),
@@ -147,7 +147,7 @@ impl Shape {
         }
     }
 
-    /// The same geometry of a shape of an object under `to_world`, in world space; `point` too is in
+    /// Returns the geometry of an object's shape under `to_world`, in world space; `point` too is in
     /// world space.
     #[inline]
     pub fn surface_point_at(
@@ -206,7 +206,7 @@ impl Shape {
         }
     }
 
-    /// Two corners of a box around it.
+    /// Returns two corners of a box around it.
     pub fn corners(&self) -> [Vec3; 2] {
         let bounds = (0..self.primitive_count()).map(|i| self.primitive(i).bounds());
         let all = bounds.fold(accel::Aabb::EMPTY, accel::Aabb::union);
@@ -327,7 +327,7 @@ impl Placement {
         }
     }
 
-    /// The same in the world, for a quadric of an object.
+    /// Returns the placement in the world, for a quadric of an object.
     #[inline]
     fn at(&self, to_world: &WorldFromObject) -> Self {
         Self::new(to_world.compose(&self.world_from_local))
@@ -347,7 +347,7 @@ impl Placement {
         self.local_from_world.matrix3.transpose() * local
     }
 
-    /// World area per local area at a point with unit local normal `n`: |det M|·|M⁻ᵀ n|.
+    /// Returns world area per local area at a point with unit local normal `n`: |det M|·|M⁻ᵀ n|.
     #[inline]
     fn area_scale(&self, n: Vec3) -> f32 {
         self.volume_scale * self.normal(n).length()

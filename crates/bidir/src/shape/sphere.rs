@@ -116,7 +116,7 @@ impl Sphere {
         self.area
     }
 
-    /// The same sphere in the world, for one of an object; its densities are still those of the object.
+    /// Returns the sphere of an object in the world, with the densities of the object.
     #[inline]
     pub(super) fn at(&self, to_world: &WorldFromObject) -> Self {
         Self {
@@ -143,7 +143,7 @@ impl Sphere {
             .surface_point(n * self.radius, n, self.orientation, uv)
     }
 
-    /// Along azimuth, and up from z_min.
+    /// Returns the derivatives along azimuth, and up from z_min.
     pub(super) fn differentials(&self, point: Vec3) -> Differentials {
         let local = self.placement.local_from_world.transform_point3(point);
         let n = local.normalize_or(Vec3::Z);

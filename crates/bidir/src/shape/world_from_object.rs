@@ -34,7 +34,7 @@ impl WorldFromObject {
             * self.sign()
     }
 
-    /// |det M|·M⁻ᵀ, up to the sign of the determinant.
+    /// Returns |det M|·M⁻ᵀ, up to the sign of the determinant.
     #[inline]
     fn cofactors(&self) -> DMat3 {
         let [x, y, z] = self.columns();
@@ -58,7 +58,7 @@ impl WorldFromObject {
         Aabb::around(&std::array::from_fn::<_, 8, _>(corner))
     }
 
-    /// |det M|: the volume in the world of what has volume 1 in the object.
+    /// Returns |det M|: world volume per object volume.
     #[inline]
     pub(crate) fn volume_scale(&self) -> f64 {
         self.0.matrix3.determinant().abs()

@@ -10,7 +10,7 @@ use std::ops::Mul;
 pub(crate) struct FourSpectra([Vec4; 4]);
 
 impl FourSpectra {
-    /// These four.
+    /// Packs four spectra.
     #[inline]
     pub(crate) fn of(spectra: [Spectrum; 4]) -> Self {
         Self(transpose(spectra.map(Spectrum::lanes)))
@@ -34,7 +34,7 @@ impl FourSpectra {
         self.all(|lanes| lanes.abs().cmple(Vec4::splat(limit)))
     }
 
-    /// Returns true of each of which `is` holds in every lane.
+    /// Returns for each spectrum whether `is` holds in every lane.
     #[inline]
     fn all(self, is: impl Fn(Vec4) -> BVec4A) -> BVec4A {
         let [a, b, c, d] = self.0.map(is);

@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 /// no other.
 pub type Clock = fn() -> Instant;
 
-/// A thread measures one of so many of its batches. A prime, so that no width of an image makes
+/// The batches of a thread per measured one. A prime, so that no width of an image makes
 /// the same columns be measured in every row.
 const MEASURED_EVERY: u32 = 7;
 
@@ -98,7 +98,7 @@ impl Stopwatch {
         }
     }
 
-    /// A batch of so many samples begins, and with it its first stage.
+    /// Begins a batch of `samples`, and its first stage.
     #[inline]
     pub(crate) fn begin_samples(&mut self, samples: usize) {
         self.begin();
@@ -107,7 +107,7 @@ impl Stopwatch {
         }
     }
 
-    /// The light subpaths of a batch begin, apart from its samples: as many are measured as batches are.
+    /// Begins the light subpaths of a batch, which are measured as often as batches of samples.
     #[inline]
     pub(crate) fn begin_light(&mut self) {
         self.begin();
@@ -124,7 +124,7 @@ impl Stopwatch {
         }
     }
 
-    /// `stage` ends, and the next begins.
+    /// Ends `stage`, and begins the next.
     #[inline]
     pub(crate) fn end(&mut self, stage: Stage) {
         if let (Some(clock), Some(last)) = (self.clock, self.last) {

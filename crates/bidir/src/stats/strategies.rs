@@ -97,7 +97,7 @@ impl<T: Copy + Default + PartialEq> StrategyTable<T> {
         self.rows.get(i).copied().unwrap_or_default()
     }
 
-    /// Every strategy of which something was counted, shorter paths first.
+    /// Returns every strategy of which something was counted, shorter paths first.
     pub fn rows(&self) -> impl Iterator<Item = (Strategy, T)> {
         let strategies = (1..).flat_map(|n| (0..n).map(move |s| Strategy::new(s, n - s)));
         strategies

@@ -25,7 +25,7 @@ impl<const N: usize> Image<N> {
         })
     }
 
-    /// The same with its smaller copies, which take a third of its memory.
+    /// Adds smaller copies of the image, which take a third of its memory.
     ///
     /// A texel of a copy is the mean of the texels below it, by the areas that it shares with them:
     /// every copy has the mean of the image.
@@ -48,7 +48,7 @@ impl<const N: usize> Image<N> {
         self.smaller.len()
     }
 
-    /// Copy number `level`; 0 is the image itself.
+    /// Returns copy `level`; 0 is the image itself.
     #[inline]
     pub fn copy(&self, level: usize) -> &Self {
         match level.checked_sub(1) {

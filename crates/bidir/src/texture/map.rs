@@ -29,7 +29,7 @@ pub enum Beyond {
 }
 
 impl Wrap {
-    /// The same beyond all borders.
+    /// Treats all borders alike.
     pub const fn all(beyond: Beyond) -> Self {
         Self::Axes([beyond; 2])
     }
@@ -50,9 +50,9 @@ pub enum ImageFilter {
 /// A change of values that were looked up.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Change {
-    /// They are multiplied.
+    /// Texels are multiplied by the scale.
     Scale(f32),
-    /// They are multiplied and taken from 1, but not below 0.
+    /// Texels are multiplied by the scale and subtracted from 1, but not below 0.
     ScaleAndInvert(f32),
 }
 

@@ -187,7 +187,7 @@ impl<T: Value> Texture<T> {
         }
     }
 
-    /// The same, outlined: most textures are constant.
+    /// Evaluates a texture that varies. Outlined: most textures are constant.
     #[inline(never)]
     fn eval_varying(&self, at: &TexturePoint) -> T {
         match self {

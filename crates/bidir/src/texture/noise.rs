@@ -104,7 +104,7 @@ impl Octaves {
     }
 }
 
-/// From 0 below 0.3 to 1 above 0.7.
+/// Rises smoothly from 0 below 0.3 to 1 above 0.7.
 #[inline]
 fn smoothstep(x: f32) -> f32 {
     let t = ((x - 0.3) / 0.4).clamp(0.0, 1.0);
@@ -150,7 +150,7 @@ pub enum NoiseKind {
 pub struct Noise {
     /// The function made of it.
     pub kind: NoiseKind,
-    /// The space it is defined in.
+    /// The space in which it is defined.
     pub space: TextureSpace,
 }
 
@@ -183,7 +183,7 @@ pub struct Marble {
     pub scale: f32,
     /// How strong the noise is.
     pub variation: f32,
-    /// The space it is defined in.
+    /// The space in which it is defined.
     pub space: TextureSpace,
 }
 

@@ -23,7 +23,7 @@ pub struct TexturePoint {
 pub enum Handedness {
     /// ∂p/∂u, ∂p/∂v and the normal are right-handed.
     Right,
-    /// They are left-handed: the parameters are mirrored.
+    /// Left-handed: the parameters are mirrored.
     Left,
 }
 
@@ -94,7 +94,7 @@ impl TexturePoint {
         }
     }
 
-    /// The same point where a pixel is `width` wide, with the sides of its parameters.
+    /// Returns the point where a pixel is `width` wide, with the sides of its parameters.
     #[inline]
     #[must_use]
     pub fn seen(self, width: f32, differentials: &Differentials) -> Self {

@@ -91,7 +91,7 @@ impl<const N: usize> Curve<N> {
         mean(64, |cos| self.at(cos))
     }
 
-    /// This `scale` times.
+    /// Multiplies the values by `scale`.
     #[must_use]
     pub(super) fn scaled(self, scale: f32) -> Self {
         Self {
@@ -107,7 +107,7 @@ impl<const N: usize> Curve<N> {
         Self::of_series(std::array::from_fn(|i| a[i] + factor * b[i]))
     }
 
-    /// Between two curves.
+    /// Interpolates between two curves.
     #[must_use]
     pub(super) fn lerp(self, other: Self, t: f32) -> Self {
         if t > 0.0 {

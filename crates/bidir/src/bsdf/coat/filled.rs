@@ -17,7 +17,7 @@ use crate::sampler::{Dimension, Domain, Purpose, SampleStream, Sampler, SamplerK
 
 /// Walks for each value of a curve, and from the base.
 const WALKS: u64 = 1 << 13;
-/// The most events of a walk: few have as many.
+/// The most events of a walk; few reach it.
 const MOST: usize = 256;
 /// Numbers of scattering events that are counted apart; the last stands for all larger ones.
 const ORDERS: usize = 32;
@@ -195,7 +195,7 @@ impl Slab {
         sums
     }
 
-    /// Light that came through the interface along `w`, after its first scattering within.
+    /// Returns light that came through the interface along `w`, after its first scattering event.
     fn scattered_once(&self, w: Vec3, part: f32, stream: &SampleStream) -> Light {
         let least = libm::expf(-self.depth / w.z.abs());
         let u = stream.get_1d(Dimension::at(0, Purpose::Roulette));

@@ -134,7 +134,7 @@ impl Layer {
         self.interface.eta
     }
 
-    /// Between two layers of one index.
+    /// Interpolates between two layers of one index.
     #[must_use]
     pub fn lerp(&self, other: &Self, t: f32) -> Self {
         let mix = |a: f32, b: f32| a + (b - a) * t;

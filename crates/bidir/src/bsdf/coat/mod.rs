@@ -90,7 +90,7 @@ impl<const R: usize, const L: usize> Coat<R, L> {
         self.ggx.is_smooth()
     }
 
-    /// About the part of light along `w` that the interface reflects; exact where it is smooth.
+    /// Returns the approximate reflectance of the interface for light along `w`; exact where it is smooth.
     #[inline]
     pub(super) fn reflectance(&self, w: Vec3) -> f32 {
         fresnel::dielectric(spread_cosine(w.z, self.grazing).max(1e-7), self.eta)
@@ -102,13 +102,13 @@ impl<const R: usize, const L: usize> Coat<R, L> {
         self.interface(w).through
     }
 
-    /// Reflectance and transmittance for light along `w`.
+    /// Returns reflectance and transmittance for light along `w`.
     #[inline]
     pub(super) fn interface(&self, w: Vec3) -> Seen {
         self.interfaces([w; 2])[0]
     }
 
-    /// Reflectance and transmittance for light along each of two directions.
+    /// Returns reflectance and transmittance for light along each of two directions.
     #[inline]
     pub(super) fn interfaces(&self, w: [Vec3; 2]) -> [Seen; 2] {
         let reflected = w.map(|w| self.reflectance(w));

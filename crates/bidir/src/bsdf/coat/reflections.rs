@@ -21,7 +21,7 @@ use crate::spectrum::Spectrum;
 const WALKS: u64 = 1 << 12;
 /// The part of light that walks are not worth.
 const FAINT: f32 = 3e-4;
-/// The most reflections of a walk: few need as many.
+/// The most reflections of a walk; few reach it.
 const MOST: usize = 100;
 /// Orders of reflection that are counted apart; the last holds all higher ones.
 const ORDERS: usize = 32;
@@ -80,7 +80,7 @@ struct Light {
 /// The parts of the light from one direction that leave.
 #[derive(Clone, Copy)]
 struct Leaving {
-    /// By the number of reflections, from 1.
+    /// Sums by the number of reflections, from 1.
     parts: [f32; ORDERS],
     /// Of `parts[0]`: the part that absorption leaves, and with the weight (1 - cosθ)⁵.
     once: [f32; 2],
@@ -152,7 +152,7 @@ impl Reflections {
         }
     }
 
-    /// Between two tables of one index.
+    /// Interpolates between two tables of one index.
     #[must_use]
     pub fn lerp(&self, other: &Self, t: f32) -> Self {
         let mix = |a: f32, b: f32| a + (b - a) * t;
@@ -261,7 +261,7 @@ impl Surfaces {
         }
     }
 
-    /// A walk from outside: `leaves` gets what leaves after each reflection at the metal.
+    /// Walks from outside; `leaves` gets the light that leaves after each reflection at the metal.
     fn walk(&self, wo: Vec3, stream: &SampleStream, mut leaves: impl FnMut(usize, Light)) {
         let at = |step| stream.get_2d(Dimension::at(step, Purpose::LightDirection));
         let Some((w, part)) = self.coat.split(wo, at(0)).refracted else {

@@ -102,7 +102,7 @@ pub(super) fn mean_of_mirrors(ggx: Ggx) -> f32 {
     Spread::new(ggx).mean(azimuths(ggx), |w| of_mirrors(ggx, w))
 }
 
-/// What leaves facets that reflect `mean` of the light on average, of the light that one turn leaves to others:
+/// Returns the part of the light lost by one facet that leaves after several with the mean reflectance `mean`:
 /// F̄² Ē / (1 - F̄ (1 - Ē)), Ē = 1 - k̄ \[Kulla17\].
 #[inline]
 pub(super) fn remaining(mean: Spectrum, lost: f32) -> Spectrum {

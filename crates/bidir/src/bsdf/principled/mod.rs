@@ -176,7 +176,7 @@ impl Principled {
         (1.0 - f0 - (f90 - f0) * seen.weight).clamp(0.0, 1.0)
     }
 
-    /// Returns the part of light that facets of the transparent part reflect; `cos` is positive outside.
+    /// Returns the reflectance of facets of the transparent part; `cos` is positive outside.
     #[inline]
     fn clear_reflectance(&self, cos: f32) -> f32 {
         let cos = if self.thickness == Thickness::Solid {
@@ -227,7 +227,7 @@ impl Principled {
         (r + t > 0.0).then(|| r / (r + t))
     }
 
-    /// About the part of light along `w` that each lobe scatters.
+    /// Returns the approximate albedo of each lobe for light along `w`.
     #[inline]
     fn shares(&self, w: Vec3, seen: &Layers) -> [Spectrum; 4] {
         let (_, crossing) = self.facet(w.z);

@@ -22,7 +22,7 @@ struct Lost {
 }
 
 impl Principled {
-    /// False where light that facets send to others is lost.
+    /// Returns false where light between facets is lost.
     #[inline]
     pub(super) fn is_multiple(&self) -> bool {
         self.lost > 0.0 || !self.lost_through.is_none()
@@ -44,7 +44,7 @@ impl Principled {
         }
     }
 
-    /// What opaque facets reflect of light that one of them loses.
+    /// Returns the part of light lost by one opaque facet that others reflect.
     #[inline]
     fn opaque_remaining(&self) -> Spectrum {
         let mean = |f0: Spectrum, f90: f32| f0.map(|f0| f0 + (f90 - f0) / 21.0);

@@ -163,7 +163,7 @@ impl Principled {
         .with_lost_through()
     }
 
-    /// The same with what the facets of its transparent part lose by its index.
+    /// Adds the light that facets of the transparent part lose at this index.
     fn with_lost_through(self) -> Self {
         let is_solid =
             self.glass > 0.0 && self.thickness == Thickness::Solid && !self.ggx.is_smooth();

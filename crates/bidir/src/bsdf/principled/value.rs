@@ -25,7 +25,7 @@ impl Principled {
         self.eval_layers([[wo; 2], [wi; 2]], [1.0; 2], mode)
     }
 
-    /// The same for directions that base and coat see in frames of their own, f of each times its ratio.
+    /// Evaluates base and coat for directions in frames of their own, f of each times its ratio.
     #[inline]
     pub(crate) fn eval_layers(
         &self,
@@ -116,7 +116,7 @@ impl Principled {
         }
     }
 
-    /// Reflection by the base's facets, without the layers above.
+    /// Evaluates reflection by the base's facets, without the layers above.
     #[inline]
     fn reflecting_facets(&self, [wo, wi]: [Vec3; 2]) -> LobeValue {
         if self.ggx.is_smooth() {
@@ -131,7 +131,7 @@ impl Principled {
         }
     }
 
-    /// Transmission by the base's facets, without the layers above.
+    /// Evaluates transmission by the base's facets, without the layers above.
     #[inline]
     fn crossing_facets(&self, [wo, wi]: [Vec3; 2], mode: TransportMode) -> LobeValue {
         if self.glass <= 0.0 || self.ggx.is_smooth() {

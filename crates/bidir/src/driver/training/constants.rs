@@ -49,7 +49,7 @@ pub(super) const CONNECTION_RAY: f64 = 0.7;
 pub(super) const LIGHT_POINT: f64 = 1.2;
 /// The cost of a candidate that is a connection with a light walk.
 pub(super) const CANDIDATE: f64 = 0.7;
-/// The same of diffuse vertices, of which four are evaluated at a time.
+/// The cost of a candidate of diffuse vertices, four of which are evaluated at a time.
 pub(super) const DIFFUSE_CANDIDATE: f64 = 0.12;
 /// The cost of a light image, with its ray.
 pub(super) const LIGHT_IMAGE: f64 = 1.0;

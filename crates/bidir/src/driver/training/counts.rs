@@ -97,7 +97,7 @@ pub(super) struct Draws {
 }
 
 impl Draws {
-    /// Returns the counts of `settings` in a film of so many pixels.
+    /// Returns the counts of `settings` in a film of this number of `pixels`.
     fn new(settings: &LvcSettings, pixels: u64) -> Self {
         let group = group_size(pixels);
         let of_block = BLOCK_PIXELS * group.min(pixels) as f64 / pixels as f64;

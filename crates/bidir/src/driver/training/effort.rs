@@ -24,7 +24,7 @@ impl Effort<'_> {
     /// The number of samples that training needs.
     pub const WHOLE: Effort<'static> = Effort::at_most(u64::MAX);
 
-    /// No more than so many samples.
+    /// Limits the number of samples.
     pub const fn at_most(samples: u64) -> Effort<'static> {
         Effort {
             samples,

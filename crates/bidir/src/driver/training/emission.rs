@@ -65,7 +65,7 @@ pub(super) fn gain(power: &LightChoice, learned: Option<&LightChoice>, light: u3
     })
 }
 
-/// For each light the sum of the squares of its connections, each divided by the mean square of its cell
+/// Returns for each light the sum of the squares of its connections, each divided by the mean square of its cell
 /// of camera vertices.
 fn relative_moments(lights: usize, found: &[Connection]) -> Vec<f64> {
     let walked = || (found.iter()).filter_map(|found| Some((found, found.light? as usize)));

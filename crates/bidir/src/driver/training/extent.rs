@@ -14,7 +14,7 @@
 use super::constants::{ENOUGH_SAMPLES, FIRST_SAMPLES, MOST_OF_PIXEL, MOST_SAMPLES, USUAL_WORK};
 use crate::stats::Stats;
 
-/// Returns the number of samples for so many pixels where a sample makes so much work: a power of two. Unit of work: as
+/// Returns the number of samples by the pixels and the work of a sample: a power of two. Unit of work: as
 /// [`work`].
 pub(super) fn samples(pixels: u64, work: f64) -> u64 {
     let ratio = USUAL_WORK / work.max(USUAL_WORK);

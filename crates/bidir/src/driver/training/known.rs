@@ -16,7 +16,7 @@ pub(super) struct Judge<'a> {
     input: TrainingInput<'a>,
     survey: &'a Survey,
     nothing: Vec<Known>,
-    /// What `lvc` learns. None: nothing.
+    /// The knowledge that `lvc` learns. None: nothing.
     learned: Option<Vec<Known>>,
     /// κ.
     light_vertices: f64,
@@ -62,7 +62,7 @@ impl<'a> Judge<'a> {
 }
 
 impl Survey {
-    /// What `lessons` teach of each term, by numbers of samples as in `counts`.
+    /// Returns what `lessons` say of each term, where the numbers of samples are `counts`.
     pub(super) fn known(
         &self,
         film: &FilmSettings,

@@ -37,7 +37,7 @@ impl Survey {
         traced.chain(possible).collect()
     }
 
-    /// Sums without connections, with the light vertices of each cell where a light begins `gain` times as many
+    /// Returns sums without connections: the light vertices of each cell if a light begins `gain` times as many
     /// subpaths as here.
     fn pair_sums(&self, cells: &Cells, gain: impl Fn(u32) -> f64) -> PairSums {
         let mut light_vertices = vec![0.0; Cells::COUNT];
@@ -54,7 +54,7 @@ pub(super) struct Lessons {
     pub(super) sums: PairSums,
     power: LightChoice,
     pub(super) light_start: Option<LightChoice>,
-    /// By the cell of camera vertices Σ_c √(κ_c Σ X²).
+    /// Σ_c √(κ_c Σ X²) for each cell of camera vertices.
     roots: Vec<f64>,
     /// κ.
     light_vertices: f64,
@@ -116,7 +116,7 @@ impl Lessons {
         self.light_vertices
     }
 
-    /// Returns how many times as many light subpaths begin on a light.
+    /// Returns the factor by which more light subpaths begin on a light.
     pub(super) fn gain(&self, light: u32) -> f64 {
         emission::gain(&self.power, self.light_start.as_ref(), light)
     }
@@ -126,7 +126,8 @@ impl Lessons {
         self.factor_with(cells, [0.0; 2])
     }
 
-    /// The same without what a connection taught, if `more` light vertices of each light subpath were in its cell.
+    /// Returns the factor without what a connection taught, as if `more` light vertices of each light subpath were in
+    /// its cell.
     pub(super) fn factor_without(&self, connection: &Connection, more: f64) -> f64 {
         let Evidence::Square(square) = connection.evidence else {
             return self.factor(connection.cells);

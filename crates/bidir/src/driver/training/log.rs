@@ -26,7 +26,7 @@ pub(super) struct Possible {
     pub(super) strategy: Strategy,
     /// The number of the path's term.
     pub(super) term: u32,
-    /// Its part of the survey's D.
+    /// n_j p_j / D in the survey.
     pub(super) part: f32,
 }
 

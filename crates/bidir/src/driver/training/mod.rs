@@ -111,7 +111,7 @@ impl Settings {
 }
 
 impl Training {
-    /// Training that has learned nothing yet.
+    /// Returns training that has learned nothing yet.
     fn new(survey: &Survey) -> Self {
         Self {
             mean_luminance: (survey.luminance / survey.samples()) as f32,

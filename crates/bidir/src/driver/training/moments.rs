@@ -58,9 +58,9 @@ pub(super) struct RelativeTerm {
 /// The variance of a sample.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Variance {
-    /// Of pixels.
+    /// The variance of pixels.
     pub(super) pixels: f64,
-    /// Of the means of blocks of 16 x 16 pixels, times their pixels: more where neighbours share light subpaths.
+    /// The variance of the means of blocks of 16 x 16 pixels, times their pixels: more where neighbours share light subpaths.
     pub(super) blocks: f64,
 }
 
@@ -335,7 +335,7 @@ mod tests {
         }
     }
 
-    /// What they do not divide is the variance of the camera subpath. Each is drawn from a part of
+    /// They do not divide the variance of the camera subpath. Each is drawn from a part of
     /// the lights of its own, which gains nothing with one lamp.
     #[test]
     fn light_points_divide_the_variance_of_direct_light() {

@@ -127,7 +127,7 @@ impl Plan {
         best
     }
 
-    /// The same but for the settings that are not left open.
+    /// Returns the plan with the settings that are not left open.
     pub(super) fn keeping(mut self, settings: &Settings) -> Self {
         if !settings.open.roulette {
             self.roulette = settings.path.roulette;

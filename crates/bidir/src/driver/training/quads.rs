@@ -53,9 +53,9 @@ fn products(a: &[f64; DEPTHS], b: &[f64; DEPTHS], counts: [f64; 2]) -> f64 {
 /// The values of a sample.
 #[derive(Clone, Copy, Debug, Default)]
 struct Sums {
-    /// By the surfaces that may end the walk in the survey alone.
+    /// Values by the number of surfaces that may end the walk in the survey alone.
     reached: [f64; STARTS],
-    /// ρ, likewise; 0 if no term has as many.
+    /// ρ, likewise; 0 if no term has this number.
     longer: [f64; STARTS],
     light_points: [f64; DEPTHS],
     /// The random number that chose the light of the first of them.
@@ -112,7 +112,7 @@ impl Sums {
 pub(super) struct Quad([Sums; 4]);
 
 impl Quad {
-    /// Four samples without terms, whose first light points chose their lights by these random numbers.
+    /// Makes four samples without terms, whose first light points chose their lights by these random numbers.
     pub(super) fn new(light_numbers: [f32; 4]) -> Self {
         Self(light_numbers.map(|light_number| Sums {
             light_number,
@@ -178,7 +178,7 @@ pub(super) struct QuadVariance {
     pub(super) mean_squares: f64,
     /// Σ Var_A E[T | W].
     pub(super) spread: f64,
-    /// Of that, what two camera subpaths have in common.
+    /// The part of `spread` that two camera subpaths have in common.
     common: f64,
 }
 

@@ -17,7 +17,7 @@ pub(super) struct Expected {
     pub(super) score: f64,
     /// C v.
     pub(super) value: f64,
-    /// What a square of the block counts.
+    /// The factor of squares of the block.
     pub(super) scale: f64,
 }
 

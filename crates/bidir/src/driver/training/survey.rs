@@ -29,7 +29,7 @@ pub(super) struct Survey {
     /// The contributions to the image.
     pub(super) terms: Vec<SurveyTerm>,
     pub(super) work: WorkCounts,
-    /// Of each sample, the random number that chooses the light of its first light point.
+    /// For each sample, the random number that chooses the light of its first light point.
     pub(super) light_numbers: Vec<f32>,
     /// Vertices and connections, to learn from.
     pub(super) log: ConnectionLog,

@@ -79,14 +79,14 @@ pub(super) struct Known {
     pub(super) squares: [f64; 2],
     /// Σ n_j p_j (e - 1) / D, where a connection has e times the second moment, as light vertices of its cell are few.
     pub(super) excess: [f64; 2],
-    /// How many times as many samples its own connection has.
+    /// The factor by which its own connection has more samples.
     pub(super) rate: f64,
     /// √V̂.
     pub(super) root_visibility: f32,
 }
 
 impl Known {
-    /// Where nothing is learned.
+    /// Returns the knowledge where nothing is learned.
     pub(super) fn nothing(term: &SurveyTerm) -> Self {
         Self {
             shares: term.shares,

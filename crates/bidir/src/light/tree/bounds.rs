@@ -71,7 +71,7 @@ impl Cone {
         }
     }
 
-    /// About where the light goes to; zero where no direction stands out.
+    /// Returns the approximate mean direction of light; zero where no direction stands out.
     pub(super) fn mean(&self) -> Vec3 {
         if self.is_mirrored || self.spread >= PI {
             Vec3::ZERO
@@ -98,7 +98,7 @@ pub(in crate::light) struct EmitterBounds {
 }
 
 impl EmitterBounds {
-    /// Of what does not emit.
+    /// Bounds of nothing that emits.
     pub(in crate::light) const NOTHING: Self = Self {
         bounds: Aabb::EMPTY,
         cone: Cone::EVERYWHERE,

@@ -201,7 +201,7 @@ fn best_bin(items: &[Item], axis: &Axis) -> Option<(f32, usize)> {
 struct Sum {
     bounds: Aabb,
     intensity: f32,
-    /// Of the mean directions, weighted by intensity.
+    /// The sum of the mean directions, weighted by intensity.
     directions: Vec3,
 }
 

@@ -6,7 +6,7 @@ use super::node::{Child, WIDTH};
 use crate::math::ONE_MINUS_EPSILON;
 use std::ops::Range;
 
-/// The path of an emitter that is not in the tree: no path ends with so many bits.
+/// The path of an emitter that is not in the tree: no path is that long.
 const NOWHERE: u64 = u64::MAX;
 
 /// A tree over emitters that have numbers.

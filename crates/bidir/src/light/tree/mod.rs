@@ -99,7 +99,7 @@ pub struct LightTree {
     tree: Hierarchy,
 }
 
-/// Returns a, where so many emitters are in the tree.
+/// Returns a, for this number of emitters in the tree.
 fn power_part(in_tree: usize, beside_infinity: bool) -> f32 {
     match (in_tree, beside_infinity) {
         // There is nothing to choose among.
@@ -153,7 +153,7 @@ impl LightTree {
         Some(self.sample_among(&receiver(), u()))
     }
 
-    /// The same for several emitters. Outlined: keeps the path with one emitter small.
+    /// Draws among several emitters. Outlined: keeps the path with one emitter small.
     #[inline(never)]
     fn sample_among(&self, receiver: &Receiver, u: f32) -> ChosenEmitter {
         let a = self.power_part;

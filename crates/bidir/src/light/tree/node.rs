@@ -87,7 +87,7 @@ impl Angle {
         Self { cos, sin }
     }
 
-    /// This angle less `other`; 0 where nothing is left.
+    /// Subtracts `other`; 0 where nothing is left.
     #[inline]
     fn less(&self, other: &Self) -> Self {
         let is_within = self.cos.cmpgt(other.cos);
