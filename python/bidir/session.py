@@ -193,7 +193,6 @@ class Session:
         training = None if training is None else check.count("training", training)
         # The time of a render, of which training takes at most a tenth, and the time until its end.
         self._native = _bidir.Session(self.scene._native, native, threads, training, _limits)
-        self._stopping = "fixed"
 
     def step(self, passes: int = 1) -> None:
         """Render the next passes, each with one sample per pixel.
@@ -213,7 +212,7 @@ class Session:
 
     def film(self) -> Film:
         """Return the film of all passes so far."""
-        return Film(self._native.film(self._stopping))
+        return Film(self._native.film())
 
     def take_film(self) -> Film:
         """Return the film and continue with an empty one."""
@@ -335,24 +334,19 @@ def render(
     rendered = 0
     with Reporter(progress, limit, session.next_pass) as reporter:
         try:
-            while not (end := session._native.reached(limits, rendered, clock.monotonic() - begin)):
-                if not session._native.step(left()):
-                    end = "time"
-                    break
+            while not session._native.reached(limits) and session._native.step(left()):
                 rendered += 1
                 reporter.advance(1)
                 keeper.now_and_then()
         except KeyboardInterrupt as error:
-            session._stopping = "time"
             keeper.save()
             image = session.snapshot() if session.passes else None
             done = session.next_pass
             raise RenderInterruptedError(f"stopped after {done} passes", image) from error
-    if end == "time" and rendered == 0:
+    if rendered == 0 and not session._native.reached(limits):
         raise RenderError(
             f"no pass was complete after {time:g} s: give it more time, or make the image smaller"
         )
-    session._stopping = end
     keeper.save()
     return session.snapshot()
 

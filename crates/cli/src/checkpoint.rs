@@ -4,11 +4,9 @@ use crate::args::LongArgs;
 use crate::exit::{Exit, Failure};
 use crate::film;
 use crate::lock::{self, FilmLock};
-use crate::scene_io::{self, FilmFile, FilmHeader};
-use bidir::film::{Film, PassSet};
-use formats::film::Render;
+use crate::scene_io::{self, FilmFile};
+use formats::film::{OpenError, Render};
 use std::ffi::OsStr;
-use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -16,100 +14,83 @@ use std::time::{Duration, Instant};
 #[derive(Debug)]
 pub(crate) struct Checkpoint {
     /// The name given by --checkpoint.
-    name: PathBuf,
+    pub(crate) name: PathBuf,
     /// The file itself, if the name is a link.
     path: PathBuf,
     every: Duration,
     written: Instant,
     /// True if the file exists and can be read.
     is_whole: bool,
-    /// The film to continue from, until the session takes it.
-    film: Option<FilmFile>,
     _lock: FilmLock,
 }
 
 impl Checkpoint {
-    /// Opens and locks the film file that the flags name, if any. It needs no scene, so that errors come
-    /// before one is read.
+    /// Opens and locks the film file that the flags name, if any, and returns it with the film to continue from, if
+    /// any. It needs no scene, so that errors come before one is read.
     ///
     /// Errors: another process has locked the file; it exists, without --resume or --restart; it is damaged.
-    pub(crate) fn open(args: &LongArgs) -> Result<Option<Self>, Failure> {
+    pub(crate) fn open(args: &LongArgs) -> Result<(Option<Self>, Option<FilmFile>), Failure> {
         let Some(name) = &args.checkpoint else {
-            return Ok(None);
+            return Ok((None, None));
         };
         formats::file::check_replaceable(name)?;
         let path = scene_io::target_of(name);
         let lock = FilmLock::take(&path)?;
         check_existing(&path, args)?;
-        let film = if path.exists() && args.resume {
-            Some(load(&path)?)
-        } else {
-            None
-        };
-        Ok(Some(Self {
+        let is_resumed = path.exists() && args.resume;
+        let film = is_resumed.then(|| load(&path)).transpose()?;
+        let checkpoint = Self {
             // A damaged file must not replace the intact FILE.previous.
             is_whole: film.is_some() || scene_io::read_film(&path).is_ok(),
             name: name.clone(),
             path,
             every: args.checkpoint_every.0,
             written: Instant::now(),
-            film,
             _lock: lock,
-        }))
-    }
-
-    /// Returns true if the render continues from passes in the file.
-    pub(crate) fn is_resumed(&self) -> bool {
-        self.film.is_some()
-    }
-
-    /// Returns the header of the film to continue from. None: the render starts anew.
-    pub(crate) fn earlier(&self) -> Option<&FilmHeader> {
-        self.film.as_ref().map(|file| &file.header)
-    }
-
-    /// Checks before training that the film to continue from, if any, belongs to the render of `header` and
-    /// has only passes in `requested`.
-    pub(crate) fn check(&self, header: &FilmHeader, requested: Range<u64>) -> Result<(), Failure> {
-        let Some(file) = &self.film else {
-            return Ok(());
         };
-        self.check_render(header, &formats::film::untrained(&file.header))?;
-        let others = file.header.passes.difference(&PassSet::from(requested));
-        if others.is_empty() {
+        Ok((Some(checkpoint), film))
+    }
+
+    /// Returns true if the interval between checkpoints has passed.
+    pub(crate) fn is_due(&self) -> bool {
+        self.written.elapsed() >= self.every
+    }
+
+    /// Writes the film of a render, unless it is unchanged, and keeps an intact earlier file as FILE.previous.
+    pub(crate) fn write(&mut self, render: &Render) -> Result<(), Failure> {
+        if render.is_unchanged() {
             return Ok(());
         }
-        let name = self.path.display();
-        let message = format!("{name} has the passes {others}, which this render does not include");
-        let hint = "render at least those passes, or write to another file";
-        Err(Failure::new(Exit::FilmMismatch, message).with_hint(hint))
-    }
-
-    /// Checks that `in_file` is a header of the same render as `expected`.
-    fn check_render(&self, expected: &FilmHeader, in_file: &FilmHeader) -> Result<(), Failure> {
-        let places = ["in this render", "in the film"];
-        let Some(difference) = expected.difference_between(in_file, places) else {
-            return Ok(());
-        };
-        let name = self.path.display();
-        let message = format!("{name} is the film of another render: {difference}");
-        let hint = "use the earlier settings, or start over with --restart";
-        Err(Failure::new(Exit::FilmMismatch, message).with_hint(hint))
-    }
-
-    /// Writes the film, and keeps an intact earlier file as FILE.previous.
-    fn write(&mut self, header: &FilmHeader, film: &Film) -> Result<(), Failure> {
         // Set before writing, so that a full disk is not tried again after every pass.
         self.written = Instant::now();
+        let (header, film) = (render.header(), render.session.film());
         if self.is_whole {
             let previous = lock::previous(&self.path);
-            formats::film::write_keeping(&self.path, &previous, header, film)?;
+            formats::film::write_keeping(&self.path, &previous, &header, film)?;
         } else {
-            formats::film::write(&self.path, header, film)?;
+            formats::film::write(&self.path, &header, film)?;
             self.is_whole = true;
         }
         Ok(())
     }
+}
+
+/// Returns the failure to continue from the film that the flags name.
+pub(crate) fn mismatch(args: &LongArgs, error: &OpenError) -> Failure {
+    let path = args.checkpoint.as_deref().map(scene_io::target_of);
+    let path = path.unwrap_or_default();
+    let name = path.display();
+    let (message, hint) = match error {
+        OpenError::Beyond(passes) => (
+            format!("{name} has the passes {passes}, which this render does not include"),
+            "render at least those passes, or write to another file",
+        ),
+        error => (
+            format!("{name} is {error}"),
+            "use the earlier settings, or start over with --restart",
+        ),
+    };
+    Failure::new(Exit::FilmMismatch, message).with_hint(hint)
 }
 
 /// Returns true if `folder` or one below it has finished passes: a film file, or records of an experiment
@@ -156,51 +137,6 @@ fn check_existing(path: &Path, args: &LongArgs) -> Result<(), Failure> {
         return failure(message, hint.into());
     }
     Ok(())
-}
-
-/// Writes the film file of a running render, if it has one.
-pub(crate) struct CheckpointWriter(Option<Checkpoint>);
-
-impl CheckpointWriter {
-    /// Adds the film to continue from to `render`.
-    ///
-    /// Errors: the film belongs to another render.
-    pub(crate) fn new(
-        mut checkpoint: Option<Checkpoint>,
-        render: &mut Render<'_>,
-    ) -> Result<Self, Failure> {
-        if let Some(checkpoint) = &mut checkpoint
-            && let Some(file) = checkpoint.film.take()
-        {
-            checkpoint.check_render(render.empty(), &file.header)?;
-            let added = render.add(file);
-            added.map_err(|error| Failure::new(Exit::FilmMismatch, error.to_string()))?;
-        }
-        Ok(Self(checkpoint))
-    }
-
-    /// Returns the name of the film file as given by --checkpoint. None: there is none.
-    pub(crate) fn path(&self) -> Option<&Path> {
-        Some(&self.0.as_ref()?.name)
-    }
-
-    /// Returns true if the interval between checkpoints has passed.
-    pub(crate) fn is_due(&self) -> bool {
-        let is_due = |file: &Checkpoint| file.written.elapsed() >= file.every;
-        self.0.as_ref().is_some_and(is_due)
-    }
-
-    /// Writes the film of `render` with this header, unless it is unchanged.
-    pub(crate) fn write(
-        &mut self,
-        render: &Render<'_>,
-        header: &FilmHeader,
-    ) -> Result<(), Failure> {
-        match &mut self.0 {
-            Some(file) if !render.is_unchanged() => file.write(header, render.session.film()),
-            _ => Ok(()),
-        }
-    }
 }
 
 /// Reads the film file to continue from. The hint of a failure names the previous version.

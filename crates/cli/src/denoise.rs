@@ -7,7 +7,7 @@ use crate::args::{DenoiseArgs, ThreadsArgs};
 use crate::console::say;
 use crate::exit::{Exit, Failure};
 use crate::output;
-use crate::scene_io::{Developed, IMAGES, ImageFormat, Layers};
+use crate::scene_io::{Developed, Format, IMAGES, Layers};
 use bidir::driver::Threads;
 use bidir::film::LayerImage;
 use denoise::{DenoiseError, Denoiser, Input};
@@ -120,7 +120,7 @@ pub(crate) fn run(args: &DenoiseArgs) -> Result<Exit, Failure> {
     let normal = normal.as_ref().map(|(_, normal)| normal.as_slice());
     let clean = filter.apply(layers.size(), &noisy, albedo.as_deref(), normal)?;
     let by = filter.description(&names);
-    if format == ImageFormat::Png {
+    if format == Format::Png {
         formats::image::write_png(written, layers.size(), &clean)?;
     } else {
         layers.set_triples(COLOR, &clean)?;

@@ -66,7 +66,7 @@ fn command(args: &ExperimentArgs) -> String {
 /// Says how to continue if a render finished, and returns the exit.
 fn stopped(args: &ExperimentArgs, signals: &Signals) -> Exit {
     let (text, exit) = if !has_passes(&args.folder()) {
-        let exit = signals.exit().unwrap_or(Exit::Interrupted);
+        let exit = signals.ended();
         ("stopped before the first pass", exit)
     } else if args.restart {
         let text = "stopped: run the same command without --restart to continue";

@@ -19,7 +19,7 @@ use crate::args::{FarmArgs, FarmCommand};
 use crate::console::print;
 use crate::exit::{Exit, Failure};
 use crate::output::default_image;
-use crate::scene_io::{self, ImageFormat};
+use crate::scene_io::{self, Format};
 use formats::is_obeyed;
 use std::path::{Path, PathBuf};
 
@@ -41,7 +41,7 @@ pub(crate) fn run(command: &FarmCommand) -> Result<Exit, Failure> {
     }
     let default = || default_image(Path::new(&args.scene), None);
     let image = args.output.as_ref().map_or_else(default, PathBuf::from);
-    scene_io::image_format(&image, &[ImageFormat::Exr])?;
+    scene_io::image_format(&image, &[Format::Exr])?;
     print(&filled(
         template,
         args,

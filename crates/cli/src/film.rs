@@ -7,6 +7,7 @@ use crate::lock::FilmLock;
 use crate::output;
 use crate::scene_io::{self, Developed, FilmFile, FilmHeader, IMAGES};
 use bidir::film::PassSet;
+use formats::film::OpenError;
 use formats::printable;
 use serde_json::json;
 use std::path::{Path, PathBuf};
@@ -74,7 +75,7 @@ fn write_image(
     film: &bidir::film::Film,
 ) -> Result<(), Failure> {
     let (developed, metadata) = (Developed::new(film), formats::film::metadata(header));
-    scene_io::write_picture(output, film.settings(), &developed, &metadata)
+    Ok(developed.write(output, film.settings(), &metadata)?)
 }
 
 /// Reads every file to its end, which compares its checksums.
@@ -153,7 +154,11 @@ fn merged(args: &MergeArgs) -> Result<Merged, Failure> {
             known += 1;
             continue;
         }
-        add(&mut all, &film).map_err(|reason| {
+        all.merge(&film).map_err(|error| {
+            let reason = match error {
+                OpenError::OtherRender(difference) => difference,
+                error => error.to_string(),
+            };
             let [file, first] = [file, first].map(|file| file.display());
             let message = format!("{file}: cannot be merged with {first}: {reason}");
             Failure::new(Exit::FilmMismatch, message)
@@ -218,19 +223,6 @@ fn check_kept(output: &Path, all: &FilmHeader) -> Result<(), Failure> {
     let message = format!("{name} has the passes {lost}, which would be lost");
     let hint = "name another file with --output, or list this one among the files";
     refuse(message, hint)
-}
-
-/// Adds `other` to `all`. Errors: the reason why they cannot be added.
-fn add(all: &mut FilmFile, other: &FilmFile) -> Result<(), String> {
-    if let Some(difference) = other.header.difference(&all.header) {
-        return Err(difference);
-    }
-    all.film
-        .merge(&other.film)
-        .map_err(|error| error.to_string())?;
-    all.header = all.header.joined(&other.header);
-    all.header.passes = all.film.passes().clone();
-    Ok(())
 }
 
 /// Returns the passes of all files. Reports files that cannot be read, which have none.

@@ -3,7 +3,7 @@
 use crate::args::{InfoArgs, SceneArgs};
 use crate::console::{Console, print, print_json};
 use crate::exit::{Exit, Failure};
-use crate::scene_io::{self, LoadedScene};
+use crate::scene_io::{self, Loaded};
 use bidir::analysis::blind_spots;
 use bidir::film::{Film, Layers};
 use bidir::integrator::IntegratorKind;
@@ -26,9 +26,9 @@ pub(crate) fn run(args: &InfoArgs, console: Console) -> Result<Exit, Failure> {
         ..args.scene.clone()
     };
     let loaded = scene_io::load(&scene, None)?;
-    let info = contents(&args.scene.scene.display().to_string(), &loaded);
+    let info = contents(&loaded);
     if args.json {
-        loaded.check_strict(&args.scene, 0)?;
+        scene_io::check_strict(&args.scene, loaded.warnings.len())?;
         return print_json(&info);
     }
     // The text has the refused features, and stderr all other warnings.
@@ -36,15 +36,15 @@ pub(crate) fn run(args: &InfoArgs, console: Console) -> Result<Exit, Failure> {
     for warning in loaded.warnings.iter().filter(is_other) {
         console.warning(warning);
     }
-    loaded.check_strict(&args.scene, 0)?;
+    scene_io::check_strict(&args.scene, loaded.warnings.len())?;
     let lines = lines(&info, &loaded).into_iter();
     let lines = lines.map(|(name, value)| format!("{name:<12} {}\n", printable(&value)));
     print(&lines.collect::<String>())
 }
 
 /// Returns the contents of a scene as JSON.
-fn contents(name: &str, loaded: &LoadedScene) -> Value {
-    let (scene, view) = (&loaded.subject.scene, &loaded.subject.view);
+fn contents(loaded: &Loaded) -> Value {
+    let (scene, view) = (&loaded.scene, &loaded.view);
     let (film, bvh) = (view.film(), scene.bvh());
     let ([left, top], [right, bottom]) = (film.crop.min, film.crop.max);
     let triangles = scene.shapes().iter().map(|shape| match shape {
@@ -59,18 +59,18 @@ fn contents(name: &str, loaded: &LoadedScene) -> Value {
         (name, spots.collect::<Vec<_>>())
     });
     json!({
-        "scene": name,
+        "scene": loaded.name,
         "film": {
             "resolution": film.resolution,
             "crop": [left, top, right, bottom],
             "filter_radius": film.filter.radius().to_array().map(short),
             "exposure": short(film.exposure),
-            "output": loaded.output.as_ref().map(|output| output.display().to_string()),
+            "output": loaded.settings.output,
             "bytes": Film::memory(film, &Layers::default()),
         },
         "camera": view.camera().kind(),
-        "settings": SettingsText::from(&loaded.settings),
-        "spp": loaded.spp,
+        "settings": SettingsText::from(&loaded.settings.render_settings()),
+        "spp": loaded.settings.samples_per_pixel,
         "shapes": count(scene.shapes().iter().map(Shape::kind)),
         "triangles": triangles.sum::<usize>(),
         // Those of shared objects count once,
@@ -118,17 +118,18 @@ fn count<'a>(names: impl Iterator<Item = &'a str>) -> BTreeMap<&'a str, usize> {
 }
 
 /// Returns the contents of a scene as lines, each with its name.
-fn lines(info: &Value, loaded: &LoadedScene) -> Vec<(String, String)> {
+fn lines(info: &Value, loaded: &Loaded) -> Vec<(String, String)> {
     let properties = properties(info, loaded).map(|(name, text)| (name.to_owned(), text));
     let spots = info["blind_spots"].as_object();
-    let spots = spots.map(|spots| blind_spot_lines(spots, loaded.settings.integrator));
+    let spots =
+        spots.map(|spots| blind_spot_lines(spots, loaded.settings.render_settings().integrator));
     let refused = loaded.refused.iter();
     let refused = refused.map(|text| ("refused".to_owned(), text.clone()));
     let lines = properties.into_iter().chain(spots.unwrap_or_default());
     lines.chain(refused).collect()
 }
 
-fn properties(info: &Value, loaded: &LoadedScene) -> [(&'static str, String); 17] {
+fn properties(info: &Value, loaded: &Loaded) -> [(&'static str, String); 17] {
     let memory = |bytes: &Value| BinaryBytes(bytes.as_u64().unwrap_or_default()).to_string();
     let text = |key: &str| match &info[key] {
         Value::String(text) => text.clone(),
@@ -147,36 +148,36 @@ fn properties(info: &Value, loaded: &LoadedScene) -> [(&'static str, String); 17
         ("sampler", sampler),
         ("shapes", text("shapes")),
         ("triangles", text("triangles")),
-        (
-            "instances",
-            instances(&loaded.subject.scene, text("instances")),
-        ),
+        ("instances", instances(&loaded.scene, text("instances"))),
         ("materials", text("materials")),
         ("media", text("media")),
         ("lights", text("lights")),
         ("light groups", groups(&info["light_groups"])),
         ("textures", text("textures")),
-        ("bounds", extent(&loaded.subject.scene)),
+        ("bounds", extent(&loaded.scene)),
         ("film memory", memory(&info["film"]["bytes"])),
         ("BVH memory", bvh),
     ]
 }
 
-fn film(loaded: &LoadedScene) -> String {
-    let film = loaded.subject.view.film();
+fn film(loaded: &Loaded) -> String {
+    let film = loaded.view.film();
     let ([width, height], [x0, y0], [x1, y1]) = (film.resolution, film.crop.min, film.crop.max);
     format!("{width}x{height}, pixels {x0},{y0} to {x1},{y1}")
 }
 
 /// Returns the lines of integrator and sampler.
-fn settings(loaded: &LoadedScene) -> [String; 2] {
-    let settings = SettingsText::from(&loaded.settings).by_flag();
+fn settings(loaded: &Loaded) -> [String; 2] {
+    let settings = SettingsText::from(&loaded.settings.render_settings()).by_flag();
     let depth = match &*settings["max-depth"] {
         "0" => "no limit".to_owned(),
         depth => format!("at most {depth} bounces"),
     };
     let (sampler, seed) = (&settings["sampler"], &settings["seed"]);
-    let sampler = format!("{sampler}, {} spp, seed {seed}", loaded.spp);
+    let sampler = format!(
+        "{sampler}, {} spp, seed {seed}",
+        loaded.settings.samples_per_pixel
+    );
     [format!("{}, {depth}", settings["integrator"]), sampler]
 }
 

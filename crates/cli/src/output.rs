@@ -4,7 +4,7 @@ use crate::args::RenderArgs;
 use crate::exit::{Exit, Failure};
 use crate::lock;
 use crate::pyramid;
-use crate::scene_io::{self, Developed, IMAGES, ImageFormat, MetadataValue};
+use crate::scene_io::{self, Developed, Format, IMAGES, MetadataValue};
 use bidir::film::FilmSettings;
 use std::path::{Path, PathBuf};
 
@@ -38,7 +38,7 @@ impl Outputs {
     /// Returns the files of a render; `film` is the name that the scene gives its image.
     ///
     /// A part of a render has an image only if a flag names it: by default all parts would write one file.
-    pub(crate) fn new(args: &RenderArgs, film: Option<&Path>) -> Result<Self, Failure> {
+    pub(crate) fn new(args: &RenderArgs, film: Option<&str>) -> Result<Self, Failure> {
         let named = Self::named(args)?;
         if is_part(args) || args.output.output.is_some() {
             return Ok(named);
@@ -134,9 +134,9 @@ pub(crate) fn check_file(flag: &str, file: &Path) -> Result<(), Failure> {
 pub(crate) fn check_image<'a>(
     flag: &'static str,
     image: &Path,
-    formats: &[ImageFormat],
+    formats: &[Format],
     inputs: impl IntoIterator<Item = &'a PathBuf>,
-) -> Result<ImageFormat, Failure> {
+) -> Result<Format, Failure> {
     let format = scene_io::image_format(image, formats)?;
     scene_io::check_apart(inputs, &[(flag, image)])?;
     check_file(flag, image)?;
@@ -145,18 +145,17 @@ pub(crate) fn check_image<'a>(
 
 /// Returns the EXR, if any, and the PNG for the name of an image.
 fn images(image: PathBuf) -> Result<[Option<PathBuf>; 2], Failure> {
-    Ok(match scene_io::image_format(&image, IMAGES)? {
-        ImageFormat::Exr => {
-            let png = image.with_extension("png");
-            [Some(image), Some(png)]
-        }
-        ImageFormat::Png => [None, Some(image)],
-    })
+    if scene_io::image_format(&image, IMAGES)? == Format::Png {
+        return Ok([None, Some(image)]);
+    }
+    let png = image.with_extension("png");
+    Ok([Some(image), Some(png)])
 }
 
 /// Returns the image that the scene names, as EXR; else one with the name of the scene file.
-pub(crate) fn default_image(scene: &Path, film: Option<&Path>) -> PathBuf {
+pub(crate) fn default_image(scene: &Path, film: Option<&str>) -> PathBuf {
     let name = film
+        .map(Path::new)
         .filter(|film| film.file_stem().is_some())
         .or_else(|| Some(Path::new(scene.file_stem()?)).filter(|stem| *stem != Path::new("-")));
     name.unwrap_or(Path::new("bidir")).with_extension("exr")
@@ -203,7 +202,7 @@ mod tests {
         let Command::Render(args) = cli.command else {
             panic!("another command")
         };
-        Outputs::new(&args, film.map(Path::new))
+        Outputs::new(&args, film)
     }
 
     #[track_caller]

@@ -7,7 +7,7 @@ use crate::exit::{Exit, Failure};
 use crate::lock::FilmLock;
 use crate::output;
 use crate::progress::{Clock, Reporter};
-use crate::scene_io::{self, LoadedScene};
+use crate::scene_io::{self, Loaded};
 use crate::settings;
 use crate::signals::Signals;
 use crate::threads;
@@ -29,11 +29,11 @@ pub(crate) fn run(args: &ReferenceArgs, console: Console) -> Result<Exit, Failur
     let film = earlier.as_ref().map(film_of);
     let film = film.as_ref().unwrap_or(&args.film);
     let Some(loaded) = scene_io::load_until(&signals, &args.scene, Some(film))? else {
-        return Ok(signals.exit().unwrap_or(Exit::Interrupted));
+        return Ok(signals.ended());
     };
-    loaded.print_warnings(&args.scene, 0, console)?;
+    scene_io::print_warnings(&loaded, &args.scene, 0, console)?;
     if let Some(earlier) = &earlier {
-        let same = earlier.check(&folder, &loaded.subject.digest, loaded.subject.view.film());
+        let same = earlier.check(&folder, &loaded.digest.to_string(), loaded.view.film());
         same.map_err(failure)?;
     }
     let plan = plan(args, earlier.as_ref(), &loaded)?;
@@ -69,7 +69,7 @@ fn check_folder(folder: &Path) -> Result<(), Failure> {
 }
 
 /// Refuses a folder in which the reference would replace files that the scene reads.
-fn check_apart(folder: &Path, loaded: &LoadedScene) -> Result<(), Failure> {
+fn check_apart(folder: &Path, loaded: &Loaded) -> Result<(), Failure> {
     let written = reference::files(folder);
     let written = written.iter().map(|file| ("--output", file.as_path()));
     scene_io::check_apart(&loaded.inputs, &written.collect::<Vec<_>>())
@@ -93,7 +93,7 @@ fn film_of(provenance: &Provenance) -> FilmArgs {
 fn plan(
     args: &ReferenceArgs,
     earlier: Option<&Provenance>,
-    loaded: &LoadedScene,
+    loaded: &Loaded,
 ) -> Result<Plan, Failure> {
     if let (Some(earlier), Some(more)) = (earlier, args.extend) {
         return Plan::extended(earlier, more).ok_or_else(|| {
@@ -101,8 +101,9 @@ fn plan(
             Failure::new(Exit::FilmMismatch, message)
         });
     }
-    let spp = args.spp.unwrap_or(loaded.spp);
-    let plan = Plan::new(&loaded.settings, spp, args.requests().each_ref());
+    let spp = args.spp.unwrap_or(loaded.settings.samples_per_pixel.into());
+    let own = loaded.settings.render_settings();
+    let plan = Plan::new(&own, spp, args.requests().each_ref());
     if plan.is_its_own_cross_check() {
         let message =
             "--estimator and --against may be the same estimator, which cannot cross-check itself";
@@ -117,7 +118,7 @@ fn plan(
 fn check_estimators(
     args: &ReferenceArgs,
     plan: &Plan,
-    loaded: &LoadedScene,
+    loaded: &Loaded,
     console: Console,
 ) -> Result<(), Failure> {
     let estimators = plan.estimators.iter().zip(args.requests());
@@ -128,8 +129,7 @@ fn check_estimators(
                 settings.integrator
             ));
         }
-        settings::check_strategies(&format!("{flag}: strategies"), loaded, settings, console)?;
-        settings::warn_missing(loaded, settings, console);
+        settings::check_light(&format!("{flag}: strategies"), loaded, settings, console)?;
     }
     Ok(())
 }
@@ -139,14 +139,14 @@ struct Job<'a> {
     args: &'a ReferenceArgs,
     console: Console,
     folder: &'a Path,
-    loaded: &'a LoadedScene,
+    loaded: &'a Loaded,
     plan: Plan,
     signals: &'a Signals,
 }
 
 impl Job<'_> {
     fn run(&self) -> Result<Exit, Failure> {
-        let subject = &self.loaded.subject;
+        let subject = self.loaded.subject();
         let resources = Resources {
             threads: self.args.threads.count.into(),
             ..Resources::default()
@@ -155,16 +155,15 @@ impl Job<'_> {
         let reporter = Reporter::new(display, self.signals, self.clock());
         let host = Host {
             progress: &reporter,
-            should_end: &|| self.signals.exit().is_some(),
             found: &|samples| reporter.add_earlier(samples),
         };
-        let made = reference::make(self.folder, subject, &self.plan, &resources, host);
+        let made = reference::make(self.folder, &subject, &self.plan, &resources, host);
         if let Ok(Some(_)) = made {
             reporter.complete();
         }
         reporter.finish();
         let failed = |error| match error {
-            Error::Session(SessionError::Film(error)) => self.loaded.too_large(&error),
+            Error::Session(SessionError::Film(error)) => scene_io::too_large(self.loaded, &error),
             error => failure(error),
         };
         match made.map_err(failed)? {
@@ -177,7 +176,7 @@ impl Job<'_> {
     fn stopped(&self) -> Exit {
         if !has_passes(self.folder) {
             self.say(format_args!("stopped before the first pass"));
-            return self.signals.exit().unwrap_or(Exit::Interrupted);
+            return self.signals.ended();
         }
         let folder = self.folder.display();
         self.say(format_args!(
@@ -195,7 +194,7 @@ impl Job<'_> {
                 passes: Some(self.plan.rounded_spp().saturating_mul(2)),
                 ..Budget::default()
             },
-            samples_per_pass: self.loaded.subject.view.film().crop.area(),
+            samples_per_pass: self.loaded.view.film().crop.area(),
             start,
             first_pass: start,
         }

@@ -38,7 +38,7 @@ pub(crate) fn run(
 ) -> Result<Exit, Failure> {
     let repeat = move || (session.replay(target.pixel, target.pass), session);
     let Some((replay, session)) = signals.wait_for(repeat, || ()) else {
-        return Ok(signals.exit().unwrap_or(Exit::Interrupted));
+        return Ok(signals.ended());
     };
     let replay = replay.ok_or_else(|| {
         let [x, y] = target.pixel;

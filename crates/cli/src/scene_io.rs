@@ -4,55 +4,29 @@ use crate::args::{FilmArgs, SceneArgs};
 use crate::console::Console;
 use crate::exit::{Exit, Failure};
 use crate::signals::Signals;
-use bidir::driver::Settings;
-use bidir::film::{FilmError, FilmSettings};
+use bidir::film::FilmError;
 use bidir::scene::Scene;
 use bidir::view::View;
-use formats::film::Subject;
-use formats::image::{ExrImage, ExrLayer, Format};
+use formats::ErrorKind;
+use formats::image::{ExrImage, ExrLayer};
 use formats::outputs::Output;
-use formats::scene::{Crop, Lamp, LoadOptions, Summary};
-use formats::{ErrorKind, FilePlace};
+use formats::scene::{Crop, LoadOptions};
 use lab::image::Pixels;
 use lab::metric::ErrorMap;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
 pub(crate) use formats::file::{folder_of, nearest_file, remove_leftovers, target_of};
-pub(crate) use formats::film::{Developed, FilmFile, FilmHeader, Stopping, is_film};
-pub(crate) use formats::image::{Layers, MetadataValue};
+pub(crate) use formats::film::{Developed, FilmFile, FilmHeader, is_film};
+pub(crate) use formats::image::{Format, Layers, MetadataValue};
 pub(crate) use formats::outputs::is_same;
+pub(crate) use formats::scene::Loaded;
 
 /// The hint for a film that is too large.
 const SMALLER: &str =
     "make it smaller with --size, render a part of it with --crop, or ask for fewer layers";
 
-/// A scene that was read, with the settings of its file.
-pub(crate) struct LoadedScene {
-    /// The scene, with the view of the file or the one that flags ask for.
-    pub(crate) subject: Subject,
-    /// The file's settings, over the defaults.
-    pub(crate) settings: Settings,
-    /// The file's number of samples per pixel.
-    pub(crate) spp: u64,
-    /// The name that the file gives its image.
-    pub(crate) output: Option<PathBuf>,
-    /// The warnings, each with its place.
-    pub(crate) warnings: Vec<String>,
-    /// The warnings that name the substitute of an unsupported feature.
-    pub(crate) refused: Vec<String>,
-    /// The first lamps that no ray can hit.
-    pub(crate) lamps: Vec<Lamp>,
-    /// The place of the film's size in the file. None: --size gives it.
-    film_place: Option<FilePlace>,
-    /// The parts of the scene.
-    pub(crate) summary: Summary,
-    /// The files that the scene reads or names, which no output may replace.
-    pub(crate) inputs: Vec<PathBuf>,
-}
-
 /// Reads a scene, with the film that `film` asks for instead of the file's.
-pub(crate) fn load(args: &SceneArgs, film: Option<&FilmArgs>) -> Result<LoadedScene, Failure> {
+pub(crate) fn load(args: &SceneArgs, film: Option<&FilmArgs>) -> Result<Loaded, Failure> {
     let options = LoadOptions {
         lenient: args.lenient,
         resolution: film.and_then(|film| film.size).map(|size| size.0),
@@ -60,27 +34,11 @@ pub(crate) fn load(args: &SceneArgs, film: Option<&FilmArgs>) -> Result<LoadedSc
         isa: args.isa,
         ..LoadOptions::default()
     };
-    let loaded = formats::scene::load(&args.scene, &options).map_err(refused)?;
-    let mut warnings = loaded.warnings;
-    warnings.extend(film.and_then(|film| crop_warning(film, &loaded.view)));
-    warnings.extend(light_warning(&loaded.scene));
-    Ok(LoadedScene {
-        subject: Subject {
-            name: args.scene.display().to_string(),
-            digest: loaded.digest.to_string(),
-            scene: Arc::new(loaded.scene),
-            view: loaded.view,
-        },
-        settings: loaded.settings.render_settings(),
-        spp: loaded.settings.samples_per_pixel.into(),
-        output: loaded.settings.output.map(PathBuf::from),
-        warnings,
-        refused: loaded.refused,
-        lamps: loaded.lamps,
-        film_place: loaded.film_place,
-        summary: loaded.summary,
-        inputs: loaded.inputs,
-    })
+    let mut loaded = formats::scene::load(&args.scene, &options).map_err(refused)?;
+    let beyond = film.and_then(|film| crop_warning(film, &loaded.view));
+    let more = beyond.into_iter().chain(light_warning(&loaded.scene));
+    loaded.warnings.extend(more);
+    Ok(loaded)
 }
 
 /// Does the same unless a signal comes first. None: it came.
@@ -88,52 +46,46 @@ pub(crate) fn load_until(
     signals: &Signals,
     args: &SceneArgs,
     film: Option<&FilmArgs>,
-) -> Result<Option<LoadedScene>, Failure> {
+) -> Result<Option<Loaded>, Failure> {
     let (args, film) = (args.clone(), film.cloned());
     let loaded = signals.wait_for(move || load(&args, film.as_ref()), || ());
     loaded.transpose()
 }
 
-impl LoadedScene {
-    /// Returns the failure of a film that is too large, at the place that gives its size.
-    pub(crate) fn too_large(&self, error: &FilmError) -> Failure {
-        let [width, height] = self.subject.view.film().resolution;
-        let message = format!("a film of {width} x {height} pixels is too large: {error}");
-        match &self.film_place {
-            Some(place) => {
-                let error = place.error(ErrorKind::Memory, message);
-                Failure::diagnostic(Exit::Scene, error.with_hint(SMALLER))
-            }
-            None => Failure::new(Exit::Scene, format!("--size: {message}")).with_hint(SMALLER),
-        }
+/// Returns the failure of a film that is too large, at the place that gives its size.
+pub(crate) fn too_large(loaded: &Loaded, error: &FilmError) -> Failure {
+    let error = loaded.too_large(error);
+    if error.has_place() {
+        return Failure::diagnostic(Exit::Scene, error.with_hint(SMALLER));
     }
+    let message = format!("--size: {}", error.message());
+    Failure::new(Exit::Scene, message).with_hint(SMALLER)
+}
 
-    /// Prints the warnings, of which there are `others` more; with `--strict` they are errors.
-    pub(crate) fn print_warnings(
-        &self,
-        args: &SceneArgs,
-        others: usize,
-        console: Console,
-    ) -> Result<(), Failure> {
-        for warning in &self.warnings {
-            console.warning(warning);
-        }
-        self.check_strict(args, others)
+/// Prints the warnings of a scene, of which there are `others` more; with `--strict` they are errors.
+pub(crate) fn print_warnings(
+    loaded: &Loaded,
+    args: &SceneArgs,
+    others: usize,
+    console: Console,
+) -> Result<(), Failure> {
+    for warning in &loaded.warnings {
+        console.warning(warning);
     }
+    check_strict(args, loaded.warnings.len() + others)
+}
 
-    /// Refuses the warnings, of which there are `others` more, under `--strict`.
-    pub(crate) fn check_strict(&self, args: &SceneArgs, others: usize) -> Result<(), Failure> {
-        let count = self.warnings.len() + others;
-        if args.strict && count > 0 {
-            let message = if count == 1 {
-                "1 warning, an error under --strict".to_owned()
-            } else {
-                format!("{count} warnings, errors under --strict")
-            };
-            return Err(Failure::new(Exit::Validation, message));
-        }
-        Ok(())
+/// Refuses any warnings under `--strict`.
+pub(crate) fn check_strict(args: &SceneArgs, count: usize) -> Result<(), Failure> {
+    if args.strict && count > 0 {
+        let message = if count == 1 {
+            "1 warning, an error under --strict".to_owned()
+        } else {
+            format!("{count} warnings, errors under --strict")
+        };
+        return Err(Failure::new(Exit::Validation, message));
     }
+    Ok(())
 }
 
 /// The crop that flags ask for; clap lets only one of them be given.
@@ -244,67 +196,39 @@ pub(crate) fn write_error_map(
     Ok(formats::image::write_exr(path, &image)?)
 }
 
-/// Writes a developed film to an image of the kind that its name says; layers to EXR alone.
-pub(crate) fn write_picture(
-    path: &Path,
-    film: &FilmSettings,
-    developed: &Developed,
-    metadata: &[(String, MetadataValue)],
-) -> Result<(), Failure> {
-    match image_format(path, IMAGES)? {
-        ImageFormat::Exr => Ok(developed.write_exr(path, film, metadata)?),
-        ImageFormat::Png => Ok(developed.write_png(path)?),
-    }
-}
-
-/// A format that images are written in.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum ImageFormat {
-    /// Linear light.
-    Exr,
-    /// The colours of a screen.
-    Png,
-}
-
-/// All that are written.
-pub(crate) const IMAGES: &[ImageFormat] = &[ImageFormat::Exr, ImageFormat::Png];
+/// All formats that images are written in.
+pub(crate) const IMAGES: &[Format] = &[Format::Exr, Format::Png];
 
 /// The format that the name of an image stands for.
 ///
 /// Errors: it is none of those in `written`.
-pub(crate) fn image_format(path: &Path, written: &[ImageFormat]) -> Result<ImageFormat, Failure> {
-    let named = match Format::of(path) {
-        Some(Format::Exr) => Some(ImageFormat::Exr),
-        Some(Format::Png) => Some(ImageFormat::Png),
-        _ => None,
-    };
-    named
-        .filter(|named| written.contains(named))
-        .ok_or_else(|| {
-            if path.is_dir() {
-                return is_folder(path, written);
-            }
-            let endings = written.iter().map(|format| match format {
-                ImageFormat::Exr => ".exr",
-                ImageFormat::Png => ".png",
-            });
-            let endings = endings.collect::<Vec<_>>().join(" or ");
-            let path = path.display();
-            Failure::usage(format!(
-                "cannot write `{path}`: output images are {endings}"
-            ))
-        })
+pub(crate) fn image_format(path: &Path, written: &[Format]) -> Result<Format, Failure> {
+    let named = Format::of(path).filter(|named| written.contains(named));
+    named.ok_or_else(|| {
+        if path.is_dir() {
+            return is_folder(path, written);
+        }
+        let endings: Vec<_> = written.iter().map(|format| ending(*format)).collect();
+        let (path, endings) = (path.display(), endings.join(" or "));
+        Failure::usage(format!(
+            "cannot write `{path}`: output images are {endings}"
+        ))
+    })
+}
+
+/// The ending of the names of images.
+fn ending(format: Format) -> &'static str {
+    match format {
+        Format::Png => ".png",
+        _ => ".exr",
+    }
 }
 
 /// The error of an output whose name is that of a folder.
-fn is_folder(path: &Path, written: &[ImageFormat]) -> Failure {
+fn is_folder(path: &Path, written: &[Format]) -> Failure {
     let message = format!("cannot write `{}`: it is a folder", path.display());
-    let file = if written.contains(&ImageFormat::Exr) {
-        "NAME.exr"
-    } else {
-        "NAME.png"
-    };
-    let hint = format!("name a file, such as {}", path.join(file).display());
+    let file = path.join(format!("NAME{}", ending(written[0])));
+    let hint = format!("name a file, such as {}", file.display());
     Failure::new(Exit::InputOutput, message).with_hint(hint)
 }
 

@@ -3,11 +3,9 @@
 use crate::args::ServeAddress;
 use crate::console::{Console, print};
 use crate::exit::{Exit, Failure};
-use crate::scene_io::FilmHeader;
-use bidir::driver::Session;
+use formats::film::Render;
 use std::io;
 use std::net::{SocketAddr, TcpListener};
-use std::time::Duration;
 use viewer::tev::{Tev, TevAddress};
 use viewer::web::{self, Server};
 use viewer::{RenderMonitor, RequestQueue, Status, request_queue};
@@ -73,7 +71,7 @@ pub(crate) struct Show {
 }
 
 impl Show {
-    /// Shows the render that `session` begins.
+    /// Shows a render that begins.
     pub(crate) fn new(
         server: Option<(Server, RequestQueue)>,
         tev: Option<Tev>,
@@ -87,33 +85,28 @@ impl Show {
         }
     }
 
-    /// Shows a pass that took `time`.
-    pub(crate) fn add_pass(
-        &mut self,
-        session: &Session<'_>,
-        time: Duration,
-        header: &dyn Fn() -> FilmHeader,
-    ) {
+    /// Shows a pass.
+    pub(crate) fn add_pass(&mut self, render: &Render) {
         if let Some(monitor) = &mut self.monitor {
-            monitor.add_pass(session, time, header);
+            monitor.add_pass(render);
         }
         if let Some(tev) = &mut self.tev {
-            tev.add_pass(session.film());
+            tev.add_pass(render.session.film());
         }
     }
 
     /// Shows the finished render.
-    pub(crate) fn end(&mut self, session: &Session<'_>, header: &dyn Fn() -> FilmHeader) {
+    pub(crate) fn end(&mut self, render: &Render) {
         if let Some(monitor) = &mut self.monitor {
-            monitor.end(session, header);
+            monitor.end(render);
         }
     }
 
     /// Waits a moment until tev has the last image, or warns that it has not; after all files are
     /// written, as it is no part of the render.
-    pub(crate) fn leave(&mut self, session: &Session<'_>, console: Console) {
+    pub(crate) fn leave(&mut self, render: &Render, console: Console) {
         let tev = self.tev.take();
-        if let Some(Err(error)) = tev.map(|tev| tev.end(session.film())) {
+        if let Some(Err(error)) = tev.map(|tev| tev.end(render.session.film())) {
             console.warning(format_args!("--display-server: {error}"));
         }
     }

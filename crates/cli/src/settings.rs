@@ -4,7 +4,7 @@
 use crate::args::{BudgetArgs, LongArgs, Part, RenderArgs};
 use crate::console::Console;
 use crate::exit::Failure;
-use crate::scene_io::LoadedScene;
+use crate::scene_io::Loaded;
 use bidir::analysis::{BlindSpot, LostLight, lost_light, missing_light};
 use bidir::driver::{Budget, Settings};
 use bidir::path::MAX_VERTICES;
@@ -31,18 +31,28 @@ pub(crate) fn warn_unused(args: &RenderArgs, settings: &Settings, console: Conso
         .count()
 }
 
-/// Warns of light that the list of strategies, given by `flag`, loses. Returns the number of warnings.
+/// Warns of light that the list of strategies, given by `flag`, or the estimator loses. Returns the number of warnings.
 ///
 /// Errors: the list makes no path, so that the image would be black.
-pub(crate) fn check_strategies(
+pub(crate) fn check_light(
     flag: &str,
-    loaded: &LoadedScene,
+    loaded: &Loaded,
     settings: &Settings,
     console: Console,
 ) -> Result<usize, Failure> {
-    let (path, subject) = (&settings.path, &loaded.subject);
-    let lost = lost_light(&subject.scene, &subject.view, settings.integrator, path);
-    let Some(lost) = lost else {
+    let lost = check_strategies(flag, loaded, settings, console)?;
+    Ok(lost + warn_missing(loaded, settings, console))
+}
+
+/// Warns of light that the list of strategies loses.
+fn check_strategies(
+    flag: &str,
+    loaded: &Loaded,
+    settings: &Settings,
+    console: Console,
+) -> Result<usize, Failure> {
+    let path = &settings.path;
+    let Some(lost) = lost_light(&loaded.scene, &loaded.view, settings.integrator, path) else {
         return Ok(0);
     };
     let message = format!("{flag} {} {lost}", path.strategies);
@@ -72,9 +82,9 @@ pub(crate) fn check_strategies(
 
 /// Warns of light that all strategies of the estimator miss, and names its lamps. Returns the number of
 /// warnings.
-pub(crate) fn warn_missing(loaded: &LoadedScene, settings: &Settings, console: Console) -> usize {
-    let (integrator, subject) = (settings.integrator, &loaded.subject);
-    let missing = missing_light(&subject.scene, &subject.view, integrator, &settings.path);
+fn warn_missing(loaded: &Loaded, settings: &Settings, console: Console) -> usize {
+    let integrator = settings.integrator;
+    let missing = missing_light(&loaded.scene, &loaded.view, integrator, &settings.path);
     for &spot in &missing {
         let (paths, remedy) = (spot.description(), spot.remedy());
         let lamps = lamps(loaded, spot);
@@ -87,8 +97,8 @@ pub(crate) fn warn_missing(loaded: &LoadedScene, settings: &Settings, console: C
 
 /// Names the lamps whose light is missing, as the end of a clause: the place of the first, the number of
 /// the others. Empty if the light of every lamp is missing.
-fn lamps(loaded: &LoadedScene, spot: BlindSpot) -> String {
-    let lights = loaded.subject.scene.lights();
+fn lamps(loaded: &Loaded, spot: BlindSpot) -> String {
+    let lights = loaded.scene.lights();
     let is_concerned = |lamp: &&Lamp| spot.concerns(&lights[lamp.light as usize]);
     let first = loaded.lamps.iter().find(is_concerned);
     let Some(first) = first.filter(|_| spot != BlindSpot::SeenBySpecular) else {

@@ -115,6 +115,11 @@ impl Signals {
         self.write.swap(false, Ordering::Relaxed)
     }
 
+    /// Returns the exit of a command that left its work because of a signal.
+    pub(crate) fn ended(&self) -> Exit {
+        self.exit().unwrap_or(Exit::Interrupted)
+    }
+
     /// Returns the exit for the signal that arrived. None: no signal arrived.
     pub(crate) fn exit(&self) -> Option<Exit> {
         let received = self.received.load(Ordering::Relaxed);

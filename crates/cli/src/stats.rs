@@ -2,11 +2,10 @@
 
 mod summary;
 
-use crate::scene_io::Stopping;
-use bidir::driver::{Budget, Session};
+use bidir::driver::Budget;
 use bidir::film::Film;
 use bidir::stats::{Stage, StageTimes};
-use formats::film::SettingsText;
+use formats::film::{Render, SettingsText};
 use lab::pyramid::Figures;
 use lab::sample::TrainingReport;
 use serde::Serialize;
@@ -14,17 +13,6 @@ use serde_json::{Value, json};
 use std::time::Duration;
 
 pub(crate) use summary::{Summary, listed};
-
-/// The course of a render.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Course {
-    /// Reading and building the scene.
-    pub(crate) load: Duration,
-    /// Training and rendering.
-    pub(crate) render: Duration,
-    /// The reason for the number of passes.
-    pub(crate) stopping: Stopping,
-}
 
 /// The report of a render. Numbers that are not finite become null in JSON.
 #[derive(Debug, Serialize)]
@@ -39,17 +27,13 @@ pub(crate) struct Report {
 }
 
 impl Report {
-    /// The report of the passes of `session` so far, of the scene file `scene`.
-    pub(crate) fn new(
-        scene: String,
-        session: &Session<'_>,
-        budget: Budget,
-        course: Course,
-    ) -> Self {
+    /// The report of a render of the scene file `scene`, which took the time `load` to read.
+    pub(crate) fn new(scene: String, load: Duration, render: &Render, budget: Budget) -> Self {
+        let session = &render.session;
         let (stats, film) = (session.stats(), session.film().settings());
         let (bvh, training) = (session.scene().bvh(), session.training());
         let ([left, top], [right, bottom]) = (film.crop.min, film.crop.max);
-        let seconds = course.render.as_secs_f64();
+        let seconds = render.spent.total.as_secs_f64();
         let strategies = Figures::all(session);
         let mut rays = json!(stats.rays);
         rays["training"] = training.map_or(0, |training| training.rays.total()).into();
@@ -67,9 +51,9 @@ impl Report {
             "isa": bvh.isa().to_string(),
             "spp": session.film().passes().len(),
             "passes": session.film().passes().to_string(),
-            "stopping": course.stopping.name(),
+            "stopping": render.stopping.name(),
             "seconds": seconds,
-            "load_seconds": course.load.as_secs_f64(),
+            "load_seconds": load.as_secs_f64(),
             "samples": stats.samples,
             "samples_per_second": stats.samples as f64 / seconds,
             "stages": stages(session.stage_times()),

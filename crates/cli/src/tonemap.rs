@@ -11,7 +11,7 @@ use crate::args::TonemapArgs;
 use crate::console::say;
 use crate::exit::{Exit, Failure};
 use crate::output;
-use crate::scene_io::{self, ImageFormat};
+use crate::scene_io::{self, Format};
 
 /// A tone mapping operator, which maps light of any strength to [0, 1].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -49,7 +49,7 @@ pub(crate) fn run(args: &TonemapArgs) -> Result<Exit, Failure> {
     let default = || output::named_after(&args.image, ".png");
     let written = &args.output.clone().unwrap_or_else(default);
     // The output is always a PNG.
-    output::check_image("--output", written, &[ImageFormat::Png], [&args.image])?;
+    output::check_image("--output", written, &[Format::Png], [&args.image])?;
     let mut image = scene_io::read_image(&args.image)?;
     let scale = libm::exp2f(args.exposure);
     for color in &mut image.data {

@@ -8,6 +8,7 @@ use crate::serve;
 use crate::settings;
 use crate::signals::Signals;
 use crate::threads;
+use bidir::driver::Resources;
 use std::net::SocketAddr;
 use std::path::PathBuf;
 use std::time::Duration;
@@ -29,25 +30,26 @@ pub(crate) fn run(args: &ViewArgs, console: Console) -> Result<Exit, Failure> {
     let (port, more) = args.port.map_or((PORT, MORE_PORTS), |port| (port, 0));
     let listener = serve::bind(SocketAddr::new(args.bind, port), more)?;
     let Some(loaded) = scene_io::load_until(&signals, &args.scene, Some(&args.film))? else {
-        return Ok(signals.exit().unwrap_or(Exit::Interrupted));
+        return Ok(signals.ended());
     };
-    let settings = args.estimator.apply(&loaded.settings);
+    let settings = args.estimator.apply(&loaded.settings.render_settings());
     // Every flag may have influence: estimators are switched.
-    let lost = settings::check_strategies("--strategies", &loaded, &settings, console)?;
-    let missing = settings::warn_missing(&loaded, &settings, console);
-    loaded.print_warnings(&args.scene, lost + missing, console)?;
-    let name = args.scene.scene.display().to_string();
-    let first = Status::interactive(&name, loaded.subject.view.film());
+    let lost = settings::check_light("--strategies", &loaded, &settings, console)?;
+    scene_io::print_warnings(&loaded, &args.scene, lost, console)?;
+    let first = Status::interactive(&loaded.name, loaded.view.film());
     let (server, queue) = serve::start(listener, first, &loaded.warnings)?;
-    let render = InteractiveSettings {
-        subject: loaded.subject,
+    let wanted = InteractiveSettings {
+        subject: loaded.subject(),
         settings,
         roulette: args.estimator.path_roulette,
-        threads: args.threads.count.into(),
+        resources: Resources {
+            threads: args.threads.count.into(),
+            ..Resources::default()
+        },
         target: args.spp,
         folder: PathBuf::from("."),
     };
-    let render = InteractiveRender::open(render, queue).map_err(|error| serve::failed(&error))?;
+    let render = InteractiveRender::open(wanted, queue).map_err(|error| serve::failed(&error))?;
     if !args.quiet {
         say("open it in a browser; Ctrl-C ends");
     }

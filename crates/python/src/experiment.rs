@@ -67,10 +67,6 @@ impl Observer for Reporter<'_> {
         self.begin.elapsed().as_secs_f64()
     }
 
-    fn should_stop(&mut self) -> bool {
-        self.stop.is_set()
-    }
-
     fn stop_flag(&self) -> Arc<AtomicBool> {
         Arc::clone(self.stop.flag())
     }

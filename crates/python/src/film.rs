@@ -5,9 +5,8 @@ use crate::scene::Scene;
 use crate::wait::beside;
 use bidir::film::PassSet;
 use formats::film::{
-    self, FilmFile, FilmHeader, counts_by_name, decode, encode, is_film, metadata, read, write,
+    self, FilmFile, counts_by_name, decode, encode, is_film, metadata, read, write,
 };
-use formats::image::{Format, write_png};
 use formats::outputs::{self, Output};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
@@ -60,12 +59,8 @@ type Developed<'py> = (
 );
 
 impl Film {
-    pub(crate) fn new(header: FilmHeader, film: bidir::film::Film, inputs: Inputs) -> Self {
-        let header = header.of(&film);
-        Self {
-            file: FilmFile { header, film },
-            inputs,
-        }
+    pub(crate) fn new(file: FilmFile, inputs: Inputs) -> Self {
+        Self { file, inputs }
     }
 
     pub(crate) fn file(&self) -> &FilmFile {
@@ -126,17 +121,13 @@ impl Film {
 
     /// Merges two films.
     fn merged(&self, py: Python<'_>, other: &Self) -> PyResult<Self> {
+        let inputs = &self.inputs | &other.inputs;
         let merged = beside(py, || {
-            let (a, b) = (&self.file, &other.file);
-            if let Some(difference) = a.header.difference(&b.header) {
-                return Err(format!("films of different renders: {difference}"));
-            }
-            let mut film = a.film.clone();
-            film.merge(&b.film).map_err(|error| error.to_string())?;
-            let inputs = &self.inputs | &other.inputs;
-            Ok(Self::new(a.header.joined(&b.header), film, inputs))
+            let mut file = self.file.clone();
+            file.merge(&other.file).map(|()| file)
         });
-        merged.map_err(|message| raise(py, "FilmError", &message))
+        let file = merged.map_err(|error| raise(py, "FilmError", &error.to_string()))?;
+        Ok(Self { file, inputs })
     }
 
     /// Returns true if both have the same passes of the same render, bit for bit.
@@ -164,25 +155,10 @@ impl Film {
     /// Writes the image: as EXR with its layers and attributes, or as PNG without them.
     fn write_image(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
         Self::check_apart(py, self.inputs.iter(), &path)?;
-        let film = &self.file.film;
-        let written = match Format::of(&path) {
-            Some(Format::Exr) => beside(py, || {
-                let metadata = metadata(&self.file.header);
-                film::Developed::new(film).write_exr(&path, film.settings(), &metadata)
-            }),
-            Some(Format::Png) => beside(py, || {
-                let picture = film.develop();
-                let size = [picture.width, picture.height];
-                write_png(&path, size, &picture.pixels)
-            }),
-            _ => {
-                let message = format!(
-                    "cannot write `{}`: output images are .exr or .png",
-                    path.display()
-                );
-                return Err(raise(py, "SettingsError", &message));
-            }
-        };
+        let FilmFile { header, film } = &self.file;
+        let written = beside(py, || {
+            film::Developed::new(film).write(&path, film.settings(), &metadata(header))
+        });
         written.map_err(|error| of_file(py, &error))
     }
 

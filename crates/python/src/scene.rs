@@ -5,9 +5,7 @@ use crate::film::{Inputs, absolute};
 use crate::wait::wait_silently;
 use bidir::driver::Settings;
 use bidir::film::FilmError;
-use formats::film::Subject;
-use formats::scene::{Crop, Files, InMemory, LoadOptions, Summary, load_from};
-use formats::{ErrorKind, FilePlace};
+use formats::scene::{Crop, Files, InMemory, LoadOptions, Loaded, load_from};
 use pyo3::prelude::*;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -16,16 +14,10 @@ use std::sync::Arc;
 /// A scene in memory, with the settings of its file.
 #[pyclass(frozen, module = "bidir._bidir")]
 pub(crate) struct Scene {
-    /// The scene as it was named, with the view of its file.
-    pub(crate) subject: Subject,
+    /// The scene as it was read.
+    pub(crate) loaded: Loaded,
     /// The settings of the file, over the defaults.
     pub(crate) settings: Settings,
-    spp: u64,
-    warnings: Vec<String>,
-    summary: Summary,
-    files: Vec<PathBuf>,
-    /// The place of the film's size in the file. None: the argument `size` gives it.
-    film_place: Option<FilePlace>,
     /// The files on the disk that the scene reads or names.
     pub(crate) inputs: Inputs,
 }
@@ -65,13 +57,9 @@ pub(crate) fn in_memory(files: Vec<MemoryFile>) -> InMemory {
 impl Scene {
     /// Makes the error of a film that is too large, at the place that gives its size.
     pub(crate) fn too_large(&self, py: Python<'_>, error: &FilmError) -> PyErr {
-        let [width, height] = self.subject.view.film().resolution;
-        let message = format!("a film of {width} x {height} pixels is too large: {error}");
-        let text = match &self.film_place {
-            Some(place) => place.error(ErrorKind::Memory, message).to_string(),
-            None => format!("size: {message}"),
-        };
-        raise(py, "RenderError", &text)
+        let error = self.loaded.too_large(error);
+        let argument = if error.has_place() { "" } else { "size: " };
+        raise(py, "RenderError", &format!("{argument}{error}"))
     }
 }
 
@@ -97,68 +85,58 @@ impl Scene {
         let loaded = loaded.map_err(|error| of_file(py, &error))?;
         Ok(Self {
             settings: loaded.settings.render_settings(),
-            subject: Subject {
-                name: path.display().to_string(),
-                digest: loaded.digest.to_string(),
-                scene: Arc::new(loaded.scene),
-                view: loaded.view,
-            },
-            spp: loaded.settings.samples_per_pixel.into(),
-            warnings: loaded.warnings,
-            summary: loaded.summary,
-            files: loaded.files,
-            film_place: loaded.film_place,
-            inputs: absolute(loaded.inputs),
+            inputs: absolute(loaded.inputs.iter().cloned()),
+            loaded,
         })
     }
 
     /// Returns the hash of everything read.
     #[getter]
-    fn digest(&self) -> &str {
-        &self.subject.digest
+    fn digest(&self) -> String {
+        self.loaded.digest.to_string()
     }
 
     /// Returns the file, as it was named.
     #[getter]
     fn name(&self) -> &str {
-        &self.subject.name
+        &self.loaded.name
     }
 
     /// Returns the samples per pixel that the file sets.
     #[getter]
-    fn spp(&self) -> u64 {
-        self.spp
+    fn spp(&self) -> u32 {
+        self.loaded.settings.samples_per_pixel
     }
 
     /// Returns warnings about the file.
     #[getter]
     fn warnings(&self) -> Vec<String> {
-        self.warnings.clone()
+        self.loaded.warnings.clone()
     }
 
     /// Returns the files read, under every name that refers to them.
     #[getter]
     fn files(&self) -> Vec<PathBuf> {
-        self.files.clone()
+        self.loaded.files.clone()
     }
 
     /// Returns width and height of the whole film.
     #[getter]
     fn resolution(&self) -> [u32; 2] {
-        self.subject.view.film().resolution
+        self.loaded.view.film().resolution
     }
 
     /// Returns left, top, right, bottom of the rendered rectangle.
     #[getter]
     fn crop(&self) -> [u32; 4] {
-        let crop = self.subject.view.film().crop;
+        let crop = self.loaded.view.film().crop;
         [crop.min[0], crop.min[1], crop.max[0], crop.max[1]]
     }
 
     /// Returns the names of the light groups.
     #[getter]
     fn light_groups(&self) -> Vec<String> {
-        self.subject.scene.group_names().to_vec()
+        self.loaded.scene.group_names().to_vec()
     }
 
     /// Returns the settings of the file by name.
@@ -169,28 +147,8 @@ impl Scene {
 
     /// Returns the counts of the scene's parts by name.
     #[getter]
-    fn summary(&self) -> BTreeMap<&'static str, u64> {
-        let Summary {
-            shapes,
-            primitives,
-            instances,
-            materials,
-            textures,
-            area_lights,
-            other_lights,
-        } = self.summary;
-        let counts = [
-            ("shapes", shapes),
-            ("instances", instances),
-            ("materials", materials),
-            ("textures", textures),
-            ("area_lights", area_lights),
-            ("other_lights", other_lights),
-        ];
-        let counts = counts.map(|(name, count)| (name, count as u64));
-        counts
-            .into_iter()
-            .chain([("primitives", primitives)])
-            .collect()
+    fn summary(&self) -> BTreeMap<String, u64> {
+        let counts = serde_json::to_value(self.loaded.summary).unwrap_or_default();
+        serde_json::from_value(counts).unwrap_or_default()
     }
 }

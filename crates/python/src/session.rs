@@ -5,9 +5,9 @@ use crate::film::{Film, Inputs};
 use crate::scene::Scene;
 use crate::settings::{Requested, resolve, threads_of, warn};
 use crate::wait::{Stop, wait_silently};
-use bidir::driver::{self, Budget, Effort, Progress, Resources, Spent};
+use bidir::driver::{self, Budget, Resources};
 use bidir::film::FilmError;
-use formats::film::{ContinueError, FilmFile, Render, Stopping};
+use formats::film::{OpenError, Render, TrainingLimits, Watch};
 use pyo3::prelude::*;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
@@ -48,28 +48,16 @@ fn deadline(left: Option<f64>) -> Option<Instant> {
 }
 
 struct State {
-    render: Render<'static>,
+    render: Render,
     /// The files read for the scene and for added films.
     inputs: Inputs,
-    /// The render time since the film was last taken.
-    time: Duration,
 }
 
-/// Supplies the clock of a pass, and stops it on request.
-struct Watcher<'a> {
-    stop: &'a Stop,
-    begin: Instant,
-}
-
-impl Progress for Watcher<'_> {
-    fn advance(&self, _samples: u64) {}
-
-    fn stop(&self) -> driver::Stop<'_> {
-        driver::Stop::when(self.stop.flag())
-    }
-
-    fn nanoseconds(&self) -> u64 {
-        self.begin.elapsed().as_nanos() as u64
+/// Returns a host that stops on request.
+fn watch(stop: &Stop) -> Watch<'_> {
+    Watch {
+        stop: driver::Stop::when(stop.flag()),
+        start: Instant::now(),
     }
 }
 
@@ -109,16 +97,13 @@ impl Session {
             threads: threads_of(py, threads)?.count(),
             ..Resources::default()
         };
-        let begin = Instant::now();
-        let part = time.map(|time| time / f64::from(Effort::PART));
-        let subject = &scene.subject;
+        let limits = TrainingLimits {
+            samples: training.unwrap_or(u64::MAX),
+            time: time.map(duration),
+        };
+        let subject = scene.loaded.subject();
         let render = wait_silently(py, deadline(left), |stop| {
-            let effort = Effort {
-                samples: training.unwrap_or(u64::MAX),
-                is_late: &|| part.is_some_and(|part| begin.elapsed().as_secs_f64() >= part),
-                stop: driver::Stop::when(stop.flag()),
-            };
-            subject.begin(&settings, &resources, effort)
+            subject.begin(&settings, &resources, limits, &watch(stop))
         })?;
         let render = render.map_err(|error| match &error {
             driver::SessionError::NoPath { .. } => raise(py, "SettingsError", &error.to_string()),
@@ -137,7 +122,6 @@ impl Session {
             state: Mutex::new(State {
                 render,
                 inputs: scene.inputs.clone(),
-                time: begin.elapsed(),
             }),
         })
     }
@@ -147,12 +131,7 @@ impl Session {
     #[pyo3(signature = (left = None))]
     fn step(&self, py: Python<'_>, left: Option<f64>) -> PyResult<bool> {
         wait_silently(py, deadline(left), |stop| {
-            let mut state = self.lock();
-            let begin = Instant::now();
-            let watcher = Watcher { stop, begin };
-            let is_done = state.render.session.step(&watcher);
-            state.time += begin.elapsed();
-            is_done
+            self.lock().render.step(&watch(stop))
         })
     }
 
@@ -169,19 +148,16 @@ impl Session {
             state.inputs.extend(inputs.iter().cloned());
             Ok(())
         });
-        added.map_err(|error: ContinueError| raise(py, "FilmError", &error.to_string()))
+        added.map_err(|error: OpenError| raise(py, "FilmError", &error.to_string()))
     }
 
-    /// Copies the film, with the given stopping rule.
-    fn film(&self, py: Python<'_>, stopping: &str) -> PyResult<Film> {
-        let stopping = stopping_of(py, stopping)?;
+    /// Copies the film.
+    fn film(&self, py: Python<'_>) -> PyResult<Film> {
         if let Some(blank) = self.with(py, |state| state.render.session.blank_warning()) {
             warn(py, &blank)?;
         }
         let film = self.with(py, |state| {
-            let header = state.render.header(state.time, stopping);
-            let film = state.render.session.film().try_clone()?;
-            Ok(Film::new(header, film, state.inputs.clone()))
+            Ok(Film::new(state.render.file()?, state.inputs.clone()))
         });
         film.map_err(|error| no_memory(py, &error))
     }
@@ -189,9 +165,7 @@ impl Session {
     /// Takes the film; the session continues with an empty one.
     fn take_film(&self, py: Python<'_>) -> PyResult<Film> {
         let film = self.with(py, |state| {
-            let FilmFile { header, film } = state.render.take(state.time, Stopping::Fixed)?;
-            state.time = Duration::ZERO;
-            Ok(Film::new(header, film, state.inputs.clone()))
+            Ok(Film::new(state.render.take()?, state.inputs.clone()))
         });
         film.map_err(|error| no_memory(py, &error))
     }
@@ -216,28 +190,15 @@ impl Session {
         self.with(py, |state| state.render.session.noise())
     }
 
-    /// Returns the rule that ends a render with these limits before its next pass; None if there is one.
-    /// `rendered`: the passes so far, which took `seconds`.
-    fn reached(
-        &self,
-        py: Python<'_>,
-        limits: Limits,
-        rendered: u64,
-        seconds: f64,
-    ) -> Option<&'static str> {
+    /// Returns true if one of these limits ends the render before its next pass.
+    fn reached(&self, py: Python<'_>, limits: Limits) -> bool {
         let budget = Budget {
             first: 0,
             passes: limits.spp,
             time: limits.time.map(duration),
             noise: limits.noise,
         };
-        let spent = Spent {
-            passes: rendered,
-            total: duration(seconds),
-            rendering: duration(seconds),
-        };
-        let limit = self.with(py, |state| budget.reached(&state.render.session, spent));
-        limit.map(|limit| Stopping::from(limit).name())
+        self.with(py, |state| state.render.reached(&budget).is_some())
     }
 
     /// Returns the number of threads.
@@ -257,15 +218,6 @@ impl Session {
     /// Returns the hash of everything that the bits depend on, except the passes.
     #[getter]
     fn identity(&self, py: Python<'_>) -> String {
-        self.with(py, |state| state.render.empty().identity.clone())
+        self.with(py, |state| state.render.identity().to_owned())
     }
-}
-
-fn stopping_of(py: Python<'_>, name: &str) -> PyResult<Stopping> {
-    let all = [Stopping::Fixed, Stopping::Time, Stopping::Noise];
-    let found = all.into_iter().find(|stopping| stopping.name() == name);
-    found.ok_or_else(|| {
-        let message = format!("there is no reason to stop `{name}`");
-        raise(py, "SettingsError", &message)
-    })
 }

@@ -16,10 +16,6 @@ const POLL: Duration = Duration::from_millis(50);
 pub(crate) struct Stop(Arc<AtomicBool>);
 
 impl Stop {
-    pub(crate) fn is_set(&self) -> bool {
-        self.0.load(Ordering::Relaxed)
-    }
-
     /// Returns the flag itself.
     pub(crate) fn flag(&self) -> &Arc<AtomicBool> {
         &self.0

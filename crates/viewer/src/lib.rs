@@ -19,5 +19,5 @@ pub mod web;
 pub use command::{Command, Walk};
 pub use frame::Frame;
 pub use monitor::RenderMonitor;
-pub use shared::{ClientHandle, RequestQueue, SentFrame, SharedState, Subject, request_queue};
+pub use shared::{ClientHandle, RequestQueue, SentFrame, SharedState, request_queue};
 pub use status::{CameraStatus, Choices, FilmStatus, LaneId, LaneStatus, RayRates, State, Status};

@@ -1,11 +1,10 @@
 //! A render of another owner that clients may look at: they change nothing.
 
-use crate::shared::{Request, RequestQueue, Subject};
+use crate::shared::{Lane, Request, RequestQueue};
 use crate::status::{LaneId, State, Status};
 use crate::view::{Course, RenderView};
-use bidir::driver::{Session, Settings};
-use formats::film::FilmHeader;
-use std::time::Duration;
+use bidir::driver::Settings;
+use formats::film::Render;
 
 /// Shows a render between its passes.
 pub struct RenderMonitor {
@@ -14,11 +13,11 @@ pub struct RenderMonitor {
 }
 
 impl RenderMonitor {
-    /// Shows the render that `session` begins; `settings` are those that were asked for, and `target`
-    /// the number of passes. None: it is not known.
+    /// Shows a render that begins; `settings` are those that were asked for, and `target` the number of
+    /// passes. None: it is not known.
     pub fn new(
         queue: RequestQueue,
-        session: &Session<'_>,
+        render: &Render,
         settings: &Settings,
         target: Option<u64>,
     ) -> Self {
@@ -29,37 +28,31 @@ impl RenderMonitor {
         };
         let view = RenderView::new(LaneId::A, course, settings);
         let monitor = Self { queue, view };
-        monitor.publish(session, State::Rendering);
+        monitor.publish(render, State::Rendering);
         monitor
     }
 
-    /// Shows a pass that took `time`, and answers requests; `header` makes the film file's header.
-    pub fn add_pass(
-        &mut self,
-        session: &Session<'_>,
-        time: Duration,
-        header: &dyn Fn() -> FilmHeader,
-    ) {
-        self.view.add_pass(session, time, self.queue.state());
-        self.publish(session, State::Rendering);
-        self.answer(session, header);
+    /// Shows a pass, and answers requests.
+    pub fn add_pass(&mut self, render: &Render) {
+        self.view.add_pass(render, self.queue.state());
+        self.publish(render, State::Rendering);
+        self.answer(render);
     }
 
     /// Shows the finished render, and answers requests.
-    pub fn end(&mut self, session: &Session<'_>, header: &dyn Fn() -> FilmHeader) {
-        self.view.show(session, self.queue.state());
-        self.publish(session, State::Done);
-        self.answer(session, header);
+    pub fn end(&mut self, render: &Render) {
+        self.view.show(render, self.queue.state());
+        self.publish(render, State::Done);
+        self.answer(render);
     }
 
-    fn answer(&mut self, session: &Session<'_>, header: &dyn Fn() -> FilmHeader) {
+    fn answer(&mut self, render: &Render) {
         while let Some(request) = self.queue.take() {
             match request {
-                Request::Show(LaneId::A) => self.view.show(session, self.queue.state()),
-                Request::Query(LaneId::A, query) => query(Some(&Subject {
-                    session,
+                Request::Show(LaneId::A) => self.view.show(render, self.queue.state()),
+                Request::Query(LaneId::A, query) => query(Some(&Lane {
+                    render,
                     generation: self.view.generation(),
-                    header,
                 })),
                 Request::Query(LaneId::B, query) => query(None),
                 // Commands are refused where they arrive.
@@ -68,10 +61,10 @@ impl RenderMonitor {
         }
     }
 
-    fn publish(&self, session: &Session<'_>, state: State) {
+    fn publish(&self, render: &Render, state: State) {
         self.queue.state().update(|before| Status {
             state,
-            lanes: vec![self.view.status(session)],
+            lanes: vec![self.view.status(render)],
             ..before
         });
     }

@@ -7,8 +7,8 @@ use crate::command::Command;
 use crate::frame::Frame;
 use crate::status::{LaneId, Status};
 use axum::body::Bytes;
-use bidir::driver::{Session, Stop};
-use formats::film::FilmHeader;
+use bidir::driver::Stop;
+use formats::film::Render;
 use std::collections::VecDeque;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
@@ -81,17 +81,15 @@ impl SentFrame {
 }
 
 /// A lane between two passes.
-pub struct Subject<'a> {
+pub(crate) struct Lane<'a> {
     /// Its render.
-    pub session: &'a Session<'a>,
+    pub(crate) render: &'a Render,
     /// Grows whenever the lane begins anew.
-    pub generation: u32,
-    /// Makes the header of its files.
-    pub header: &'a dyn Fn() -> FilmHeader,
+    pub(crate) generation: u32,
 }
 
 /// Reads a lane between two passes; None: there is no such lane now.
-pub(crate) type Query = Box<dyn FnOnce(Option<&Subject<'_>>) + Send>;
+pub(crate) type Query = Box<dyn FnOnce(Option<&Lane<'_>>) + Send>;
 
 /// A request to a renderer.
 pub(crate) enum Request {

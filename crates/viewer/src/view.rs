@@ -3,11 +3,11 @@
 use crate::frame::Frame;
 use crate::shared::{SentFrame, SharedState};
 use crate::status::{LaneId, LaneStatus, RayRates};
-use bidir::driver::{Session, Settings};
+use bidir::driver::Settings;
 use bidir::film::Aov;
 use bidir::settings::Request;
 use bidir::stats::RayCounts;
-use formats::film::SettingsText;
+use formats::film::{Render, SettingsText};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -27,8 +27,6 @@ pub(crate) struct RenderView {
     course: Course,
     /// The requested estimator and selection of shadow rays.
     method: [String; 2],
-    /// The time of all passes.
-    rendered: Duration,
     last: Option<Last>,
     curve: Vec<[f64; 2]>,
 }
@@ -70,7 +68,6 @@ impl RenderView {
             lane,
             course,
             method: method_of(settings),
-            rendered: Duration::ZERO,
             last: None,
             curve: Vec::new(),
         }
@@ -81,35 +78,30 @@ impl RenderView {
         self.course.generation
     }
 
-    /// Returns the time of all passes.
-    pub(crate) fn rendered(&self) -> Duration {
-        self.rendered
-    }
-
     /// Returns true where all passes are done.
-    pub(crate) fn is_complete(&self, session: &Session<'_>) -> bool {
-        let passes = session.film().passes().len();
+    pub(crate) fn is_complete(&self, render: &Render) -> bool {
+        let passes = render.session.film().passes().len();
         self.course.target.is_some_and(|target| passes >= target)
     }
 
-    /// Counts a pass that took `time`; shares a frame of it where a client watches and it is due.
-    pub(crate) fn add_pass(&mut self, session: &Session<'_>, time: Duration, state: &SharedState) {
-        self.rendered += time;
-        if state.is_watched() && (self.course.preview || self.is_due()) {
-            self.show(session, state);
+    /// Shares a frame after a pass where a client watches and it is due.
+    pub(crate) fn add_pass(&mut self, render: &Render, state: &SharedState) {
+        if state.is_watched() && (self.course.preview || self.is_due(render.spent.rendering)) {
+            self.show(render, state);
         }
     }
 
-    fn is_due(&self) -> bool {
+    fn is_due(&self, rendered: Duration) -> bool {
         self.last.is_none_or(|last| {
-            let rendered = self.rendered.saturating_sub(last.rendered);
-            let is_cheap = rendered >= last.cost * RENDERING_PER_FRAME;
-            last.at.elapsed() >= SHORTEST_GAP && (self.rendered < YOUTH || is_cheap)
+            let since = rendered.saturating_sub(last.rendered);
+            let is_cheap = since >= last.cost * RENDERING_PER_FRAME;
+            last.at.elapsed() >= SHORTEST_GAP && (rendered < YOUTH || is_cheap)
         })
     }
 
     /// Shares a frame of the film, unless the last one has the same passes.
-    pub(crate) fn show(&mut self, session: &Session<'_>, state: &SharedState) {
+    pub(crate) fn show(&mut self, render: &Render, state: &SharedState) {
+        let session = &render.session;
         let passes = session.film().passes().len();
         let is_shown = self.last.is_some_and(|last| last.passes == passes);
         if passes == 0 || is_shown {
@@ -125,7 +117,7 @@ impl RenderView {
             at: Instant::now(),
             passes,
             cost: start.elapsed(),
-            rendered: self.rendered,
+            rendered: render.spent.rendering,
             relative_error,
         });
         self.add_point();
@@ -133,8 +125,8 @@ impl RenderView {
 
     /// Adds the remaining error to the curve; that of a single pass is unknown.
     fn add_point(&mut self) {
-        if let Some(error) = self.relative_error() {
-            self.curve.push([self.rendered.as_secs_f64(), error]);
+        if let (Some(last), Some(error)) = (self.last, self.relative_error()) {
+            self.curve.push([last.rendered.as_secs_f64(), error]);
         }
         if self.curve.len() > CURVE_POINTS {
             let mut is_kept = false;
@@ -151,11 +143,12 @@ impl RenderView {
     }
 
     /// Returns the status of the lane.
-    pub(crate) fn status(&self, session: &Session<'_>) -> LaneStatus {
+    pub(crate) fn status(&self, render: &Render) -> LaneStatus {
+        let session = &render.session;
         let (stats, settings) = (session.stats(), session.settings());
         let [integrator, shadow_rays] = self.method.clone();
         let passes = session.film().passes().len();
-        let seconds = self.rendered.as_secs_f64();
+        let seconds = render.spent.rendering.as_secs_f64();
         // Passes of an earlier run took none of these seconds.
         let area = session.film().settings().crop.area();
         let eta = self.course.target.filter(|_| stats.samples > 0);

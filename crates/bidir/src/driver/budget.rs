@@ -1,6 +1,7 @@
 //! The limits of a render, by the clock of its host.
 
 use super::Session;
+use serde::{Deserialize, Serialize};
 use std::ops::Range;
 use std::time::Duration;
 
@@ -17,19 +18,32 @@ pub struct Budget {
     pub noise: Option<f64>,
 }
 
-/// The limit that ends a render.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Limit {
-    /// All passes are done.
-    Passes,
-    /// The time is used up.
+/// The rule that ends a render. A rule that depends on noise or on time may depend on the picture, which biases its
+/// mean slightly.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Stopping {
+    /// The number of passes is fixed before the render.
+    Fixed,
+    /// A clock or a signal ends the render.
     Time,
-    /// The relative error is low enough.
+    /// The noise of the picture is low enough.
     Noise,
 }
 
+impl Stopping {
+    /// Returns the name of the rule.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Fixed => "fixed",
+            Self::Time => "time",
+            Self::Noise => "noise",
+        }
+    }
+}
+
 /// The time of a run so far.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Spent {
     /// The passes of this run.
     pub passes: u64,
@@ -46,11 +60,11 @@ impl Budget {
         self.first..end
     }
 
-    /// Returns the limit that ends the render before its next pass. None: another pass follows.
-    pub fn reached(&self, session: &Session<'_>, spent: Spent) -> Option<Limit> {
+    /// Returns the rule that ends the render before its next pass. None: another pass follows.
+    pub fn reached(&self, session: &Session<'_>, spent: Spent) -> Option<Stopping> {
         let passes = session.next_pass() - self.first;
         let is_low = |most| Session::looks_at_noise(passes) && session.noise() <= most;
-        let noise = || self.noise.is_some_and(is_low).then_some(Limit::Noise);
+        let noise = || self.noise.is_some_and(is_low).then_some(Stopping::Noise);
         self.used_up(passes, spent).or_else(noise)
     }
 
@@ -58,13 +72,13 @@ impl Budget {
     ///
     /// A pass is expected to take the mean time of those of this run. The first one of a run always has time:
     /// otherwise a render that is continued might never end.
-    fn used_up(&self, passes: u64, spent: Spent) -> Option<Limit> {
+    fn used_up(&self, passes: u64, spent: Spent) -> Option<Stopping> {
         if self.passes.is_some_and(|most| passes >= most) {
-            return Some(Limit::Passes);
+            return Some(Stopping::Fixed);
         }
         let next = spent.rendering.div_f64(spent.passes.max(1) as f64);
         let is_over = |most| spent.passes > 0 && spent.total.saturating_add(next) > most;
-        self.time.is_some_and(is_over).then_some(Limit::Time)
+        self.time.is_some_and(is_over).then_some(Stopping::Time)
     }
 
     /// Estimates the remaining time after `elapsed`, at the rate of the passes from `before` to `now`, which
@@ -111,7 +125,7 @@ mod tests {
 
     /// Checks the limit after `passes`, of which this run rendered some in `rendering` seconds.
     #[track_caller]
-    fn check(passes: u64, [rendered, total, rendering]: [u32; 3], limit: Option<Limit>) {
+    fn check(passes: u64, [rendered, total, rendering]: [u32; 3], limit: Option<Stopping>) {
         let spent = Spent {
             passes: rendered.into(),
             total: SECOND * total,
@@ -124,15 +138,15 @@ mod tests {
     fn a_pass_that_would_exceed_the_time_is_not_started() {
         check(5, [5, 8, 5], None);
         check(5, [2, 7, 6], None);
-        check(5, [2, 8, 6], Some(Limit::Time));
-        check(9, [1, 1, 1], Some(Limit::Passes));
+        check(5, [2, 8, 6], Some(Stopping::Time));
+        check(9, [1, 1, 1], Some(Stopping::Fixed));
     }
 
     #[test]
     fn every_run_renders_a_pass_however_long_training_took() {
         check(5, [0, 20, 0], None);
-        check(6, [1, 20, 0], Some(Limit::Time));
-        check(9, [0, 20, 0], Some(Limit::Passes));
+        check(6, [1, 20, 0], Some(Stopping::Time));
+        check(9, [0, 20, 0], Some(Stopping::Fixed));
     }
 
     #[test]

@@ -20,7 +20,7 @@ mod variance;
 
 pub use crate::settings::Settings;
 pub use accel::Stop;
-pub use budget::{Budget, Limit, Spent};
+pub use budget::{Budget, Spent, Stopping};
 pub use replay::{Landing, Replay, ReplayedTerm, Selection};
 pub use session::{SceneHandle, Session};
 pub use threads::{Shortage, Threads, stand_alone, start_pool};
@@ -71,7 +71,7 @@ pub trait Progress: Sync {
         Stop::NEVER
     }
 
-    /// Returns the host's clock, which is looked at only where a film keeps
+    /// Returns the host's clock, which a session looks at only where its film keeps
     /// [`Aov::Time`](crate::film::Aov::Time). Unit: nanoseconds since any moment.
     fn nanoseconds(&self) -> u64 {
         0

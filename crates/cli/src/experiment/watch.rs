@@ -141,10 +141,6 @@ impl Observer for Watch<'_> {
         Some(time.tv_sec as f64 + 1e-9 * time.tv_nsec as f64)
     }
 
-    fn should_stop(&mut self) -> bool {
-        self.signals.exit().is_some()
-    }
-
     fn stop_flag(&self) -> Arc<AtomicBool> {
         self.signals.stop_flag()
     }

@@ -1,9 +1,9 @@
 //! The lines that a render ends with.
 
-use super::Course;
 use crate::args;
-use bidir::driver::{Budget, Plan, Session};
+use bidir::driver::{Budget, Plan};
 use bidir::integrator::{CandidateCount, IntegratorKind};
+use formats::film::Render;
 use std::time::Duration;
 
 /// Below this number of passes the variance of a pixel is too uncertain for an error.
@@ -35,8 +35,9 @@ pub(crate) struct Summary {
 }
 
 impl Summary {
-    /// The summary of the render of `session`; the caller says if it is denoised, or a part of a render.
-    pub(crate) fn new(session: &Session<'_>, budget: Budget, course: Course) -> Self {
+    /// The summary of a render; the caller says if it is denoised, or a part of a render.
+    pub(crate) fn new(render: &Render, budget: Budget) -> Self {
+        let session = &render.session;
         let film = session.film();
         let (passes, settings) = (film.passes(), film.settings());
         let crop = settings.crop;
@@ -49,7 +50,7 @@ impl Summary {
             wanted: budget.passes,
             part: None,
             crop: (size != settings.resolution).then_some(size),
-            time: course.render,
+            time: render.spent.total,
             error: error.filter(|error| error.is_finite() && *error > 0.0),
             lacks_error: budget.noise.is_some() && passes.len() < LEAST_PASSES,
             is_denoised: false,

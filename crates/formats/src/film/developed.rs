@@ -1,7 +1,7 @@
 //! A developed film as an image file.
 
-use crate::error::Result;
-use crate::image::{self, ExrImage, ExrLayer, MetadataValue};
+use crate::error::{Error, ErrorKind, Result};
+use crate::image::{self, ExrImage, ExrLayer, Format, MetadataValue};
 use bidir::film::{Film, FilmSettings, LayerImage, Picture};
 use std::path::Path;
 
@@ -20,6 +20,26 @@ impl Developed {
         Self {
             picture: film.develop(),
             layers: film.develop_layers(),
+        }
+    }
+
+    /// Writes an image of the kind that its name says: layers and attributes to EXR alone.
+    ///
+    /// Errors: it is of another kind, or cannot be written.
+    pub fn write(
+        &self,
+        path: &Path,
+        film: &FilmSettings,
+        metadata: &[(String, MetadataValue)],
+    ) -> Result<()> {
+        match Format::of(path) {
+            Some(Format::Exr) => self.write_exr(path, film, metadata),
+            Some(Format::Png) => self.write_png(path),
+            _ => {
+                let name = path.display();
+                let message = format!("cannot write `{name}`: output images are .exr or .png");
+                Err(Error::new(ErrorKind::Options, message))
+            }
         }
     }
 

@@ -3,47 +3,13 @@
 use super::broken;
 use super::layers::LayerNames;
 use crate::error::Result;
-use bidir::driver::Limit;
+use bidir::driver::Stopping;
 use bidir::film::{Film, FilmSettings, Filter, Layers, PassSet, PixelRect};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
 use std::path::Path;
-
-/// The rule that ended the render. A rule that depends on noise or on time may depend on the picture, which
-/// biases its mean slightly.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Stopping {
-    /// The number of passes was fixed before the render.
-    Fixed,
-    /// A clock or a signal ended the render.
-    Time,
-    /// The noise of the picture ended the render.
-    Noise,
-}
-
-impl Stopping {
-    /// Returns the name of the rule.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Fixed => "fixed",
-            Self::Time => "time",
-            Self::Noise => "noise",
-        }
-    }
-}
-
-impl From<Limit> for Stopping {
-    fn from(limit: Limit) -> Self {
-        match limit {
-            Limit::Passes => Self::Fixed,
-            Limit::Time => Self::Time,
-            Limit::Noise => Self::Noise,
-        }
-    }
-}
 
 /// The first part of a film file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -6,14 +6,14 @@ use super::header::FilmHeader;
 use super::settings::SettingsText;
 use crate::image::MetadataValue;
 use bidir::ESTIMATOR_VERSION;
-use bidir::driver::{Session, Settings, Training};
+use bidir::driver::{Settings, Training};
 use bidir::scene::Scene;
 use bidir::settings::{flag, text};
+use bidir::stats::Stats;
 use bidir::view::View;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::sync::Arc;
-use std::time::Duration;
 
 /// The version of the program.
 const VERSION: &str = env!("CARGO_PKG_VERSION");
@@ -87,13 +87,12 @@ pub(super) fn new(name: &str, settings: BTreeMap<String, String>) -> FilmHeader 
 }
 
 /// Returns the number of samples that the training of the render was limited to. None: it had all.
-pub fn training_samples(header: &FilmHeader) -> Option<u64> {
+pub(super) fn training_samples(header: &FilmHeader) -> Option<u64> {
     header.settings.get(TRAINING)?.parse().ok()
 }
 
 /// Returns the header without the settings that are known only after training.
-#[must_use]
-pub fn untrained(header: &FilmHeader) -> FilmHeader {
+pub(super) fn untrained(header: &FilmHeader) -> FilmHeader {
     let mut settings = header.settings.clone();
     for name in [TRAINED_MEAN, TRAINING, PLAN] {
         settings.remove(name);
@@ -102,10 +101,8 @@ pub fn untrained(header: &FilmHeader) -> FilmHeader {
 }
 
 /// Returns the counts for film files: numbers that add up when films are merged.
-fn counts(session: &Session<'_>) -> Value {
-    let stats = session.stats();
+pub(super) fn counts(stats: &Stats, training: Option<&Training>) -> Value {
     let rays = &stats.rays;
-    let training = session.training();
     json!({
         "samples": stats.samples,
         "rays": {
@@ -123,15 +120,6 @@ fn counts(session: &Session<'_>) -> Value {
         "candidates_evaluated": stats.candidates,
         "dropped": stats.dropped,
     })
-}
-
-/// Returns the header with the time and the counts of this run.
-pub(super) fn of_run(header: &FilmHeader, session: &Session<'_>, time: Duration) -> FilmHeader {
-    FilmHeader {
-        seconds: time.as_secs_f64(),
-        counts: counts(session),
-        ..header.clone()
-    }
 }
 
 /// Returns the counts by name, such as `rays.camera`.

@@ -37,11 +37,12 @@ mod settings;
 #[cfg(test)]
 mod tests;
 
+pub use bidir::driver::Stopping;
 pub use developed::Developed;
-pub use header::{FilmHeader, Stopping};
-pub use identity::{Subject, counts_by_name, metadata, program, training_samples, untrained};
+pub use header::FilmHeader;
+pub use identity::{Subject, counts_by_name, metadata, program};
 pub use layers::LayerNames;
-pub use render::{ContinueError, Render};
+pub use render::{OpenError, Render, TrainingLimits, Watch};
 pub use settings::SettingsText;
 
 use crate::bytes;
@@ -73,6 +74,20 @@ pub struct FilmFile {
     /// The sums, with the header's geometry and passes. The filter is the default one: only other films can
     /// be added.
     pub film: Film,
+}
+
+impl FilmFile {
+    /// Adds a film of the same render with other passes.
+    ///
+    /// Errors: it belongs to another render, or has passes that are here already.
+    pub fn merge(&mut self, other: &Self) -> std::result::Result<(), OpenError> {
+        if let Some(difference) = other.header.difference(&self.header) {
+            return Err(OpenError::OtherRender(difference));
+        }
+        self.film.merge(&other.film).map_err(OpenError::Merge)?;
+        self.header = self.header.joined(&other.header).of(&self.film);
+        Ok(())
+    }
 }
 
 /// Writes a film file atomically.

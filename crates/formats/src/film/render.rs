@@ -1,18 +1,42 @@
-//! A render whose film can be continued: its session, and the header of its film.
+//! A render: its session, its time, and the film that it continues.
+//!
+//! All hosts, which are the command, the laboratory, references, the viewer and the Python package, render by the
+//! same contract.
+//!
+//! A host gives
+//!
+//! - a [`Subject`], and settings with every request applied;
+//! - itself as [`Progress`]: its clock, by which all time is measured, and its stop, which gives up training or the
+//!   running pass. [`Watch`] is one without further wishes;
+//! - a [`Budget`], and a film to continue, if there is one.
+//!
+//! [`Subject::open`] refuses a film that does not belong to the render, trains, and adds the film.
+//! [`Render::run`] renders pass by pass until the budget is used up, and calls the host after each pass, which may
+//! look, save, show, and end the run. A host with an order of its own calls [`Render::step`] instead.
+//!
+//! A host gets the film with its [`header`](Render::header): time and counts of all runs, and the rule that ended
+//! the last one. A pass that was given up leaves no trace, so that the bits depend on settings and passes alone:
+//! not on threads, interruptions, or the parts that a render was made in.
 
-use super::identity::{new, of_run};
-use super::{FilmFile, FilmHeader, Stopping, Subject};
-use bidir::driver::{Effort, Resources, Session, SessionError, Settings};
-use bidir::film::{FilmError, MergeError};
-use serde_json::Value;
+use super::identity::{counts, new, training_samples, untrained};
+use super::{FilmFile, FilmHeader, Subject};
+use bidir::driver::{
+    Budget, Effort, Progress, Resources, Session, SessionError, Settings, Spent, Stop, Stopping,
+};
+use bidir::film::{FilmError, MergeError, PassSet};
 use std::fmt;
+use std::ops::Range;
 use std::sync::Arc;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// A session with the header of its film, which has time and counts of all runs.
-pub struct Render<'a> {
+pub struct Render {
     /// The session.
-    pub session: Session<'a>,
+    pub session: Session<'static>,
+    /// The passes and the time of this run so far.
+    pub spent: Spent,
+    /// The rule that ends the run: that of [`Self::reached`], or of a host that steps.
+    pub stopping: Stopping,
     /// The header of an empty film.
     header: FilmHeader,
     /// The joined header of the films that the render continues. None: it begins anew.
@@ -21,25 +45,82 @@ pub struct Render<'a> {
     is_training_counted: bool,
 }
 
-/// The reason why a render cannot continue a film.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum ContinueError {
-    /// It is the film of another render, with this difference.
-    OtherRender(String),
-    /// Its sums cannot be added.
-    Merge(MergeError),
+/// A host that has a stop and a clock, and no interest in progress.
+#[derive(Clone, Copy, Debug)]
+pub struct Watch<'a> {
+    /// Its stop.
+    pub stop: Stop<'a>,
+    /// The origin of its clock.
+    pub start: Instant,
 }
 
-impl fmt::Display for ContinueError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::OtherRender(difference) => write!(f, "the film of another render: {difference}"),
-            Self::Merge(error) => error.fmt(f),
+impl Progress for Watch<'_> {
+    fn advance(&self, _samples: u64) {}
+
+    fn stop(&self) -> Stop<'_> {
+        self.stop
+    }
+
+    fn nanoseconds(&self) -> u64 {
+        u64::try_from(self.start.elapsed().as_nanos()).unwrap_or(u64::MAX)
+    }
+}
+
+/// The limits of training. The number of passes is none, so that parts of a render have the training of the whole.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TrainingLimits {
+    /// The maximum number of samples.
+    pub samples: u64,
+    /// The time of the render, of which training gets a part ([`Effort::PART`]). None: it gets what it wants.
+    pub time: Option<Duration>,
+}
+
+impl TrainingLimits {
+    /// Nothing limits training.
+    pub const NONE: Self = Self {
+        samples: u64::MAX,
+        time: None,
+    };
+
+    /// Returns the limits of a render with this time. One that continues the film of `earlier` repeats its training.
+    pub fn new(time: Option<Duration>, earlier: Option<&FilmHeader>) -> Self {
+        match earlier {
+            None => Self { time, ..Self::NONE },
+            Some(earlier) => Self {
+                samples: training_samples(earlier).unwrap_or(u64::MAX),
+                time: None,
+            },
         }
     }
 }
 
-impl std::error::Error for ContinueError {}
+/// The reason why a render cannot begin or continue a film.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum OpenError {
+    /// It is the film of another render, with this difference.
+    OtherRender(String),
+    /// The film has these passes, which are not asked for.
+    Beyond(PassSet),
+    /// Its sums cannot be added.
+    Merge(MergeError),
+    /// The session cannot begin.
+    Session(SessionError),
+}
+
+impl fmt::Display for OpenError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::OtherRender(difference) => write!(f, "the film of another render: {difference}"),
+            Self::Beyond(passes) => {
+                write!(f, "it has the passes {passes}, which are not asked for")
+            }
+            Self::Merge(error) => error.fmt(f),
+            Self::Session(error) => error.fmt(f),
+        }
+    }
+}
+
+impl std::error::Error for OpenError {}
 
 impl Subject {
     /// Begins a render: trains its session.
@@ -49,26 +130,73 @@ impl Subject {
         &self,
         settings: &Settings,
         resources: &Resources,
-        effort: Effort<'_>,
-    ) -> Result<Render<'static>, SessionError> {
+        limits: TrainingLimits,
+        host: &dyn Progress,
+    ) -> Result<Render, SessionError> {
+        let begin = host.nanoseconds();
+        let part = limits.time.map(|time| time / Effort::PART);
+        let effort = Effort {
+            samples: limits.samples,
+            is_late: &|| part.is_some_and(|part| since(begin, host) >= part),
+            stop: host.stop(),
+        };
         let scene = Arc::clone(&self.scene);
         let session = Session::with_effort(scene, &self.view, settings.clone(), resources, effort)?;
-        let header = self.header(settings, session.training());
-        Ok(Render::new(session, header))
+        Ok(Render {
+            header: self.header(settings, session.training()),
+            spent: Spent {
+                passes: 0,
+                total: since(begin, host),
+                rendering: Duration::ZERO,
+            },
+            session,
+            stopping: Stopping::Fixed,
+            earlier: None,
+            is_training_counted: false,
+        })
+    }
+
+    /// Begins the render of a budget, which continues the film `earlier`.
+    ///
+    /// Errors: the film belongs to another render, or has passes beyond the budget; the session cannot begin.
+    pub fn open(
+        &self,
+        settings: &Settings,
+        resources: &Resources,
+        budget: &Budget,
+        earlier: Option<FilmFile>,
+        host: &dyn Progress,
+    ) -> Result<Render, OpenError> {
+        let header = earlier.as_ref().map(|file| &file.header);
+        header.map_or(Ok(()), |header| {
+            self.check(settings, header, budget.range())
+        })?;
+        let limits = TrainingLimits::new(budget.time, header);
+        let begun = self.begin(settings, resources, limits, host);
+        let mut render = begun.map_err(OpenError::Session)?;
+        earlier.map_or(Ok(()), |file| render.add(file))?;
+        render.session.start_at(budget.first);
+        Ok(render)
+    }
+
+    /// Checks before training that a film belongs to the render with these settings, and has only passes in
+    /// `requested`.
+    pub fn check(
+        &self,
+        settings: &Settings,
+        film: &FilmHeader,
+        requested: Range<u64>,
+    ) -> Result<(), OpenError> {
+        check_same(&self.header(settings, None), &untrained(film))?;
+        let others = film.passes.difference(&PassSet::from(requested));
+        if others.is_empty() {
+            return Ok(());
+        }
+        Err(OpenError::Beyond(others))
     }
 }
 
-impl<'a> Render<'a> {
-    /// Begins anew; `header` is that of an empty film.
-    pub fn new(session: Session<'a>, header: FilmHeader) -> Self {
-        Self {
-            session,
-            header,
-            earlier: None,
-            is_training_counted: false,
-        }
-    }
-
+impl Render {
     /// Adds a setting of the host to the identity of the film.
     #[must_use]
     pub fn identified_by(mut self, name: &str, value: String) -> Self {
@@ -78,26 +206,72 @@ impl<'a> Render<'a> {
         self
     }
 
-    /// Returns the header of an empty film.
-    pub fn empty(&self) -> &FilmHeader {
-        &self.header
+    /// Returns the identity of its films.
+    pub fn identity(&self) -> &str {
+        &self.header.identity
     }
 
     /// Adds a film of the same render, whose passes are not rendered again.
     ///
     /// Errors: it belongs to another render, or has passes that are here already.
-    pub fn add(&mut self, file: FilmFile) -> Result<(), ContinueError> {
+    pub fn add(&mut self, file: FilmFile) -> Result<(), OpenError> {
         let FilmFile { header, film } = file;
-        if let Some(difference) = self.header.difference(&header) {
-            return Err(ContinueError::OtherRender(difference));
-        }
-        self.session.add_film(film).map_err(ContinueError::Merge)?;
+        check_same(&self.header, &header)?;
+        self.session.add_film(film).map_err(OpenError::Merge)?;
         let earlier = self.earlier.take();
         self.earlier = Some(match earlier {
             Some(earlier) => earlier.joined(&header),
             None => header,
         });
         Ok(())
+    }
+
+    /// Renders the next pass. False: the host asked to stop, and the pass is forgotten.
+    pub fn step(&mut self, host: &dyn Progress) -> bool {
+        self.pass(&mut host.nanoseconds(), host)
+    }
+
+    /// Renders the next pass, and counts the time since a reading of the host's clock, which becomes that of its end.
+    fn pass(&mut self, last: &mut u64, host: &dyn Progress) -> bool {
+        let is_done = self.session.step(host);
+        let time = since(*last, host);
+        *last += time.as_nanos() as u64;
+        self.spent.total += time;
+        if is_done {
+            self.spent.rendering += time;
+            self.spent.passes += 1;
+        }
+        is_done
+    }
+
+    /// Returns the rule of the budget that ends the render before its next pass, which becomes that of its end. None:
+    /// another pass follows.
+    pub fn reached(&mut self, budget: &Budget) -> Option<Stopping> {
+        let rule = budget.reached(&self.session, self.spent);
+        self.stopping = rule.unwrap_or(Stopping::Time);
+        rule
+    }
+
+    /// Renders pass by pass until the budget is used up, and returns its rule. None: the host asked to stop, or
+    /// `goes_on` returned false, which is called after each pass, and whose time counts in that of the next one.
+    ///
+    /// A stop has no effect on a render that is complete. The first pass is not begun after the time.
+    pub fn run(
+        &mut self,
+        budget: &Budget,
+        host: &dyn Progress,
+        goes_on: &mut dyn FnMut(&Self) -> bool,
+    ) -> Option<Stopping> {
+        let mut last = host.nanoseconds();
+        loop {
+            if let Some(rule) = self.reached(budget) {
+                return Some(rule);
+            }
+            let is_over = budget.time.is_some_and(|time| self.spent.total >= time);
+            if is_over || host.stop().is_asked() || !self.pass(&mut last, host) || !goes_on(self) {
+                return None;
+            }
+        }
     }
 
     /// Returns true if the film is the one that the render continues, with no pass more.
@@ -107,43 +281,68 @@ impl<'a> Render<'a> {
         earlier.is_some_and(|earlier| earlier.passes == *passes)
     }
 
-    /// Returns the header of the film so far. `time` and `stopping` are those of this run. That of a film without a
-    /// further pass stays as it was, so that its file does.
-    pub fn header(&self, time: Duration, stopping: Stopping) -> FilmHeader {
+    /// Returns the header of the film so far. That of a film without a further pass stays as it was, so that its file
+    /// does.
+    pub fn header(&self) -> FilmHeader {
         let all = match &self.earlier {
             Some(earlier) if self.is_unchanged() => return earlier.clone(),
-            Some(earlier) => self.of_run(time).joined(earlier),
-            None => self.of_run(time),
+            Some(earlier) => self.of_run().joined(earlier),
+            None => self.of_run(),
         };
+        let stopping = self.stopping;
         FilmHeader { stopping, ..all }.of(self.session.film())
     }
 
     /// Returns the header with time and counts of this run alone.
-    fn of_run(&self, time: Duration) -> FilmHeader {
-        let mut header = of_run(&self.header, &self.session, time);
-        if self.is_training_counted
-            && let Some(training) = header.counts.pointer_mut("/rays/training")
-        {
-            *training = Value::from(0);
+    fn of_run(&self) -> FilmHeader {
+        let training = self.session.training();
+        let training = training.filter(|_| !self.is_training_counted);
+        FilmHeader {
+            seconds: self.spent.total.as_secs_f64(),
+            counts: counts(self.session.stats(), training),
+            ..self.header.clone()
         }
-        header
+    }
+
+    /// Copies the film.
+    ///
+    /// Errors: the system does not have the memory of another film.
+    pub fn file(&self) -> Result<FilmFile, FilmError> {
+        let film = self.session.film().try_clone()?;
+        Ok(FilmFile {
+            header: self.header(),
+            film,
+        })
     }
 
     /// Takes the film; the session goes on with an empty one, and does not count its training again.
     ///
     /// Errors: the system does not have the memory of another film; the render is as before.
-    pub fn take(&mut self, time: Duration, stopping: Stopping) -> Result<FilmFile, FilmError> {
-        let header = self.header(time, stopping);
+    pub fn take(&mut self) -> Result<FilmFile, FilmError> {
+        let header = self.header();
         let (film, _) = self.session.take_film()?;
         self.earlier = None;
         self.is_training_counted = true;
+        self.spent = Spent::default();
         Ok(FilmFile { header, film })
     }
 
     /// Ends the render.
-    pub fn into_file(self, time: Duration, stopping: Stopping) -> FilmFile {
-        let header = self.header(time, stopping);
+    pub fn into_file(self) -> FilmFile {
+        let header = self.header();
         let film = self.session.into_film();
         FilmFile { header, film }
     }
+}
+
+/// Checks that `in_film` is a header of the same render as `expected`.
+fn check_same(expected: &FilmHeader, in_film: &FilmHeader) -> Result<(), OpenError> {
+    let places = ["in this render", "in the film"];
+    let difference = expected.difference_between(in_film, places);
+    difference.map_or(Ok(()), |difference| Err(OpenError::OtherRender(difference)))
+}
+
+/// Returns the time since the reading `begin` of the host's clock.
+fn since(begin: u64, host: &dyn Progress) -> Duration {
+    Duration::from_nanos(host.nanoseconds().saturating_sub(begin))
 }

@@ -1,7 +1,11 @@
 use super::*;
+use crate::pbrt::{LoadOptions, build, parse_text};
+use bidir::driver::{Budget, Progress};
 use bidir::film::{Aov, FilmSettings, Filter, PassBuffer, PassSet, SplatPlace};
 use bidir::math::Vec2;
 use serde_json::json;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::Duration;
 
 /// Returns a film of more than two blocks, with sums of both signs.
 fn film(first_pass: u64) -> Film {
@@ -172,4 +176,72 @@ fn headers_add_up() {
     let joined = header().joined(&header());
     assert_eq!(joined.counts, json!({"rays": {"camera": 24}, "dropped": 0}));
     assert!((joined.seconds - 3.0).abs() < 1e-9);
+}
+
+/// A host whose clock goes on by a second with each reading.
+#[derive(Default)]
+struct Readings(AtomicU64);
+
+impl Progress for Readings {
+    fn advance(&self, _samples: u64) {}
+
+    fn nanoseconds(&self) -> u64 {
+        self.0.fetch_add(1_000_000_000, Ordering::Relaxed)
+    }
+}
+
+#[test]
+fn a_render_ends_by_its_budget_or_its_host_and_can_be_continued() {
+    let text = "Integrator \"path\" Film \"rgb\" \"integer xresolution\" 2 \"integer yresolution\" 2 \
+                WorldBegin LightSource \"infinite\"";
+    let scene = parse_text("s.pbrt", text).unwrap();
+    let loaded = build(&scene, &LoadOptions::default()).unwrap();
+    let (subject, settings) = (loaded.subject(), loaded.settings.render_settings());
+    let (host, resources) = (Readings::default(), Resources::default());
+    let run = |time: Option<u64>, earlier: Option<FilmFile>, most: u64| {
+        let budget = Budget {
+            passes: Some(5),
+            time: time.map(Duration::from_secs),
+            ..Budget::default()
+        };
+        let opened = subject.open(&settings, &resources, &budget, earlier, &host);
+        let mut render = opened.unwrap();
+        let rule = render.run(&budget, &host, &mut |render| render.spent.passes < most);
+        (rule, render.into_file())
+    };
+    let (rule, whole) = run(None, None, 9);
+    assert_eq!(rule, Some(Stopping::Fixed));
+    assert_eq!(whole.header.stopping, Stopping::Fixed);
+    // Training and each pass take a second.
+    assert_eq!(whole.header.seconds as u64, 6);
+    let (rule, part) = run(None, None, 2);
+    assert_eq!((rule, part.header.stopping), (None, Stopping::Time));
+    let (rule, rest) = run(None, Some(part), 9);
+    assert_eq!(rule, Some(Stopping::Fixed));
+    assert!(rest.film == whole.film && rest.header.counts == whole.header.counts);
+    let (rule, short) = run(Some(4), None, 9);
+    assert_eq!((rule, short.header.passes.len()), (Some(Stopping::Time), 3));
+    let (rule, late) = run(Some(1), None, 9);
+    assert_eq!((rule, late.header.passes.len()), (None, 0));
+    let beyond = subject.check(&settings, &whole.header, 0..3).unwrap_err();
+    assert_eq!(beyond, OpenError::Beyond(PassSet::from(3..5)));
+}
+
+#[test]
+fn a_continued_render_repeats_its_training() {
+    let trained = |more: &[(&str, &str)]| {
+        let settings = [("trained-mean", "1e0")].iter().chain(more);
+        let settings = settings.map(|&(name, value)| (name.to_owned(), value.to_owned()));
+        FilmHeader::new("bidir", "room.pbrt".to_owned(), settings.collect())
+    };
+    let second = Some(Duration::from_secs(1));
+    for (time, earlier, expected) in [
+        (second, None, (u64::MAX, second)),
+        (second, Some(trained(&[])), (u64::MAX, None)),
+        (second, Some(trained(&[("training", "64")])), (64, None)),
+        (None, None, (u64::MAX, None)),
+    ] {
+        let rules = TrainingLimits::new(time, earlier.as_ref());
+        assert_eq!((rules.samples, rules.time), expected);
+    }
 }

@@ -38,18 +38,21 @@ pub(crate) use volumes::Content as VolumeContent;
 
 use crate::error::{Error, ErrorKind, FilePlace, Result};
 use crate::files::Files;
+use crate::film::Subject;
 use crate::limits;
 use crate::source::Fault;
 use assembly::Built;
 use bidir::camera::Camera;
 use bidir::driver::Settings;
-use bidir::film::{Aov, FilmSettings, Layers};
+use bidir::film::{Aov, FilmError, FilmSettings, Layers};
 use bidir::integrator::IntegratorKind;
 use bidir::sampler::SamplerKind;
 use bidir::scene::Scene;
 use bidir::view::View;
+use serde::Serialize;
 use std::collections::BTreeSet;
 use std::path::PathBuf;
+use std::sync::Arc;
 
 /// The contents of a scene file.
 pub(crate) trait Document {
@@ -75,8 +78,10 @@ pub(crate) trait Document {
 /// A scene that was read, with its warnings and files.
 #[derive(Debug)]
 pub struct Loaded {
+    /// The name of the scene file as it was given.
+    pub name: String,
     /// The scene.
-    pub scene: Scene,
+    pub scene: Arc<Scene>,
     /// The camera of the file, and its film.
     pub view: View,
     /// The settings of a render, by the file.
@@ -99,6 +104,29 @@ pub struct Loaded {
     /// Every file on the disk that the scene reads or names: no output may replace it
     /// ([`outputs`](crate::outputs)).
     pub inputs: Vec<PathBuf>,
+}
+
+impl Loaded {
+    /// Returns what is rendered.
+    pub fn subject(&self) -> Subject {
+        Subject {
+            name: self.name.clone(),
+            digest: self.digest.to_string(),
+            scene: Arc::clone(&self.scene),
+            view: self.view.clone(),
+        }
+    }
+
+    /// Returns the error of a film that is too large, at the place that gives its size. It has no place where the
+    /// caller's options give it.
+    pub fn too_large(&self, error: &FilmError) -> Error {
+        let [width, height] = self.view.film().resolution;
+        let message = format!("a film of {width} x {height} pixels is too large: {error}");
+        match &self.film_place {
+            Some(place) => place.error(ErrorKind::Memory, message),
+            None => Error::new(ErrorKind::Memory, message),
+        }
+    }
 }
 
 /// The settings of a render in a scene file.
@@ -135,7 +163,7 @@ impl SceneSettings {
 }
 
 /// The parts of a scene.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Summary {
     /// Shapes as they are kept: those of shared objects count once.
     pub shapes: usize,
@@ -251,10 +279,12 @@ pub(crate) fn load<'a, D: Document>(
         let fault = Fault::new(ErrorKind::Limit, place, String::new());
         document.error(fault).into_place()
     });
+    let name = log.files.first().map(|name| name.display().to_string());
     Ok(Loaded {
+        name: name.unwrap_or_default(),
         film_place,
         lamps: lamp::unhittable(&built.scene, &built.lamps, text),
-        scene: built.scene,
+        scene: built.scene.into(),
         view: built.view,
         settings: built.settings,
         warnings: log.texts(text, |_| true),

@@ -4,13 +4,12 @@ use super::error::{ExperimentError, Place};
 use super::{Experiment, MethodSpec, SceneSource, SceneSpec};
 use crate::image::Pixels;
 use crate::results::SceneInfo;
-use bidir::driver::{Effort, Resources, Session, SessionError, Settings, Stop};
+use bidir::driver::{Progress, Resources, SessionError, Settings};
 use bidir::film::Layers;
 use bidir::integrator::IntegratorKind;
-use formats::film::Subject;
-use formats::scene::{Files, LoadOptions};
+use formats::film::{Render, Subject, TrainingLimits};
+use formats::scene::{Files, LoadOptions, Loaded};
 use std::path::PathBuf;
-use std::sync::Arc;
 
 /// A scene in memory, with the settings of its file.
 pub(super) struct LoadedScene<'a> {
@@ -18,12 +17,8 @@ pub(super) struct LoadedScene<'a> {
     pub(super) subject: Subject,
     /// The settings of the file, over the defaults.
     pub(super) settings: Settings,
-    /// Warnings about the file.
-    pub(super) warnings: Vec<String>,
-    /// All files read for it.
-    pub(super) files: Vec<PathBuf>,
-    /// The files that no output may replace.
-    pub(super) inputs: Vec<PathBuf>,
+    /// The scene as it was read.
+    pub(super) read: Loaded,
 }
 
 /// The image that all renders of a scene are compared with.
@@ -62,9 +57,7 @@ impl<'a> LoadedScene<'a> {
             spec,
             subject: Subject {
                 name: spec.file.clone(),
-                digest: loaded.digest.to_string(),
-                scene: Arc::new(loaded.scene),
-                view: loaded.view,
+                ..loaded.subject()
             },
             // The experiment sets the seeds, and needs no layers.
             settings: Settings {
@@ -72,16 +65,14 @@ impl<'a> LoadedScene<'a> {
                 layers: Layers::default(),
                 ..loaded.settings.render_settings()
             },
-            warnings: loaded.warnings,
-            files: loaded.files,
-            inputs: loaded.inputs,
+            read: loaded,
         })
     }
 
     /// Returns the files that another machine needs: those on the disk.
     pub(super) fn shared_files(&self) -> Vec<PathBuf> {
         if self.spec.source == SceneSource::Disk {
-            self.files.clone()
+            self.read.files.clone()
         } else {
             Vec::new()
         }
@@ -124,24 +115,20 @@ impl<'a> LoadedScene<'a> {
         }
     }
 
-    /// Starts a session of this scene. None: it was asked to stop in training.
-    pub(super) fn session(
+    /// Begins a render of this scene. None: the host asked to stop in training.
+    pub(super) fn begin(
         &self,
-        settings: Settings,
+        settings: &Settings,
         threads: usize,
-        stop: Stop<'_>,
-    ) -> Result<Option<Session<'_>>, ExperimentError> {
+        host: &dyn Progress,
+    ) -> Result<Option<Render>, ExperimentError> {
         let resources = Resources {
             threads,
             ..Resources::default()
         };
-        let effort = Effort {
-            stop,
-            ..Effort::WHOLE
-        };
-        let Subject { scene, view, .. } = &self.subject;
-        match Session::with_effort(&**scene, view, settings, &resources, effort) {
-            Ok(session) => Ok(Some(session)),
+        let limits = TrainingLimits::NONE;
+        match self.subject.begin(settings, &resources, limits, host) {
+            Ok(render) => Ok(Some(render)),
             Err(SessionError::Stopped) => Ok(None),
             Err(error) => Err(ExperimentError::Render {
                 scene: self.spec.name.clone(),

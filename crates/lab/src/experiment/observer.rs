@@ -2,8 +2,8 @@
 
 use crate::results::Record;
 use bidir::driver::{Progress, Stop};
-use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// The host of an experiment: receives events, supplies the clocks, and can stop the run.
 ///
@@ -21,26 +21,72 @@ pub trait Observer: Send {
         None
     }
 
-    /// Returns true to stop; called before each pass. The unfinished render is then dropped.
-    fn should_stop(&mut self) -> bool {
-        false
-    }
-
-    /// Returns the flag that asks to leave the running pass or training, too. It is set only if
-    /// [`Self::should_stop`] then returns true.
+    /// Returns the flag that asks to stop. The unfinished render is then dropped.
     fn stop_flag(&self) -> Arc<AtomicBool> {
         Arc::default()
     }
 }
 
-/// Leaves a pass when the flag of an observer is set.
-pub(super) struct Pass<'a>(pub(super) &'a AtomicBool);
+/// An observer as the host of a render.
+pub(super) struct Host<'a> {
+    observer: Mutex<&'a mut dyn Observer>,
+    flag: Arc<AtomicBool>,
+    samples: AtomicU64,
+    samples_per_pass: u64,
+    /// The event of a pass, by the number of those before it. None: nobody hears of it.
+    event: &'a (dyn Fn(u64) -> Option<Event<'a>> + Sync),
+}
 
-impl Progress for Pass<'_> {
-    fn advance(&self, _samples: u64) {}
+impl<'a> Host<'a> {
+    /// Hosts a render in silence.
+    pub(super) fn new(observer: &'a mut dyn Observer) -> Self {
+        Self::telling(observer, 1, &|_| None)
+    }
+
+    /// Tells the observer of each pass that begins.
+    pub(super) fn telling(
+        observer: &'a mut dyn Observer,
+        samples_per_pass: u64,
+        event: &'a (dyn Fn(u64) -> Option<Event<'a>> + Sync),
+    ) -> Self {
+        let host = Self {
+            flag: observer.stop_flag(),
+            observer: Mutex::new(observer),
+            samples: AtomicU64::new(0),
+            samples_per_pass: samples_per_pass.max(1),
+            event,
+        };
+        host.tell(0);
+        host
+    }
+
+    fn tell(&self, passes: u64) {
+        if let Some(event) = (self.event)(passes) {
+            self.with(|observer| observer.notify(event));
+        }
+    }
+
+    pub(super) fn with<T>(&self, ask: impl FnOnce(&mut dyn Observer) -> T) -> T {
+        let observer = self.observer.lock();
+        ask(*observer.unwrap_or_else(PoisonError::into_inner))
+    }
+}
+
+impl Progress for Host<'_> {
+    fn advance(&self, samples: u64) {
+        let before = self.samples.fetch_add(samples, Ordering::Relaxed);
+        let passes = [before, before + samples].map(|samples| samples / self.samples_per_pass);
+        if passes[0] < passes[1] {
+            self.tell(passes[1]);
+        }
+    }
 
     fn stop(&self) -> Stop<'_> {
-        Stop::when(self.0)
+        Stop::when(&self.flag)
+    }
+
+    fn nanoseconds(&self) -> u64 {
+        (self.with(|observer| observer.seconds()) * 1e9) as u64
     }
 }
 

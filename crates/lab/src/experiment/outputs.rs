@@ -35,7 +35,7 @@ pub(super) fn check(
     let given = scenes.iter().flat_map(given);
     let inputs = scenes
         .iter()
-        .flat_map(|loaded| loaded.inputs.iter().cloned());
+        .flat_map(|loaded| loaded.read.inputs.iter().cloned());
     let read: Vec<_> = inputs.chain(given).collect();
     check_all(read.iter().map(PathBuf::as_path), &written)
 }

@@ -7,12 +7,12 @@ use super::error::ExperimentError;
 use super::journal::Journal;
 use super::loaded_scene::LoadedScene;
 use super::names::file_name;
-use super::observer::{Event, Observer, Pass};
+use super::observer::{Event, Host, Observer};
 use super::run_set::{End, Setup};
 use super::{Experiment, MethodSpec, PyramidSpec, SceneSpec, is_in};
 use crate::pyramid::{self, Figures};
 use crate::results::{Pyramid, StrategyInfo};
-use bidir::driver::{Session, Stop};
+use bidir::driver::{Budget, Session};
 use bidir::film::Layers;
 use formats::scene::Files;
 
@@ -148,26 +148,28 @@ impl PyramidRun<'_> {
         let mut settings = self.method.request.apply(&self.scene.settings);
         settings.seed = self.experiment.seeds.first;
         settings.layers = Layers::new(&[], &[], pyramid::VERTICES.into()).with_raw();
-        let (flag, threads) = (observer.stop_flag(), self.experiment.threads);
-        let started = self.scene.session(settings, threads, Stop::when(&flag))?;
-        let Some(mut session) = started else {
+        let (scene, of) = (&*self.scene.spec.name, self.spec.spp);
+        let event = |passes| (passes < of).then_some(Event::Pyramid { scene, passes, of });
+        let area = self.scene.subject.view.film().crop.area();
+        let host = Host::telling(observer, area, &event);
+        let begun = self
+            .scene
+            .begin(&settings, self.experiment.threads, &host)?;
+        let Some(mut render) = begun else {
             return Ok(None);
         };
-        for passes in 0..self.spec.spp {
-            observer.notify(Event::Pyramid {
-                scene: &self.scene.spec.name,
-                passes,
-                of: self.spec.spp,
-            });
-            if observer.should_stop() || !session.step(&Pass(&flag)) {
-                return Ok(None);
-            }
+        let budget = Budget {
+            passes: Some(of),
+            ..Budget::default()
+        };
+        if render.run(&budget, &host, &mut |_| true).is_none() {
+            return Ok(None);
         }
         let images = file(self.scene);
-        let film = session.film();
+        let film = render.session.film();
         let developed = pyramid::developed(film);
         developed.write_exr(&self.setup.folder.join(&images), film.settings(), &[])?;
-        Ok(Some(self.summary(&session, images)))
+        Ok(Some(self.summary(&render.session, images)))
     }
 
     fn summary(&self, session: &Session<'_>, images: String) -> Pyramid {

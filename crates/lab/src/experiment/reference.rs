@@ -3,7 +3,7 @@
 use super::error::{ExperimentError, Place};
 use super::loaded_scene::{LoadedScene, Reference};
 use super::names::file_name;
-use super::observer::{Event, Observer};
+use super::observer::{self, Event, Observer};
 use super::run::write_image;
 use super::run_set::{RunSet, Setup};
 use super::settings::texts;
@@ -12,12 +12,10 @@ use crate::image::Pixels;
 use crate::reference::{self as references, Host, Plan};
 use crate::seal::sha256;
 use bidir::ESTIMATOR_VERSION;
-use bidir::driver::{Progress, Resources, Stop};
+use bidir::driver::{Progress, Resources};
 use bidir::integrator::IntegratorKind;
 use bidir::path::{MisHeuristic, Strategies};
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
 
 type Result<T> = std::result::Result<T, ExperimentError>;
 
@@ -270,11 +268,13 @@ fn make(
         threads,
         ..Resources::default()
     };
-    let watch = Watch::new(loaded, plan, observer);
+    let (scene, of) = (&*loaded.spec.name, 2 * plan.rounded_spp());
+    let event = |passes| (passes < of).then_some(Event::Reference { scene, passes, of });
+    let area = loaded.subject.view.film().crop.area();
+    let host = observer::Host::telling(observer, area, &event);
     let host = Host {
-        progress: &watch,
-        should_end: &|| watch.should_end(),
-        found: &|samples| watch.advance(samples),
+        progress: &host,
+        found: &|samples| host.advance(samples),
     };
     let made = references::make(&path, &loaded.subject, plan, &resources, host);
     let Some(reference) = made.map_err(|error| failed(loaded, error))? else {
@@ -283,59 +283,4 @@ fn make(
     let usable = reference.provenance.check_usable(&path);
     usable.map_err(|error| failed(loaded, error))?;
     new(loaded, reference, Some(&name)).map(Some)
-}
-
-/// Passes the progress of a reference on to an observer.
-struct Watch<'a> {
-    scene: &'a str,
-    samples_per_pass: u64,
-    passes: u64,
-    samples: AtomicU64,
-    flag: Arc<AtomicBool>,
-    observer: Mutex<&'a mut dyn Observer>,
-}
-
-impl<'a> Watch<'a> {
-    fn new(loaded: &'a LoadedScene<'_>, plan: &Plan, observer: &'a mut dyn Observer) -> Self {
-        Self {
-            scene: &loaded.spec.name,
-            samples_per_pass: loaded.subject.view.film().crop.area().max(1),
-            passes: 2 * plan.rounded_spp(),
-            samples: AtomicU64::new(0),
-            flag: observer.stop_flag(),
-            observer: Mutex::new(observer),
-        }
-    }
-
-    /// Reports the finished passes. Returns true if the observer stops the render.
-    fn should_end(&self) -> bool {
-        let passes = self.samples.load(Ordering::Relaxed) / self.samples_per_pass;
-        self.with(|observer| {
-            observer.notify(Event::Reference {
-                scene: self.scene,
-                passes,
-                of: self.passes,
-            });
-            observer.should_stop()
-        })
-    }
-
-    fn with<T>(&self, ask: impl FnOnce(&mut dyn Observer) -> T) -> T {
-        let observer = self.observer.lock();
-        ask(*observer.unwrap_or_else(PoisonError::into_inner))
-    }
-}
-
-impl Progress for Watch<'_> {
-    fn advance(&self, samples: u64) {
-        self.samples.fetch_add(samples, Ordering::Relaxed);
-    }
-
-    fn stop(&self) -> Stop<'_> {
-        Stop::when(&self.flag)
-    }
-
-    fn nanoseconds(&self) -> u64 {
-        (self.with(|observer| observer.seconds()) * 1e9) as u64
-    }
 }

@@ -3,13 +3,14 @@
 use super::error::ExperimentError;
 use super::loaded_scene::{LoadedScene, Reference};
 use super::names::file_name;
-use super::observer::{Observer, Pass};
+use super::observer::{Host, Observer};
 use super::{BudgetSpec, MethodSpec};
 use crate::image::{Pair, Pixels};
 use crate::metric::Metric;
 use crate::results::{BudgetKind, Rays, Record};
-use bidir::driver::{Session, Stop};
+use bidir::driver::{Budget, Progress, Session, Spent};
 use bidir::film::Picture;
+use formats::film::Render;
 use formats::image::{ExrImage, ExrLayer};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -34,6 +35,14 @@ pub(super) struct Rendered {
     connections_blocked: u64,
 }
 
+/// A time on both clocks of the host. Unit: seconds.
+#[derive(Clone, Copy)]
+struct Moment {
+    seconds: f64,
+    /// Of all threads. None: the host does not measure it.
+    processor_seconds: Option<f64>,
+}
+
 impl Run<'_> {
     /// Renders until the budget is used up. None: the observer stopped it.
     pub(super) fn render(
@@ -43,49 +52,57 @@ impl Run<'_> {
     ) -> Result<Option<Rendered>, ExperimentError> {
         let mut settings = self.method.request.apply(&self.scene.settings);
         settings.seed = self.seed;
-        let mut time = Moment::default();
-        let begin = Moment::now(observer);
-        let flag = observer.stop_flag();
-        let started = self.scene.session(settings, threads, Stop::when(&flag))?;
-        let Some(mut session) = started else {
+        let host = Host::new(observer);
+        let processors = || host.with(|observer| observer.processor_seconds());
+        let begin = processors();
+        let moment = |render: &Render| Moment {
+            seconds: render.spent.total.as_secs_f64(),
+            processor_seconds: processors().zip(begin).map(|(now, begin)| now - begin),
+        };
+        let Some(mut render) = self.scene.begin(&settings, threads, &host)? else {
             return Ok(None);
         };
-        time.add_since(begin, observer);
-        let training = time;
-        while self.allows_another_pass(&session, time.seconds, training.seconds) {
-            if observer.should_stop() {
-                return Ok(None);
-            }
-            let begin = Moment::now(observer);
-            if !session.step(&Pass(&flag)) {
-                return Ok(None);
-            }
-            time.add_since(begin, observer);
+        let training = moment(&render);
+        let is_of_samples = self.budget.kind == BudgetKind::Samples;
+        let budget = Budget {
+            passes: is_of_samples.then_some(self.budget.amount.ceil() as u64),
+            ..Budget::default()
+        };
+        let goes_on = &mut |render: &Render| self.allows_another_pass(render);
+        if render.run(&budget, &host, goes_on).is_none() && host.stop().is_asked() {
+            return Ok(None);
         }
+        let time = moment(&render);
         Ok(Some(Rendered {
-            picture: session.film().develop(),
-            spp: session.next_pass(),
+            picture: render.session.film().develop(),
+            spp: render.spent.passes,
             time,
             training,
-            rays: rays(&session),
-            connections_blocked: session.stats().connections_blocked,
+            rays: rays(&render.session),
+            connections_blocked: render.session.stats().connections_blocked,
         }))
     }
 
     /// Returns true if the budget allows another pass.
-    fn allows_another_pass(&self, session: &Session<'_>, seconds: f64, training: f64) -> bool {
-        let passes = session.next_pass();
+    fn allows_another_pass(&self, render: &Render) -> bool {
+        let Spent {
+            passes,
+            total,
+            rendering,
+        } = render.spent;
+        let amount = self.budget.amount;
         match self.budget.kind {
-            BudgetKind::Samples => (passes as f64) < self.budget.amount,
+            BudgetKind::Samples => true,
             BudgetKind::Seconds => {
-                another(passes, seconds, training, |next| next <= self.budget.amount)
+                let [total, rendering] = [total, rendering].map(|time| time.as_secs_f64());
+                total + rendering / passes as f64 <= amount
             }
             BudgetKind::Rays => {
-                let rays = rays(session);
-                let target = self.budget.amount * self.scene.subject.view.film().crop.area() as f64;
+                let rays = rays(&render.session);
+                let target = amount * self.scene.subject.view.film().crop.area() as f64;
                 let now = rays.total() as f64;
-                let is_nearer = |next: f64| (next - target).abs() < (now - target).abs();
-                another(passes, now, rays.training as f64, is_nearer)
+                let next = now + (now - rays.training as f64) / passes as f64;
+                (next - target).abs() < (now - target).abs()
             }
         }
     }
@@ -145,48 +162,6 @@ impl Rendered {
     }
 }
 
-/// Time on both clocks of the host, since an arbitrary moment. Unit: seconds.
-#[derive(Clone, Copy)]
-struct Moment {
-    seconds: f64,
-    /// Of all threads. None: the host does not measure it.
-    processor_seconds: Option<f64>,
-}
-
-impl Default for Moment {
-    fn default() -> Self {
-        Self {
-            seconds: 0.0,
-            processor_seconds: Some(0.0),
-        }
-    }
-}
-
-impl Moment {
-    fn now(observer: &dyn Observer) -> Self {
-        Self {
-            seconds: observer.seconds(),
-            processor_seconds: observer.processor_seconds(),
-        }
-    }
-
-    /// Adds the time since `begin`.
-    fn add_since(&mut self, begin: Self, observer: &dyn Observer) {
-        let now = Self::now(observer);
-        self.seconds += now.seconds - begin.seconds;
-        let processors = now.processor_seconds.zip(begin.processor_seconds);
-        let sum = self.processor_seconds.zip(processors);
-        self.processor_seconds = sum.map(|(sum, (now, begin))| sum + now - begin);
-    }
-}
-
-/// Returns true if another pass follows `passes`: always the first one, and later ones if `accepts`
-/// accepts the expected cost after them. `now` is the cost so far, `training` the part before the first
-/// pass.
-fn another(passes: u64, now: f64, training: f64, accepts: impl Fn(f64) -> bool) -> bool {
-    passes == 0 || accepts(now + (now - training) / passes as f64)
-}
-
 /// Computes 1 / (MSE · cost): zero if the error is unknown, the largest number if it is zero.
 fn efficiency(mse: f64, cost: f64) -> f64 {
     let efficiency = 1.0 / (mse * cost);
@@ -242,13 +217,6 @@ pub(super) fn write_image(path: &Path, image: &Pixels) -> Result<(), ExperimentE
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn another_pass_is_expected_to_cost_the_mean_of_passes() {
-        assert!(another(0, 9.0, 9.0, |_| false));
-        // Two passes of 3 after training of 4.
-        assert!(another(2, 10.0, 4.0, |next| (next - 13.0).abs() < 1e-9));
-    }
 
     #[test]
     fn efficiency_is_always_a_number() {

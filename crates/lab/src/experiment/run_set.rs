@@ -127,7 +127,7 @@ pub(super) fn start<'a>(
     let load = |spec| LoadedScene::load(experiment, spec, &Files::default());
     let scenes = experiment.scenes.iter().map(load);
     let scenes = scenes.collect::<Result<Vec<_>>>()?;
-    for warning in scenes.iter().flat_map(|loaded| &loaded.warnings) {
+    for warning in scenes.iter().flat_map(|loaded| &loaded.read.warnings) {
         observer.notify(Event::Warning(warning));
     }
     check_strategies(experiment, &scenes, observer)?;

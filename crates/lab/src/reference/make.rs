@@ -24,10 +24,8 @@ const NAMES: [&str; 2] = ["picture", "against"];
 /// The host of [`make`].
 #[derive(Clone, Copy)]
 pub struct Host<'a> {
-    /// Receives progress, may supply a clock, and may ask to leave the running pass.
+    /// Receives progress, may supply a clock, and may ask to stop; a later [`make`] continues.
     pub progress: &'a dyn Progress,
-    /// Returns true to stop before the next pass; a later [`make`] continues.
-    pub should_end: &'a dyn Fn() -> bool,
     /// Receives the number of samples in existing films.
     pub found: &'a dyn Fn(u64),
 }

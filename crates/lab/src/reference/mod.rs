@@ -43,7 +43,6 @@ use crate::image::{Pixels, digest};
 use crate::statistics::Estimated;
 use bidir::driver::SessionError;
 use bidir::film::{FilmSettings, MergeError, Picture};
-use formats::film::ContinueError;
 use std::path::{Path, PathBuf};
 use thiserror::Error;
 
@@ -137,16 +136,6 @@ impl Error {
         Self::Damaged {
             path: path.to_owned(),
             reason: reason.into(),
-        }
-    }
-
-    fn continued(path: &Path, error: ContinueError) -> Self {
-        match error {
-            ContinueError::OtherRender(difference) => Self::OtherRender {
-                path: path.to_owned(),
-                difference,
-            },
-            ContinueError::Merge(error) => Self::merge(path, &error),
         }
     }
 

@@ -3,9 +3,9 @@
 use super::make::Host;
 use super::{Error, FILMS, REPLICATES};
 use crate::image::Pixels;
-use bidir::driver::{Effort, Resources, SessionError, Settings};
+use bidir::driver::{Budget, Resources, SessionError, Settings};
 use bidir::film::{Film, PassSet};
-use formats::film::{FilmFile, FilmHeader, Render, Stopping, Subject};
+use formats::film::{FilmFile, FilmHeader, OpenError, Render, Subject};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -84,8 +84,7 @@ impl Estimator<'_> {
         settings: &Settings,
         host: Host<'_>,
     ) -> Result<Option<FilmFile>, Error> {
-        let untrained = self.subject.header(settings, None);
-        let earlier = self.earlier(path, &untrained)?;
+        let earlier = self.earlier(path, settings)?;
         if let Some(file) = &earlier {
             let area = self.subject.view.film().crop.area();
             (host.found)(file.header.passes.len() * area);
@@ -99,22 +98,14 @@ impl Estimator<'_> {
     /// Reads the existing film of a replicate, if any.
     ///
     /// Errors: it is damaged, belongs to another render, or has more passes than requested.
-    fn earlier(&self, path: &Path, header: &FilmHeader) -> Result<Option<FilmFile>, Error> {
+    fn earlier(&self, path: &Path, settings: &Settings) -> Result<Option<FilmFile>, Error> {
         if !path.exists() {
             return Ok(None);
         }
         let file = formats::film::read(path)?;
-        check(path, header, &formats::film::untrained(&file.header))?;
-        let passes = &file.header.passes;
-        if passes.difference(&PassSet::from(0..self.passes)).is_empty() {
-            return Ok(Some(file));
-        }
-        let most = passes.ranges().last().map_or(0, |range| range.end);
-        Err(Error::TooLong {
-            folder: self.folder.to_owned(),
-            found: most.saturating_mul(REPLICATES),
-            requested: self.passes.saturating_mul(REPLICATES),
-        })
+        let checked = self.subject.check(settings, &file.header, 0..self.passes);
+        checked.map_err(|error| self.refused(path, error))?;
+        Ok(Some(file))
     }
 
     fn render(
@@ -124,59 +115,63 @@ impl Estimator<'_> {
         earlier: Option<FilmFile>,
         host: Host<'_>,
     ) -> Result<Option<FilmFile>, Error> {
-        let start = host.progress.nanoseconds();
-        let since = |start| Duration::from_nanos(host.progress.nanoseconds().saturating_sub(start));
-        let effort = Effort {
-            stop: host.progress.stop(),
-            ..Effort::WHOLE
+        let budget = Budget {
+            passes: Some(self.passes),
+            ..Budget::default()
         };
-        let begun = self.subject.begin(settings, self.resources, effort);
-        let mut render = match begun {
-            Err(SessionError::Stopped) => return Ok(None),
-            begun => begun?,
+        let (resources, progress) = (self.resources, host.progress);
+        let opened = self
+            .subject
+            .open(settings, resources, &budget, earlier, progress);
+        let mut render = match opened {
+            Err(OpenError::Session(SessionError::Stopped)) => return Ok(None),
+            opened => opened.map_err(|error| self.refused(path, error))?,
         };
-        if let Some(file) = earlier {
-            let continued = render.add(file);
-            continued.map_err(|error| Error::continued(path, error))?;
+        let (mut written, mut saved) = (render.spent.total, Ok(()));
+        let limit = render.run(&budget, progress, &mut |render| {
+            if render.spent.total.saturating_sub(written) >= WRITE_EVERY {
+                (written, saved) = (render.spent.total, write(path, render));
+            }
+            saved.is_ok()
+        });
+        saved?;
+        if !render.session.film().passes().is_empty() {
+            write(path, &render)?;
         }
-        let mut written = start;
-        while render.session.next_pass() < self.passes {
-            if (host.should_end)() || !render.session.step(host.progress) {
-                if !render.session.film().passes().is_empty() {
-                    write(path, &render, since(start))?;
+        Ok(limit.map(|_| render.into_file()))
+    }
+
+    /// Returns the error of a film that cannot be continued, or of a render that cannot begin.
+    fn refused(&self, path: &Path, error: OpenError) -> Error {
+        match error {
+            OpenError::OtherRender(difference) => Error::OtherRender {
+                path: path.to_owned(),
+                difference,
+            },
+            OpenError::Beyond(passes) => {
+                let most = passes.ranges().last().map_or(0, |range| range.end);
+                Error::TooLong {
+                    folder: self.folder.to_owned(),
+                    found: most.saturating_mul(REPLICATES),
+                    requested: self.passes.saturating_mul(REPLICATES),
                 }
-                return Ok(None);
             }
-            if since(written) >= WRITE_EVERY {
-                write(path, &render, since(start))?;
-                written = host.progress.nanoseconds();
-            }
+            OpenError::Merge(error) => Error::merge(path, &error),
+            OpenError::Session(error) => error.into(),
         }
-        let file = render.into_file(since(start), Stopping::Fixed);
-        formats::film::write(path, &file.header, &file.film)?;
-        Ok(Some(file))
     }
 }
 
-/// Writes the film of a render that may be interrupted, which took `time` so far.
-fn write(path: &Path, render: &Render<'_>, time: Duration) -> Result<(), Error> {
-    let header = render.header(time, Stopping::Time);
-    Ok(formats::film::write(path, &header, render.session.film())?)
+/// Writes the film of a render.
+fn write(path: &Path, render: &Render) -> Result<(), Error> {
+    let film = render.session.film();
+    Ok(formats::film::write(path, &render.header(), film)?)
 }
 
 /// Returns the path of a replicate's film in `folder`; `name` is the estimator's prefix.
 pub(super) fn film(folder: &Path, name: &str, replicate: u64) -> PathBuf {
     let name = format!("{name}-{replicate:02}.film");
     folder.join(FILMS).join(name)
-}
-
-/// Fails if `found` is the header of another render than `expected`.
-fn check(path: &Path, expected: &FilmHeader, found: &FilmHeader) -> Result<(), Error> {
-    let difference = expected.difference(found);
-    difference.map_or(Ok(()), |difference| {
-        let path = path.to_owned();
-        Err(Error::OtherRender { path, difference })
-    })
 }
 
 /// Renumbers the passes of a film.

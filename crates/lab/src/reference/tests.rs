@@ -1,17 +1,15 @@
 use super::*;
 use crate::seal;
 use crate::statistics::z_test;
-use bidir::driver::{Progress, Resources, Settings};
+use bidir::driver::{Progress, Resources, Settings, Stop};
 use bidir::integrator::IntegratorKind;
 use bidir::path::LightPointChoice;
 use bidir::sampler::SamplerKind;
 use bidir::settings::Request;
 use formats::film::Subject;
 use formats::pbrt::{LoadOptions, Loaded, build, parse_text};
-use std::cell::Cell;
 use std::fs;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicI64, AtomicU64, Ordering};
 use tempfile::TempDir;
 
 /// A floor and a wall below a light that the camera does not see.
@@ -37,19 +35,12 @@ fn scene(text: &str) -> Loaded {
 }
 
 fn subject(text: &str) -> Subject {
-    let loaded = scene(text);
-    Subject {
-        name: "room.pbrt".to_owned(),
-        digest: loaded.digest.to_string(),
-        scene: Arc::new(loaded.scene),
-        view: loaded.view,
-    }
+    scene(text).subject()
 }
 
 /// A host without progress and clock, which never stops.
 const SILENT: Host<'static> = Host {
     progress: &(),
-    should_end: &|| false,
     found: &|_| {},
 };
 
@@ -169,15 +160,26 @@ fn an_estimator_that_misses_paths_is_detected() {
     assert!(place.refusal("a").contains("its estimators disagree"));
 }
 
-/// A clock that counts readings.
-#[derive(Default)]
-struct Readings(AtomicU64);
+/// A host whose clock counts readings, and that stops after some samples.
+struct Readings {
+    looks: AtomicU64,
+    left: AtomicI64,
+    flag: AtomicBool,
+}
 
 impl Progress for Readings {
-    fn advance(&self, _samples: u64) {}
+    fn advance(&self, samples: u64) {
+        let samples = samples as i64;
+        let is_last = self.left.fetch_sub(samples, Ordering::Relaxed) <= samples;
+        self.flag.fetch_or(is_last, Ordering::Relaxed);
+    }
+
+    fn stop(&self) -> Stop<'_> {
+        Stop::when(&self.flag)
+    }
 
     fn nanoseconds(&self) -> u64 {
-        self.0.fetch_add(1_000_000_000, Ordering::Relaxed)
+        self.looks.fetch_add(1_000_000_000, Ordering::Relaxed)
     }
 }
 
@@ -190,10 +192,13 @@ fn stopped_and_extended_references_have_the_same_bits() {
     let mut stops = 0;
     // In the middle of the first estimator, of the second, and never.
     for passes in [7, 50, 1000] {
-        let left = Cell::new(passes);
+        let readings = Readings {
+            looks: AtomicU64::new(0),
+            left: AtomicI64::new(passes * 12 * 8),
+            flag: AtomicBool::new(false),
+        };
         let host = Host {
-            progress: &Readings::default(),
-            should_end: &|| left.replace(left.get() - 1) == 0,
+            progress: &readings,
             ..SILENT
         };
         if place.made("b", &plan(60), host).unwrap().is_none() {
@@ -268,8 +273,7 @@ fn films_of_another_render_are_refused() {
     let mut other = plan(32);
     other.estimators[0].sampler = SamplerKind::Sobol;
     let error = place.made("a", &other, SILENT).unwrap_err().to_string();
-    let expected =
-        "picture-00.film is the film of another render: sampler is sobol here and independent";
+    let expected = "picture-00.film is the film of another render: sampler is sobol in this render and independent";
     assert!(error.contains(expected), "{error}");
     place.subject = subject(&SCENE.replace("9 8 7", "9 8 8"));
     let error = place.made("a", &plan(32), SILENT).unwrap_err().to_string();

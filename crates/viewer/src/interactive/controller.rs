@@ -7,12 +7,10 @@ use super::slot::{RenderSlot, without_training};
 use crate::shared::{Request, RequestQueue};
 use crate::status::{LaneId, State, Status};
 use crate::view::{Course, RenderView};
-use bidir::driver::{Effort, Resources, SessionError, Settings};
+use bidir::driver::{SessionError, Settings};
 use bidir::film::{Aov, Layers};
-use bidir::path::PathRoulette;
-use bidir::settings::Choice;
 use bidir::view::View;
-use formats::film::Subject;
+use formats::film::{Subject, TrainingLimits, Watch};
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
@@ -24,11 +22,7 @@ const NAP: Duration = Duration::from_secs(60);
 /// The state of the thread.
 pub(super) struct RenderController {
     pub(super) queue: RequestQueue,
-    /// The scene, with its own view.
-    subject: Subject,
-    resources: Resources,
-    target: Option<u64>,
-    pub(super) roulette: Option<Choice<PathRoulette>>,
+    pub(super) asked: InteractiveSettings,
     pub(super) camera: CameraControl,
     /// The requested settings of each lane.
     pub(super) wanted: Vec<Settings>,
@@ -44,25 +38,19 @@ pub(super) struct RenderController {
 }
 
 impl RenderController {
-    pub(super) fn new(settings: InteractiveSettings, queue: RequestQueue) -> Self {
-        let mut first = settings.settings;
+    pub(super) fn new(asked: InteractiveSettings, queue: RequestQueue) -> Self {
+        let mut first = asked.settings.clone();
         first.layers = with_inspected(&first.layers);
         Self {
             queue,
-            camera: CameraControl::new(&settings.subject.scene, settings.subject.view.clone()),
-            subject: settings.subject,
-            resources: Resources {
-                threads: settings.threads,
-                ..Resources::default()
-            },
-            target: settings.target,
-            roulette: settings.roulette,
+            camera: CameraControl::new(&asked.subject.scene, asked.subject.view.clone()),
             wanted: vec![first],
             slots: Vec::new(),
             generation: 0,
             state: State::Preparing,
             message: None,
-            saved: Saved::new(settings.folder),
+            saved: Saved::new(asked.folder.clone()),
+            asked,
             is_stale: true,
             published: Instant::now(),
         }
@@ -140,7 +128,7 @@ impl RenderController {
         }
         let slots = self.slots.iter().enumerate();
         let open = slots.filter(|(_, slot)| !slot.is_complete());
-        let behind = open.min_by_key(|(_, slot)| slot.view.rendered());
+        let behind = open.min_by_key(|(_, slot)| slot.render.spent.rendering);
         behind.map(|(number, _)| number)
     }
 
@@ -202,22 +190,27 @@ impl RenderController {
         let course = Course {
             generation: self.generation,
             preview: self.camera.is_preview(),
-            target: self.target,
+            target: self.asked.target,
         };
         let settings = if course.preview {
-            without_training(wanted, self.roulette)
+            without_training(wanted, self.asked.roulette)
         } else {
             wanted.clone()
         };
-        let effort = Effort {
+        let host = Watch {
             stop: self.queue.interrupts().stop(),
-            ..Effort::WHOLE
+            start: Instant::now(),
         };
         let subject = Subject {
             view: view.clone(),
-            ..self.subject.clone()
+            ..self.asked.subject.clone()
         };
-        let render = subject.begin(&settings, &self.resources, effort)?;
+        let render = subject.begin(
+            &settings,
+            &self.asked.resources,
+            TrainingLimits::NONE,
+            &host,
+        )?;
         Ok(RenderSlot {
             // A view of its own is a setting like any other.
             render: match self.camera.text() {
@@ -233,9 +226,7 @@ impl RenderController {
     fn publish(&mut self) {
         self.published = Instant::now();
         let slots = self.slots.iter();
-        let lanes: Vec<_> = slots
-            .map(|slot| slot.view.status(&slot.render.session))
-            .collect();
+        let lanes: Vec<_> = slots.map(|slot| slot.view.status(&slot.render)).collect();
         let blank = self.slots.iter().find_map(|slot| slot.blank.clone());
         self.queue.state().update(|before| Status {
             state: self.state,
@@ -258,7 +249,7 @@ impl RenderController {
 
     fn log_begin(&self) {
         let names = self.slots.iter().map(|slot| {
-            let status = slot.view.status(&slot.render.session);
+            let status = slot.view.status(&slot.render);
             format!("{} {}", status.integrator, status.shadow_rays)
         });
         let names: Vec<_> = names.collect();

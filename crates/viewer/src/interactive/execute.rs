@@ -150,7 +150,7 @@ impl RenderController {
         let slot = slot.ok_or("nothing is saved: no pass is done yet")?;
         let film = slot.render.session.film();
         self.saved.save(name, |path| {
-            let metadata = metadata(&slot.header());
+            let metadata = metadata(&slot.render.header());
             let written = Developed::new(film).write_exr(path, film.settings(), &metadata);
             written.map_err(|error| error.to_string())
         })?;
@@ -173,7 +173,7 @@ impl RenderController {
         rays: &str,
     ) -> Result<Settings, String> {
         let mut request = Request {
-            path_roulette: self.roulette,
+            path_roulette: self.asked.roulette,
             ..Request::default()
         };
         for (name, value) in [("integrator", integrator), ("shadow-rays", rays)] {

@@ -12,7 +12,7 @@ mod save;
 mod slot;
 
 use crate::shared::{ClientHandle, RequestQueue};
-use bidir::driver::Settings;
+use bidir::driver::{Resources, Settings};
 use bidir::path::PathRoulette;
 use bidir::settings::Choice;
 use controller::RenderController;
@@ -29,8 +29,8 @@ pub struct InteractiveSettings {
     pub settings: Settings,
     /// Russian roulette for any estimator. None: the default of each.
     pub roulette: Option<Choice<PathRoulette>>,
-    /// Threads; 0 is one per processor.
-    pub threads: usize,
+    /// The threads of each lane.
+    pub resources: Resources,
     /// The number of passes. None: there is no end.
     pub target: Option<u64>,
     /// The folder that images are saved in.

@@ -1,98 +1,70 @@
 //! The render of a lane.
 
-use crate::shared::{Interrupts, Query, SharedState, Subject};
+use crate::shared::{Interrupts, Lane, Query, SharedState};
 use crate::view::RenderView;
-use bidir::driver::{Progress, Settings, Stop};
+use bidir::driver::Settings;
 use bidir::integrator::IntegratorKind;
 use bidir::path::PathRoulette;
 use bidir::settings::{Choice, Request};
-use formats::film::{FilmHeader, Render, Stopping};
+use formats::film::{Render, Stopping, Watch};
 use std::time::{Duration, Instant};
 
 /// The render of a lane with its view.
 pub(super) struct RenderSlot {
-    pub(super) render: Render<'static>,
+    pub(super) render: Render,
     pub(super) view: RenderView,
     /// A warning that the image has no content.
     pub(super) blank: Option<String>,
 }
 
-/// Gives a pass up where a command ends it.
-struct Watch<'a> {
-    interrupts: &'a Interrupts,
-    /// True for the first pass of a moving camera, which ends: clients see a move that goes on.
-    is_patient: bool,
-    start: Instant,
-}
-
-impl Progress for Watch<'_> {
-    fn advance(&self, _samples: u64) {}
-
-    fn stop(&self) -> Stop<'_> {
-        if self.is_patient {
-            self.interrupts.stop_unless_moved()
-        } else {
-            self.interrupts.stop()
-        }
-    }
-
-    fn nanoseconds(&self) -> u64 {
-        u64::try_from(self.start.elapsed().as_nanos()).unwrap_or(u64::MAX)
-    }
-}
-
 impl RenderSlot {
-    /// Renders the next pass, and shares a frame where it is due. Returns its time; None: it was given
-    /// up.
+    /// Renders the next pass unless a command ends it, and shares a frame where it is due. Returns its time; None: it
+    /// was given up.
     pub(super) fn step(
         &mut self,
         interrupts: &Interrupts,
         state: &SharedState,
         is_preview: bool,
     ) -> Option<Duration> {
-        let watch = Watch {
-            interrupts,
-            is_patient: is_preview && self.render.session.film().passes().is_empty(),
-            start: Instant::now(),
+        let render = &mut self.render;
+        // The first pass of a moving camera ends: clients see a move that goes on.
+        let is_patient = is_preview && render.session.film().passes().is_empty();
+        let stop = if is_patient {
+            interrupts.stop_unless_moved()
+        } else {
+            interrupts.stop()
         };
-        let is_done = self.render.session.step(&watch);
-        let time = watch.start.elapsed();
-        if !is_done {
+        let start = Instant::now();
+        if !render.step(&Watch { stop, start }) {
             return None;
         }
-        self.view.add_pass(&self.render.session, time, state);
+        let time = start.elapsed();
+        render.stopping = if self.view.is_complete(render) {
+            Stopping::Fixed
+        } else {
+            Stopping::Time
+        };
+        self.view.add_pass(render, state);
         // Now and then, as it develops the film.
-        if self.render.session.film().passes().len().is_power_of_two() {
-            self.blank = self.render.session.blank_warning();
+        if render.session.film().passes().len().is_power_of_two() {
+            self.blank = render.session.blank_warning();
         }
         Some(time)
     }
 
     pub(super) fn is_complete(&self) -> bool {
-        self.view.is_complete(&self.render.session)
+        self.view.is_complete(&self.render)
     }
 
     /// Shares the newest frame.
     pub(super) fn show(&mut self, state: &SharedState) {
-        self.view.show(&self.render.session, state);
-    }
-
-    /// Returns the header of files of the passes so far.
-    pub(super) fn header(&self) -> FilmHeader {
-        let stopping = if self.is_complete() {
-            Stopping::Fixed
-        } else {
-            Stopping::Time
-        };
-        self.render.header(self.view.rendered(), stopping)
+        self.view.show(&self.render, state);
     }
 
     pub(super) fn answer(&self, query: Query) {
-        let header = || self.header();
-        query(Some(&Subject {
-            session: &self.render.session,
+        query(Some(&Lane {
+            render: &self.render,
             generation: self.view.generation(),
-            header: &header,
         }));
     }
 }

@@ -43,14 +43,14 @@ pub(super) async fn exr(
     let Ok(_place) = site.large.acquire().await else {
         return Err(Refusal::bug("no image is encoded any more"));
     };
-    let developed = site.query(lane, |subject| {
-        let film = subject.session.film();
+    let developed = site.query(lane, |lane| {
+        let film = lane.render.session.film();
         let is_empty = film.passes().is_empty();
         let file = || {
             (
                 Developed::new(film),
                 film.settings().clone(),
-                (subject.header)(),
+                lane.render.header(),
             )
         };
         (!is_empty).then(file)
@@ -123,9 +123,9 @@ pub(super) async fn strategies(
         let message = format!("the exposure is a number of stops up to {MOST_STOPS}");
         return Err(Refusal::query(message));
     }
-    let pixels = site.query(asked.lane, move |subject| {
-        check_strategies(subject.session)?;
-        let film = subject.session.film();
+    let pixels = site.query(asked.lane, move |lane| {
+        check_strategies(&lane.render.session)?;
+        let film = lane.render.session.film();
         let image = pyramid::strategy_image(film, kind, strategy);
         image.ok_or_else(|| Refusal::query(format!("there is no image of {strategy}")))
     });

@@ -4,7 +4,7 @@ use super::Site;
 use super::error::Refusal;
 use super::query::{Asked, OfLane, OfPixel, OfSample};
 use super::routes::json;
-use crate::shared::{Request, SentFrame, Subject};
+use crate::shared::{Lane, Request, SentFrame};
 use crate::status::LaneId;
 use axum::extract::State;
 use axum::http::StatusCode;
@@ -26,13 +26,13 @@ impl Site {
     pub(super) async fn query<T: Send + 'static>(
         &self,
         lane: LaneId,
-        query: impl FnOnce(&Subject<'_>) -> T + Send + 'static,
+        query: impl FnOnce(&Lane<'_>) -> T + Send + 'static,
     ) -> Result<T, Refusal> {
         let (send, receive) = oneshot::channel();
-        let query = move |subject: Option<&Subject<'_>>| {
+        let query = move |found: Option<&Lane<'_>>| {
             // A client that has left needs no answer.
             if !send.is_closed() {
-                let _ = send.send(subject.map(query));
+                let _ = send.send(found.map(query));
             }
         };
         self.ask(Request::Query(lane, Box::new(query)))?;
@@ -142,8 +142,8 @@ pub(super) async fn sample(
     Asked(OfSample { lane, x, y, pass }): Asked<OfSample>,
 ) -> Result<Response, Refusal> {
     let resolution = site.client.state().status().film.resolution;
-    let report = site.query(lane, move |subject| {
-        let session = subject.session;
+    let report = site.query(lane, move |lane| {
+        let session = &lane.render.session;
         if session.view().film().resolution != resolution {
             return Err(Refusal::now(
                 "the camera is moving: try again when the image is complete",
@@ -152,7 +152,7 @@ pub(super) async fn sample(
         let replay = session.replay([x, y], pass);
         let replay = replay.ok_or_else(|| not_rendered(x, y))?;
         json(&SampleOfLane {
-            generation: subject.generation,
+            generation: lane.generation,
             report: SampleReport::new(session, [x, y], pass, &replay),
         })
     });
@@ -194,11 +194,11 @@ pub(super) async fn strategies(
     State(site): State<Arc<Site>>,
     Asked(OfLane { lane }): Asked<OfLane>,
 ) -> Result<Response, Refusal> {
-    let report = site.query(lane, |subject| {
-        let session = subject.session;
+    let report = site.query(lane, |lane| {
+        let session = &lane.render.session;
         check_strategies(session)?;
         Ok(StrategiesReport {
-            generation: subject.generation,
+            generation: lane.generation,
             passes: session.film().passes().len(),
             vertices: session.film().layers().strategy_vertices(),
             tiles: tiles(session),

@@ -1,11 +1,10 @@
 //! A server with a small scene, and clients.
 
-use bidir::driver::Settings;
+use bidir::driver::{Resources, Settings};
 use bidir::integrator::IntegratorKind;
 use bidir_viewer::interactive::{InteractiveRender, InteractiveSettings};
 use bidir_viewer::web::{Server, listen};
 use bidir_viewer::{Status, request_queue};
-use formats::film::Subject;
 use formats::scene::Loaded;
 use serde_json::Value;
 use std::fs;
@@ -86,21 +85,17 @@ impl Place {
         let listener: TcpListener = listen(address.parse().unwrap(), 0).unwrap();
         let port = listener.local_addr().unwrap().port();
         let loaded = scene(size);
-        let (queue, client) = request_queue(Status::interactive(
-            "somewhere/room.pbrt",
-            loaded.view.film(),
-        ));
+        let first = Status::interactive(&loaded.name, loaded.view.film());
+        let (queue, client) = request_queue(first);
         let server = Server::start(listener, client).unwrap();
         let render = InteractiveSettings {
-            subject: Subject {
-                name: "somewhere/room.pbrt".into(),
-                digest: loaded.digest.to_string(),
-                scene: loaded.scene.into(),
-                view: loaded.view,
-            },
+            subject: loaded.subject(),
             settings: settings(),
             roulette: None,
-            threads: 1,
+            resources: Resources {
+                threads: 1,
+                ..Resources::default()
+            },
             target,
             folder: folder.path().to_owned(),
         };

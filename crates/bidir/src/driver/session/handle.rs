@@ -19,6 +19,12 @@ impl<'a> From<&'a Scene> for SceneHandle<'a> {
     }
 }
 
+impl<'a> From<&'a Arc<Scene>> for SceneHandle<'a> {
+    fn from(scene: &'a Arc<Scene>) -> Self {
+        Self::Borrowed(scene)
+    }
+}
+
 impl From<Arc<Scene>> for SceneHandle<'_> {
     fn from(scene: Arc<Scene>) -> Self {
         Self::Shared(scene)

@@ -3,6 +3,8 @@ use bidir_lab::experiment::{Setup, Start};
 use bidir_lab::results::{Machine, Record, Results};
 use std::fs;
 use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use tempfile::TempDir;
 
 /// A floor and a wall with a small light above them.
@@ -112,6 +114,7 @@ pub(crate) struct Watch {
     /// Passes of images of strategies.
     pub(crate) strategy_passes: usize,
     strategy_most: Option<usize>,
+    flag: Arc<AtomicBool>,
     looks: std::cell::Cell<u32>,
     looks_at_processors: std::cell::Cell<u32>,
 }
@@ -143,6 +146,12 @@ impl Observer for Watch {
             Event::Warning(text) => self.warnings.push(text.to_owned()),
             Event::Reference { .. } => {}
         }
+        let is_beyond = |most: Option<usize>, done: usize| most.is_some_and(|most| done >= most);
+        // The event of a pass precedes it.
+        let strategies = self.strategy_most.map(|most| most + 1);
+        let is_last =
+            is_beyond(self.most, self.renders) || is_beyond(strategies, self.strategy_passes);
+        self.flag.fetch_or(is_last, Ordering::Relaxed);
     }
 
     fn seconds(&self) -> f64 {
@@ -156,14 +165,8 @@ impl Observer for Watch {
         Some(2.0 * f64::from(looks.get()))
     }
 
-    fn should_stop(&mut self) -> bool {
-        let is_beyond = |most: Option<usize>, done: usize| most.is_some_and(|most| done >= most);
-        // The event of a pass precedes the question whether to stop before it.
-        is_beyond(self.most, self.renders)
-            || is_beyond(
-                self.strategy_most.map(|most| most + 1),
-                self.strategy_passes,
-            )
+    fn stop_flag(&self) -> Arc<AtomicBool> {
+        Arc::clone(&self.flag)
     }
 }
 

@@ -6,6 +6,7 @@ use bidir::sampler::{Domain, Sampler, SamplerKind};
 use bidir::scene::{RayDraws, Scene};
 use bidir::spectrum::Lanes;
 use bidir::texture::TexturePoint;
+use std::sync::Arc;
 
 /// Returns the BSDF of the last material; `u` chooses a part of a mixture.
 #[track_caller]
@@ -146,7 +147,7 @@ fn a_mixture_is_its_second_material_with_probability_amount() {
 
 /// The part of a sphere that rays meet, whose material is the last one.
 #[track_caller]
-fn covered(materials: &str) -> (f64, Scene) {
+fn covered(materials: &str) -> (f64, Arc<Scene>) {
     let text = format!("{PARTS}MakeNamedMaterial \"i\" \"string type\" \"interface\"\n{materials}");
     let scene = world(&format!("{text} Shape \"sphere\""));
     let sampler = Sampler::new(SamplerKind::Independent, 7);
@@ -161,7 +162,7 @@ fn covered(materials: &str) -> (f64, Scene) {
 }
 
 #[track_caller]
-fn check_covered(materials: &str, expected: f64) -> Scene {
+fn check_covered(materials: &str, expected: f64) -> Arc<Scene> {
     let (part, scene) = covered(materials);
     // Four standard errors.
     assert!(

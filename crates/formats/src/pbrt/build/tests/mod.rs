@@ -19,6 +19,7 @@ mod views;
 use super::{LoadOptions, Loaded, build};
 use crate::pbrt::parse_text;
 use bidir::scene::Scene;
+use std::sync::Arc;
 
 const STRICT: LoadOptions = LoadOptions {
     lenient: false,
@@ -39,7 +40,7 @@ fn load_text(text: &str, options: &LoadOptions) -> Loaded {
 }
 
 #[track_caller]
-fn world(text: &str) -> Scene {
+fn world(text: &str) -> Arc<Scene> {
     load_text(&format!("WorldBegin {text}"), &STRICT).scene
 }
 

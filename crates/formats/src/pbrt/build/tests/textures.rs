@@ -5,9 +5,10 @@ use bidir::material::{ConductorIndex, Material};
 use bidir::math::{Vec2, Vec3};
 use bidir::scene::Scene;
 use bidir::texture::{ColorTexture, TexturePoint};
+use std::sync::Arc;
 
 /// Returns a scene with an image of two rows: red above, green below.
-fn textured(parameters: &str) -> Scene {
+fn textured(parameters: &str) -> Arc<Scene> {
     let folder = tempfile::tempdir().unwrap();
     let image = folder.path().join("t.png");
     crate::image::write_png(&image, [1, 2], &[[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]).unwrap();
@@ -232,7 +233,7 @@ fn images_are_read_once() {
             _ => panic!("the material shows an image"),
         });
     let maps: Vec<_> = maps.collect();
-    assert!(std::sync::Arc::ptr_eq(&maps[0].image, &maps[1].image));
+    assert!(Arc::ptr_eq(&maps[0].image, &maps[1].image));
     assert_eq!(maps[0].image.copies(), 1);
     let at = TexturePoint::of_parameters(Vec2::new(0.75, 0.5));
     assert!((maps[1].eval(&at)[0] - 0.125).abs() < 1e-2);
