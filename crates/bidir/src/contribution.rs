@@ -1,5 +1,5 @@
-//! ⟨I⟩ = Σ C w v / π: the terms of a sample's estimate. The contribution C, the weight w, the probability π of
-//! tracing the shadow ray and what v of it arrives stay apart until a film adds them.
+//! The terms of a sample's estimate ⟨I⟩ = Σ C w v / π. The contribution C, the weight w, the probability π of tracing the
+//! shadow ray and the part v of it that arrives stay apart until a film adds them.
 
 use crate::math::fixed::LARGEST_CONTRIBUTION;
 use crate::spectrum::Spectrum;
@@ -14,7 +14,7 @@ pub struct Term {
     pub light: u32,
     /// The unweighted contribution C = f / p. For t = 1 that of one light path among many.
     pub contribution: Spectrum,
-    /// The strategy's share w of the path.
+    /// The MIS weight w of the strategy.
     pub weight: f32,
 }
 
@@ -25,8 +25,8 @@ impl Term {
         self.contribution * self.weight
     }
 
-    /// Returns the contribution of the term where its shadow ray is certain to be traced and `transmittance` of it
-    /// arrives.
+    /// Returns the contribution of the term where its shadow ray is certain to be traced and the part `transmittance` of
+    /// it arrives.
     #[inline]
     pub fn certain(self, transmittance: f32) -> Contribution {
         Contribution {
@@ -44,7 +44,7 @@ pub struct Contribution {
     pub term: Term,
     /// The probability π of tracing its shadow ray.
     pub prob: f64,
-    /// How much v of it arrives, in `[0, 1]`.
+    /// The part v of it that surfaces let pass, in `[0, 1]`; the media's T is in the term's contribution.
     pub transmittance: f32,
 }
 

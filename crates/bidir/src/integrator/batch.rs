@@ -22,7 +22,8 @@ pub struct Sample {
     pub pixel: [u32; 2],
     /// The random numbers of the camera subpath, and of its connections.
     pub camera: SampleStream,
-    /// The random numbers of the light points of the camera subpath.
+    /// The random numbers of the light points of the camera subpath: those of `camera`, but in a survey, which draws
+    /// points anew.
     pub points: SampleStream,
     /// The random numbers of the light subpath and of its light image.
     pub light: SampleStream,
@@ -54,7 +55,7 @@ pub struct Walked {
 }
 
 impl Walked {
-    /// Returns the number of the first sample's light subpath, where each has its own.
+    /// Returns the number of the first sample's light subpath. The samples' walks must be the last ones.
     pub(super) fn first_light(&self) -> usize {
         self.light.count() - self.samples.len()
     }
@@ -149,7 +150,7 @@ impl Batch {
     }
 
     /// Adds the entries to the values of their samples, but for those that no film can sum.
-    pub(super) fn arrive(&mut self) {
+    pub(super) fn sum_entries(&mut self) {
         for entry in &mut self.entries {
             if !entry.is_added() {
                 continue;

@@ -12,9 +12,10 @@ use crate::strategy::Strategy;
 pub(super) struct LightEnd {
     /// Its place.
     pub(super) place: Place,
-    /// Its number in the sample, as [`Candidate::light_vertex`] has it.
+    /// [`Candidate::light_vertex`].
     pub(super) number: u32,
-    /// How much the connection counts.
+    /// The factor of the connection: 1/π(n) of `Pairs`, or 1 / (M N P) for a vertex of a cache. That of a light point is
+    /// in its β.
     pub(super) share: f32,
 }
 
@@ -70,7 +71,8 @@ impl NextEvent {
     }
 }
 
-/// The light vertices of each camera vertex from t = 2 on, camera subpath by camera subpath.
+/// The light vertices of each camera vertex from t = 2 on: a list for each, empty or not, in the order of samples and t.
+/// Where light points are shared, `next_events` has no lists at all.
 #[derive(Debug, Default)]
 pub(super) struct Ends {
     /// Its own light points.

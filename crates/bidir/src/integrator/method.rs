@@ -1,12 +1,11 @@
 //! Estimators as lists of stages.
 //!
 //! **Light vertex cache.** ⟨C⟩ = 1/(N M) Σ_m C(y, z_m) / P(z_m | y) [Davidovic14, §4]: a camera vertex y is
-//! connected with M of the K vertices z of N light subpaths, in place of those of one; they are drawn by P
-//! ([`LightProposals`](crate::guide::LightProposals)), or evenly, where P = 1/K. For each vertex of the light
-//! subpath of a path, strategy (s, t) takes M N P samples on average. K differs from group to group, and P with
-//! it; weights must not, or the estimate is biased. They take M / κ in place of M N / K, with κ the mean of
-//! K / N in a training render ([`SampleCounts`](crate::path::SampleCounts)), and for a learned P its stand-in
-//! likewise.
+//! connected with M of the K vertices z that N light subpaths have together, in place of those of one subpath. Each is
+//! drawn with probability P(z | y) ([`LightProposals`](crate::guide::LightProposals)), or 1/K where nothing is learned,
+//! and a connection takes M N P samples. K differs from group to group; weights must not, or the estimate is biased. So
+//! they count M / κ in place of M N / K, where κ is the mean of K / N in a training render
+//! ([`SampleCounts`](crate::path::SampleCounts)), and a stand-in of the same kind for a learned P.
 
 use super::stages::{
     Weighting, connect, direct, draw_cached, hits, light_image, next_events, own_light, select,
@@ -16,9 +15,9 @@ use super::{Batch, CandidateCount, IntegratorKind, LvcSettings};
 use crate::path::Job;
 use crate::select::Selector;
 
-/// Returns how many samples share light subpaths where so many pixels are rendered. So few that the subpaths stay in a
-/// processor's cache, and that a film of 1152 pixels or more has at least 18 groups: pixels two apart are then in
-/// different ones (`driver::spread`).
+/// Returns how many samples share light subpaths where this many pixels are rendered: a power of two from 64 to 2048. It
+/// is so small that the subpaths stay in a processor's cache, and that a film of at least 1152 pixels has 18 groups:
+/// pixels two apart are then in different ones (`driver::spread`).
 pub(crate) fn group_size(pixels: u64) -> u64 {
     1 << (pixels / 18).clamp(64, 2048).ilog2()
 }
@@ -99,6 +98,7 @@ impl Method {
                 shadow_rays(job, walked, candidates, entries, worker);
             }
             Self::Lvc(selector, lvc) => {
+                // `walk_group` has walked the light subpaths and made the light image.
                 walk_camera(job, walked, worker);
                 sum_camera(job, walked, worker);
                 hits(job, walked, entries, worker);
@@ -109,7 +109,7 @@ impl Method {
                 shadow_rays(job, walked, candidates, entries, worker);
             }
         }
-        batch.arrive();
+        batch.sum_entries();
     }
 }
 

@@ -1,5 +1,5 @@
-//! C = β_L · scatter(z) · G(z, y) · scatter(y) · β_C: the contribution of a connection of two subpaths
-//! [Veach97, §10.2], and its weight.
+//! Paths that connect two subpaths: their contribution C = β_L · scatter(z) · G(z, y) · scatter(y) · β_C
+//! [Veach97, §10.2], and their weight.
 //!
 //! No ray is traced here: visibility is the caller's to ask for.
 

@@ -1,5 +1,5 @@
 //! a_i and b_i: the density of each vertex x_i drawn from the light and from the camera, area
-//! measure, 1/m² (solid angle, 1/sr, for x_0 at infinity), roulette included where it is local.
+//! measure, 1/m² (solid angle, 1/sr, for x_0 at infinity), with those probabilities of roulette that depend on one vertex (those by albedo).
 //!
 //! They describe the path, not the strategy that made it, so that every strategy finds the same
 //! weight (docs/derivations/mis-weights.md).

@@ -39,7 +39,7 @@ use crate::math::{INV_PI, Vec3};
 use crate::spectrum::{FourSpectra, Spectrum};
 use glam::Vec4;
 
-/// A diffuse vertex of a walk, with all that its connections with other ones need: a line of memory.
+/// A diffuse vertex of a walk, with all that its connections with other ones need, in one cache line.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 pub struct DiffuseEnd {
@@ -116,8 +116,8 @@ impl DiffuseEnd {
         }
     }
 
-    /// Returns the density of the vertex before `vertex`, which this is, drawn from its other side: the albedo is that
-    /// of any direction.
+    /// Returns r', the density of the vertex before `vertex`, of which this was made, drawn from here by a walk that
+    /// arrives from the other end. It is the same for all directions of arrival.
     #[inline]
     fn before(&self, vertex: &Vertex) -> f64 {
         f64::from(self.n_s.dot(vertex.wo) * self.density * vertex.to_previous)

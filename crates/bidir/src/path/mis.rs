@@ -3,9 +3,9 @@
 use super::PathDensities;
 use crate::names::named;
 
-/// The part of a share that a cut leaves: too little to be seen, and enough to recover the value
+/// The part of a share that a cutoff leaves: too little to be seen, and enough to recover the value
 /// without the weight.
-const LEFT: f64 = 1e-9;
+const CUTOFF_REMAINDER: f64 = 1e-9;
 
 /// How strategies that can make the same path share it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -37,19 +37,23 @@ impl MisHeuristic {
         }
     }
 
-    /// Returns the share of (1, 1), the light image of a lamp or a sky, where that of (0, 2), which hits it, is
-    /// `hit`: a billionth of it where the image has at most twice as many samples there (the cutoff heuristic
-    /// \[Veach97, §9.2.3\] for these two).
+    /// Applies the cutoff heuristic \[Veach97, §9.2.3\] to light that is seen directly, which strategies (0, 2) and (1, 1)
+    /// make: returns the share `image` of (1, 1), or a billionth of it if (1, 1) takes at most twice as many samples as
+    /// (0, 2), whose share is `hit`.
     ///
     /// If light that is seen directly covers a pixel evenly, hits have no variance, but the number
     /// of samples of the image varies. A lamp that is small in a pixel has far more of these.
     #[inline]
-    pub(super) fn share_of_image(self, image: f64, hit: f64) -> f64 {
+    pub(super) fn cut_off_image(self, image: f64, hit: f64) -> f64 {
         let cutoff = match self {
             Self::Balance | Self::Power => self.apply(2.0) * hit,
             Self::Uniform => 0.0,
         };
-        if image > cutoff { image } else { LEFT * image }
+        if image > cutoff {
+            image
+        } else {
+            CUTOFF_REMAINDER * image
+        }
     }
 
     /// Returns the weight of a strategy with density `p`, where one other, with density `q` in the same
@@ -77,8 +81,8 @@ pub fn mis_weight(
         others += heuristic.apply(counts(j) * ratio);
     });
     let [own, others] = match (path.vertices.len(), s) {
-        (2, 0) => [own, heuristic.share_of_image(others, own)],
-        (2, 1) => [heuristic.share_of_image(own, others), others],
+        (2, 0) => [own, heuristic.cut_off_image(others, own)],
+        (2, 1) => [heuristic.cut_off_image(own, others), others],
         _ => [own, others],
     };
     own / (own + others)

@@ -8,6 +8,8 @@
 //!     light subpath, walked →     link     ← walked, camera subpath
 //! ```
 //!
+//! The last vertices of the two subpaths are z = x_{s-1} and y = x_s (in \[Veach97\] the letters are the other way round).
+//!
 //! - Densities are **area densities**, 1/m², but for vertices in media, 1/m³, and x_0 on a light at infinity: solid
 //!   angle, 1/sr.
 //! - `beta` of a vertex is the throughput up to it, without the scattering at it, divided by the

@@ -5,7 +5,7 @@
 //!
 //! L_m = Σ_{j ≤ m} h(n_j p_j / p_m) = h(n_m) + h(p_{m-1} / p_m) · L_{m-1},
 //!
-//! and likewise C_m by camera vertices. Both depend on vertices well inside of a subpath alone; a weight adds the
+//! and likewise E_m by camera vertices. Both depend on vertices well inside of a subpath alone; a weight adds the
 //! four densities that change at the junction (docs/derivations/mis-weights.md). It is the number that
 //! [`mis_weight`](super::mis_weight) finds, but for rounding.
 
@@ -24,9 +24,12 @@ pub struct RunningSums {
     diffuse: Vec<DiffuseEnd>,
 }
 
-/// The strategies that end a subpath before its last vertex, whose walk drew it with density a: with r the density of
-/// drawing it from the other end of the path, and r' that of the vertex before it, their share is
-/// h(r / a) (`links` + h(r') `through_previous`).
+/// One side of a weight's denominator: all that it needs to know of the strategies whose link lies within a subpath,
+/// before its last vertex.
+///
+/// Let a be the density with which the walk drew the last vertex, r its density when drawn from the other end of the
+/// path, and r' that of the vertex before it, which are known when the path is joined. Relative to the strategy that
+/// links the last vertex, these strategies sum to h(r / a) · (`links` + h(r') · `through_previous`).
 #[derive(Clone, Copy, Debug)]
 pub struct EndSums {
     /// h(1 / a); h(1 / e) at x_0 and h(e / (a_0 a_1)) at x_1.
@@ -35,7 +38,8 @@ pub struct EndSums {
     links: [f64; 2],
     /// h(1 / a') of the vertex before it, times the sum up to there.
     through_previous: f64,
-    /// L_m or C_m of the strategies that end with the vertex before it, or sooner, where the walk went on.
+    /// L_m of a light walk, E_m of a camera walk: the sum over the strategies whose subpath ends with the vertex before
+    /// this one or earlier, where the walk goes on past this one.
     total: f64,
 }
 
@@ -59,7 +63,8 @@ pub struct Weights {
     densities: PathDensities,
 }
 
-/// The length of a path whose roulette has begun at every bounce of both directions.
+/// Stands for the number of vertices of a path: so many that, counted from the other end, roulette has begun at every
+/// vertex of a walk.
 const FAR: usize = usize::MAX;
 
 impl EndSums {
@@ -122,7 +127,7 @@ impl RunningSums {
         let h = |ratio| job.settings.mis.apply(ratio);
         let links = |s: usize, [before, z]: [&Vertex; 2]| {
             let is_there = if s == 1 { start.is_drawn } else { 1.0 };
-            // The rest of the path, one vertex or more, and z.
+            // As a camera vertex, z is the first behind the lens if one vertex follows, else a deeper one.
             [2, 3].map(|t| {
                 let technique = Technique::of(job.settings.light_point, s, t);
                 is_there * h(job.count_of(technique, [before.cell, z.cell]))
@@ -235,7 +240,7 @@ impl Weights {
     /// Returns the number that [`JoinedPath::weight`] finds, but for rounding, by sums along the walks that the path's
     /// subpaths begin.
     ///
-    /// It is the pure form itself where not all strategies take part, and where a subpath is so short that the
+    /// It is that number itself, which takes time in proportion to the length of the path, where not all strategies take part, and where a subpath is so short that the
     /// roulette of densities begins behind its end: roulette then depends on the length of the path.
     #[inline]
     pub fn connection(&mut self, job: &Job<'_>, path: &JoinedPath<'_>, sums: &PathSums<'_>) -> f32 {
@@ -268,12 +273,12 @@ impl EndSums {
         let count = h(job.count(1, t, [x0.cell, y.cell]));
         let links = count * start.is_drawn * possible(!y.went_by_delta);
         let a1 = f64::from(path.light_pdf(job));
-        let up = h(start.walk_over_next_event() * a1) * self.inverse_pdf;
-        let from_drawn = chain(links, up, self.total);
-        let up = h(start.next_event_over_hit(path.camera_pdf(job).into()));
-        let mut others = chain(0.0, up, from_drawn);
+        let p2_over_p1 = h(start.walk_over_next_event() * a1) * self.inverse_pdf;
+        let from_next_event = chain(links, p2_over_p1, self.total);
+        let p1_over_p0 = h(start.next_event_over_hit(path.camera_pdf(job).into()));
+        let mut others = chain(0.0, p1_over_p0, from_next_event);
         if t == 1 {
-            others = job.settings.mis.share_of_image(others, 1.0);
+            others = job.settings.mis.cut_off_image(others, 1.0);
         }
         1.0 / (1.0 + others)
     }
@@ -287,6 +292,7 @@ impl PathSums<'_> {
         let Reversed { z, y, before } = path.reversed(job);
         let [z, y] = [z, y].map(f64::from);
         let before = before.map(|density| h(density.into()));
+        // Strategy s - 1 links z as camera vertex t + 1.
         let depth = Depth::of(t + 1);
         let (fewer_light, y) = if s == 1 {
             let next_event = || next_event_density(job, path.z(), path.y());
@@ -302,7 +308,7 @@ impl PathSums<'_> {
         let fewer_camera = self.camera.shares(depth, h(y), before[1]);
         let mut own = h(job.count(s, t, [path.z().cell, path.y().cell]));
         if s + t == 2 {
-            own = job.settings.mis.share_of_image(own, fewer_light);
+            own = job.settings.mis.cut_off_image(own, fewer_light);
         }
         own / (own + fewer_light + fewer_camera)
     }

@@ -56,7 +56,7 @@ impl PathDensities {
         add(s, 1.0);
         for_each_other(self, s, add);
         if n == 2 {
-            light_images = MisHeuristic::Balance.share_of_image(light_images, hits);
+            light_images = MisHeuristic::Balance.cut_off_image(light_images, hits);
         }
         let pairs = next_events.iter().chain(&connections);
         let all = hits + light_images + pairs.sum::<f64>();

@@ -1,10 +1,11 @@
-//! Techniques: the ways in which strategies come to a path. All that weights ask of one is here: how many samples it
-//! takes (n_j), whether it can make a path, its ratio to the next (p_{j+1} / p_j), and how running sums tell it from
-//! others ([`Depth`]).
+//! Classes of strategies, by how they come to a path. All that weights ask of one is here: how many samples it takes
+//! (n_j), whether it can make a path, its ratio to the next (p_{j+1} / p_j), and how running sums tell it from others
+//! ([`Depth`]).
 //!
-//! **n_j** is what weights count, and the only place where normalisation meets them. They are unbiased with any numbers
-//! that are one function of the path, whichever strategy made it (docs/derivations/mis-weights.md). n_j depends on the
-//! two vertices that strategy j links alone, so that sums along subpaths can hold it.
+//! **n_j** is the number of samples that strategy j takes of a path in a pass: the only way in which numbers of samples
+//! enter a weight. Estimates are unbiased with any n_j that is a function of the path, whichever strategy made it
+//! (docs/derivations/mis-weights.md). This one depends on nothing but the two vertices that strategy j links, so that
+//! sums along subpaths can hold it.
 //!
 //! **Ratios.** With a_i and b_i the densities of x_i drawn from the light and from the camera, p_{j+1} / p_j = a_j / b_j,
 //! except that s = 1 draws x_0 by next-event estimation, with density e:
@@ -15,7 +16,7 @@ use super::{Job, LightPointChoice, PathDensities, Vertex};
 use crate::film::FilmSettings;
 use crate::guide::{Cell, CellGuide};
 
-/// A way to come to a path.
+/// A class of strategies that take the same number of samples of paths.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Technique {
     /// s = 0: the camera walk comes upon the light by itself.

@@ -1,5 +1,5 @@
-//! Vertices: f = Π scatter · Π G over geometric cosines, one function of the path, whichever end a
-//! walk began at [Veach97, §5.3]. Here are a vertex's data; `scatter` and G (`segment`) stand beside it.
+//! The data of vertices. The integrand f = Π scatter · Π G, over geometric cosines, is one function of the path,
+//! whichever end a walk began at [Veach97, §5.3]; `scatter` and `segment` (G) have its factors.
 //!
 //! `scatter` is in 1/sr at a surface, in 1/(m sr) in a medium; densities are per area, 1/m² (per volume, 1/m³, in
 //! a medium; solid angle, 1/sr, for a light at infinity). Visibility and roulette are no part of a vertex.
@@ -45,8 +45,8 @@ pub struct Vertex {
     pub wo: Vec3,
     /// Throughput up to this vertex, without the scattering at it.
     pub beta: Spectrum,
-    /// The density with which a walk from this end of the path draws this vertex, without roulette; on a light
-    /// that of beginning there, however the point was drawn.
+    /// The density with which its own walk draws this vertex, without roulette. For a point that was drawn on a light
+    /// it is always that of a light subpath that begins there, even if next-event estimation drew the point.
     pub pdf_fwd: f32,
     /// The density of this vertex drawn from its successor by a walk in the other direction,
     /// without roulette; set when the successor scatters.
@@ -207,8 +207,8 @@ impl Vertex {
         [self.locus.point, n]
     }
 
-    /// Returns the vertex as a receiver of light, on a path that goes on along `w`, of any length: towards the light,
-    /// or towards the camera. Both give the same receiver, as both are on one side of an opaque surface.
+    /// Returns the vertex as a receiver of light on a path that goes on along `w`, a vector of any length towards the
+    /// light or towards the camera. Both give the same receiver: an opaque surface has both on one side.
     #[inline]
     pub fn receiver(&self, w: Vec3) -> Receiver {
         let facing = match &self.scattering {

@@ -141,7 +141,7 @@ impl Vertex {
         turned(self.frame.z, self.locus.n_g, o, bsdf.lobes()).is_none()
     }
 
-    /// Returns the frames as they are.
+    /// Returns the frames of the layers, none of them turned.
     pub(super) fn frames(&self, bsdf: &Bsdf) -> Frames {
         let coat = bsdf.coat_normal().map(|n| self.frame.to_world(n));
         Frames {
@@ -150,7 +150,7 @@ impl Vertex {
         }
     }
 
-    /// Returns the frames that the direction `o` towards the camera sees. None: those that they are.
+    /// Returns the frames, turned towards the direction `o` to the camera. None: no layer has to turn.
     pub(super) fn frames_toward(&self, bsdf: &Bsdf, o: Vec3) -> Option<Frames> {
         let plain = self.frames(bsdf);
         let turn = |frame: &Frame, lobes: Lobes| {
@@ -165,9 +165,9 @@ impl Vertex {
         })
     }
 
-    /// Value and densities between two directions of a walk, as [`ScatteringEvent`](super::ScatteringEvent) has them, where layers are not
-    /// seen by the frame of the vertex: the camera's walk draws by the frames that it sees, the light's by those that
-    /// they are.
+    /// Returns value and densities between two directions of a walk, as
+    /// [`ScatteringEvent`](super::ScatteringEvent) does, where frames turn. The value is that of the turned frames, by
+    /// which camera walks draw, too; light walks do not know the camera, and draw by the frames that have not turned.
     #[cold]
     #[inline(never)]
     pub(super) fn value_by_frames(
@@ -216,7 +216,7 @@ impl Vertex {
         }
     }
 
-    /// Returns true where a layer sees `w` on the side that the surface is on.
+    /// Returns true where the normals of surface and frame agree on the side of `w`, for some layer.
     pub(super) fn faces(&self, frames: &Frames, w: Vec3) -> bool {
         let cos_g = self.locus.n_g.dot(w);
         frames.to_local(w).iter().any(|local| local.z * cos_g > 0.0)

@@ -1,5 +1,5 @@
-//! β_{i+1} = β_i · scatter · |cosθ| / (p q), p the density of the direction (solid angle, 1/sr) and
-//! q the roulette's: walks from the lens and from a light, which note the densities of both
+//! Walks that make camera and light subpaths. Each step has β_{i+1} = β_i · scatter · |cosθ| / (p q), with p the density
+//! of the direction (solid angle, 1/sr) and q the probability that the walk goes on. Vertices get the densities of both
 //! directions.
 //!
 //! A walk ends by escape, by roulette, where nothing scatters, or at the limit of path length. It
@@ -53,7 +53,7 @@ pub fn camera_subpath(
         stream,
         max_vertices: job.settings.max_vertices(),
     };
-    // Cameras draw rays in proportion to their importance: its weight leaves the film's alone.
+    // Cameras draw rays in proportion to W_e |cosθ|, so that β begins with the filter's weight.
     let step = Step {
         origin: ray.origin,
         direction: ray.direction,
@@ -89,14 +89,14 @@ pub fn light_subpath(
         job,
         mode: TransportMode::Importance,
         stream,
-        // At least the lens is the camera's.
+        // Each strategy has t ≥ 1: one vertex is left for the lens.
         max_vertices: job.settings.max_vertices() - 1,
     };
     walker.walk(subpaths, &start, step, &mut stats.rays.light);
 }
 
-/// Draws the start of a light subpath and the ray that leaves it. None: the draw has no density, the light is cut
-/// out or its medium ended before, or a medium without end swallows it.
+/// Draws the start of a light subpath and the ray that leaves it. None: its density is 0, the light is cut out at this
+/// point, the point is outside of the medium that glows, or a medium without end lies before a light at infinity.
 fn draw_emission(job: &Job<'_>, stream: &SampleStream) -> Option<(Vertex, EmissionSample)> {
     let scene = job.scene;
     let at = |purpose| Dimension::at(0, purpose);
@@ -263,8 +263,8 @@ impl Walker<'_> {
     }
 }
 
-/// Gives the last of `vertices`, to which `step` led through the media of `edge` if there are any, its densities. The
-/// walk ends where it has none: by rounding it is the vertex before it, in a corner, or nothing arrives.
+/// Sets the densities of the last of `vertices`, which `step` reached through the media of `edge`. Removes it and ends
+/// the walk where its density is 0: rounding put it on the vertex before, in a corner, or media let nothing through.
 #[inline(always)]
 fn reach(vertices: &mut Vec<Vertex>, step: &Step, edge: Option<&Edge>) -> Option<End> {
     let [.., from, vertex] = &mut vertices[..] else {

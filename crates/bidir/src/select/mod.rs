@@ -38,7 +38,8 @@ pub struct Candidate {
     pub score: f32,
     /// The numbers of its light vertex and of its camera vertex among those of a batch.
     pub vertices: [u32; 2],
-    /// The number of its light vertex in the sample: 0 for all light points of next-event estimation.
+    /// The number of its light vertex in the sample, by which `per-light-vertex` groups: 0 for all light points of
+    /// next-event estimation.
     pub light_vertex: u32,
 }
 

@@ -21,8 +21,8 @@ pub(in super::super) fn connect(
     candidates: &mut Candidates,
     worker: &mut Worker,
 ) {
-    // The camera vertices of all samples from t = 2 on, by number.
-    let mut vertex = 0;
+    // Its lists in `ends`.
+    let mut list = 0;
     for (number, sample) in walked.samples.iter().enumerate() {
         let mut connector = Connector {
             job,
@@ -34,11 +34,11 @@ pub(in super::super) fn connect(
             worker,
         };
         for t in 2..=connector.camera.vertices.len() {
-            for event in ends.next_events.get(vertex) {
+            for event in ends.next_events.get(list) {
                 connector.offer_next_event(t, event);
             }
-            connector.offer_walked(t, ends.walked.get(vertex));
-            vertex += 1;
+            connector.offer_walked(t, ends.walked.get(list));
+            list += 1;
         }
         connector.count();
         candidates.offered.close();
@@ -54,8 +54,8 @@ pub(super) struct Connection {
     /// T of the media between its ends, where it is known before its shadow ray is traced; else 1.
     pub(super) transmittance: Spectrum,
     pub(super) weight: f32,
-    /// √V̂ of its shadow ray, times a guess at the mean of T.
-    pub(super) root_visibility: f32,
+    /// The factor of its score: √V̂ of its shadow ray, times a guess at the mean of T.
+    pub(super) score_factor: f32,
 }
 
 /// Connects the camera subpath of a sample.
@@ -64,7 +64,7 @@ pub(super) struct Connector<'a> {
     sample: &'a Sample,
     pub(super) walked: &'a Walked,
     pub(super) camera: Subpath<'a>,
-    /// How many candidates, and connections that are not offered, other samples have.
+    /// Where its candidates begin in all offered ones, and in all others.
     first: [usize; 2],
     pub(super) candidates: &'a mut Candidates,
     worker: &'a mut Worker,
@@ -108,7 +108,7 @@ impl<'a> Connector<'a> {
     }
 
     /// Returns the connection of any two vertices; `next_event` is the density of a light point that was drawn for the
-    /// camera vertex. None: it is zero. Media are guessed.
+    /// camera vertex. None: it is zero. The weight takes a guess of media, unless the scene foresees them.
     fn general(&mut self, t: usize, end: &LightEnd, next_event: Option<f32>) -> Option<Connection> {
         let (z, s) = (end.place.z as usize, usize::from(end.place.s));
         let light = &self.walked.light.vertices()[z + 1 - s..=z];
@@ -126,7 +126,7 @@ impl<'a> Connector<'a> {
             next_event,
         };
         let (z, y) = (path.z(), path.y());
-        let mut root_visibility = self.job.root_visibility(z, y);
+        let mut score_factor = self.job.root_visibility(z, y);
         let scene = self.job.scene;
         let mut transmittance = Spectrum::ONE;
         if !scene.is_clear(&z.locus, &y.locus) {
@@ -139,13 +139,13 @@ impl<'a> Connector<'a> {
                 scene.guessed_edge(a, b, lanes)
             };
             path.pass(&edge);
-            root_visibility *= self.job.lanes.mean(edge.transmittance);
+            score_factor *= self.job.lanes.mean(edge.transmittance);
         }
         Some(Connection {
             contribution,
             transmittance,
             weight: self.worker.weights.connection(self.job, &path, &sums),
-            root_visibility,
+            score_factor,
         })
     }
 
@@ -161,7 +161,7 @@ impl<'a> Connector<'a> {
         let mean = self.job.lanes.mean(value.map(f32::abs));
         term.contribution *= connection.transmittance;
         let y = (self.camera.first + t - 1) as u32;
-        let candidate = end.candidate(term, mean * connection.root_visibility, y);
+        let candidate = end.candidate(term, mean * connection.score_factor, y);
         if is_summable(value) & !value.is_black() {
             self.candidates.offered.open().write(candidate, 1);
         } else {

@@ -28,7 +28,7 @@ impl Connector<'_> {
             contribution,
             transmittance: Spectrum::ONE,
             weight,
-            root_visibility: job.root_visibility(x0, vertex),
+            score_factor: job.root_visibility(x0, vertex),
         })
     }
 
@@ -133,7 +133,7 @@ impl Connector<'_> {
                     contribution,
                     transmittance: Spectrum::ONE,
                     weight,
-                    root_visibility: root_visibility[lane],
+                    score_factor: root_visibility[lane],
                 };
                 self.offer(t, end, connection);
             } else if end.place.s > 0 {

@@ -1,10 +1,8 @@
-//! w = p/(p + q) by the balance heuristic, p²/(p² + q²) by the power heuristic \[Veach95\]: path
-//! tracing with next-event estimation. p and q are densities in the same measure, area or solid
-//! angle.
+//! Path tracing with next-event estimation, weighted by w = p/(p + q), the balance heuristic, or p²/(p² + q²), the power
+//! heuristic \[Veach95\].
 //!
-//! It shares walks and scattering with the bidirectional estimator, but not its weights: a path's
-//! last vertex x_0 has density p by scattering at x_1 and q by next-event estimation, and nothing
-//! else is asked.
+//! It shares walks and scattering with the bidirectional estimator, but not its weights: a path's last vertex x_0 has
+//! density p by scattering at x_1 and q by next-event estimation, in the same measure, area or solid angle.
 
 use super::super::journal::enter;
 use super::super::{Entry, Link, Sample, Walked, Worker};

@@ -11,8 +11,8 @@ use crate::sampler::{Dimension, Purpose, kronecker_number, kronecker_point};
 use crate::spectrum::Spectrum;
 use crate::stats::Stage;
 
-/// Draws light points for each camera vertex, one of each of as many parts of the lights, at points of a
-/// sequence that fills them evenly, and adds them behind the light subpaths.
+/// Draws light points for each camera vertex, as many as `counts` says, and adds them behind the light subpaths. The
+/// choice of the light is stratified; points on lights follow a sequence that fills them evenly.
 #[inline(never)]
 pub(in super::super) fn next_events(
     job: &Job<'_>,
@@ -115,8 +115,8 @@ pub(in super::super) fn own_light(
     worker.stopwatch.end(Stage::Candidates);
 }
 
-/// Draws for each camera vertex as many vertices of the cache as `counts` says, one of each of as many parts of it.
-/// They lie anywhere in the memory of a group, and are loaded while others are drawn.
+/// Draws for each camera vertex as many vertices of the cache as `counts` says, stratified over the proposals. They lie
+/// anywhere in the memory of a group, and each is loaded while others are drawn.
 #[inline(never)]
 pub(in super::super) fn draw_cached(
     job: &Job<'_>,

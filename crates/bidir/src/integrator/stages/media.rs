@@ -1,9 +1,9 @@
 //! Shadow rays through media. A weight depends on all of the media that a ray goes through. Where only the ray finds
 //! them out, each is traced before its term is weighed.
 //!
-//! A candidate has the weight of a guess, by which it is chosen. Its probability depends on guesses alone, and the
-//! estimate remains unbiased with the weight that the ray leads to (docs/derivations/media.md). Where the guess was
-//! right, that is the weight it has.
+//! The weight by which a candidate is chosen takes a guess of the media. Its probability so depends on nothing but
+//! guesses, and the estimate remains unbiased if the weight is computed again from the media that the ray went through
+//! (docs/derivations/media.md). Where the guess was right, it is kept.
 
 use super::super::{Candidates, Entry, Fate, Walked, Worker};
 use crate::locus::Locus;

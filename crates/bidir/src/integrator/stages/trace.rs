@@ -30,6 +30,7 @@ pub(in super::super) fn select(
             light.load_locus_ahead(z as usize);
         }
     }
+    // In a second loop, so that what the first began to load has arrived.
     let mut number = 0;
     for &Chosen { candidate, prob } in &*chosen {
         let candidate = candidate as usize;
