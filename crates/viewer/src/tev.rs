@@ -46,27 +46,14 @@ const CHANNELS: [&str; 3] = ["R", "G", "B"];
 #[derive(Debug, Error)]
 pub enum TevError {
     /// There is no such host, or nobody listens.
-    #[error("cannot connect to {address}: {source}")]
-    Absent {
-        /// The address.
-        address: TevAddress,
-        /// The reason of the system.
-        source: io::Error,
-    },
+    #[error("cannot connect to {0}: {1}")]
+    Absent(TevAddress, io::Error),
     /// The connection broke, or tev did not read.
-    #[error("{address} does not accept images: {source}")]
-    Broken {
-        /// The address.
-        address: TevAddress,
-        /// The reason of the system.
-        source: io::Error,
-    },
+    #[error("{0} does not accept images: {1}")]
+    Broken(TevAddress, io::Error),
     /// The last frame was not taken in time.
-    #[error("{address} did not take the last image within {} seconds", PATIENCE.as_secs())]
-    Late {
-        /// The address.
-        address: TevAddress,
-    },
+    #[error("{0} did not take the last image within {seconds} seconds", seconds = PATIENCE.as_secs())]
+    Late(TevAddress),
 }
 
 /// A render that tev shows.
@@ -130,9 +117,8 @@ impl Tev {
         }
         let _ = self.frames.send(Frame::new(film));
         drop(self.frames);
-        let address = self.address;
         let sent = self.result.recv_timeout(PATIENCE);
-        sent.unwrap_or(Err(TevError::Late { address }))
+        sent.unwrap_or(Err(TevError::Late(self.address)))
     }
 }
 
@@ -163,12 +149,8 @@ impl Thread {
     }
 
     fn connect(&self) -> Result<TcpStream, TevError> {
-        let absent = |source| TevError::Absent {
-            address: self.address.clone(),
-            source,
-        };
-        let TevAddress { host, port } = &self.address;
-        let addresses = (host.as_str(), *port).to_socket_addrs().map_err(absent)?;
+        let absent = |error| TevError::Absent(self.address.clone(), error);
+        let addresses = self.address.0.to_socket_addrs().map_err(absent)?;
         let mut failure = io::ErrorKind::AddrNotAvailable.into();
         for address in addresses.take(ADDRESSES) {
             match TcpStream::connect_timeout(&address, CONNECTING) {
@@ -181,10 +163,8 @@ impl Thread {
 
     /// Sends frames to a connection until none will follow.
     fn show(&mut self, stream: TcpStream) -> Result<(), TevError> {
-        self.send_all(stream).map_err(|source| TevError::Broken {
-            address: self.address.clone(),
-            source,
-        })
+        let sent = self.send_all(stream);
+        sent.map_err(|error| TevError::Broken(self.address.clone(), error))
     }
 
     fn send_all(&mut self, stream: TcpStream) -> io::Result<()> {
@@ -268,10 +248,7 @@ fn send(client: &mut TevClient, image_name: &str, frame: &Frame) -> io::Result<(
 
 /// The host and the port of tev: `127.0.0.1:14158`, `desk.example`, `[::1]:14158`.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct TevAddress {
-    host: String,
-    port: u16,
-}
+pub struct TevAddress(String);
 
 /// A text that is no address.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
@@ -282,34 +259,34 @@ impl FromStr for TevAddress {
     type Err = InvalidAddress;
 
     fn from_str(text: &str) -> Result<Self, InvalidAddress> {
-        let is_v6 = |host: &str| host.parse::<Ipv6Addr>().is_ok();
-        let bracketed = text.strip_prefix('[').and_then(|rest| rest.split_once(']'));
-        let (host, port) = match bracketed.filter(|(host, _)| is_v6(host)) {
-            Some(parts) => parts,
-            // Without brackets colons are those of an address of version 6, or precede the port.
-            None if is_v6(text) => (text, ""),
-            None => text.split_at(text.find(':').unwrap_or(text.len())),
+        // Without brackets, colons are those of an address of version 6, or precede the port.
+        let address = match text {
+            _ if is_v6(text) => format!("[{text}]:{PORT}"),
+            _ if is_host(text) => format!("{text}:{PORT}"),
+            _ => text.to_owned(),
         };
-        let is_part = |c: char| c.is_alphanumeric() || "-._%".contains(c);
-        let is_name = !host.is_empty() && host.chars().all(is_part);
-        let port = match port.strip_prefix(':') {
-            Some(number) => number.parse().map(NonZeroU16::get).ok(),
-            None => Some(PORT).filter(|_| port.is_empty()),
-        };
-        let host = Some(host).filter(|host| is_name || is_v6(host));
-        let (host, port) = host.zip(port).ok_or(InvalidAddress)?;
-        let host = host.to_owned();
-        Ok(Self { host, port })
+        let (host, port) = address.rsplit_once(':').ok_or(InvalidAddress)?;
+        let is_valid = is_host(host) && port.parse::<NonZeroU16>().is_ok();
+        is_valid.then_some(Self(address)).ok_or(InvalidAddress)
     }
+}
+
+fn is_v6(host: &str) -> bool {
+    host.parse::<Ipv6Addr>().is_ok()
+}
+
+/// Returns true for a name, an address of version 4, or one of version 6 in brackets.
+fn is_host(text: &str) -> bool {
+    let is_part = |c: char| c.is_alphanumeric() || "-._%".contains(c);
+    let bracketed = text
+        .strip_prefix('[')
+        .and_then(|rest| rest.strip_suffix(']'));
+    bracketed.map_or_else(|| !text.is_empty() && text.chars().all(is_part), is_v6)
 }
 
 impl fmt::Display for TevAddress {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if self.host.contains(':') {
-            write!(f, "[{}]:{}", self.host, self.port)
-        } else {
-            write!(f, "{}:{}", self.host, self.port)
-        }
+        f.write_str(&self.0)
     }
 }
 
