@@ -318,7 +318,9 @@ mod tests {
             ".a.film.bidir-aB3dE6",
             ".a.film.bidir-aB3dE6.tmp.",
         ];
-        others.iter().for_each(|name| make(name, 2 * OLD));
+        for name in &others {
+            make(name, 2 * OLD);
+        }
         let young = ".a.film.bidir-Young1.tmp";
         make(young, OLD / 2);
         let names = || {

@@ -200,7 +200,7 @@ fn own_primitives_come_first_in_ties() {
 fn stopped_rays_look_at_no_more_instances() {
     let ray = Ray::new(Vec3::new(0.2, 0.2, 2.0), -Vec3::Z);
     for isa in Isa::supported() {
-        let bvh = placed_one(&[], &[&[TRIANGLE]], &[HERE; 1000]);
+        let bvh = placed_one(&[], &[&[TRIANGLE]], &vec![HERE; 1000]);
         let bvh = bvh.with_isa(isa).expect("supported");
         for (stops, expected) in [(false, 1000), (true, 1)] {
             let (flag, seen) = (AtomicBool::new(false), AtomicUsize::new(0));
