@@ -15,12 +15,13 @@
 //! * `k8s.yaml` replaces its shell by the program, so that TERM reaches the render itself.
 //! * `shell.sh` is for one machine, or several that share a folder.
 
-use crate::args::{FarmArgs, FarmCommand};
+use crate::args::{Cli, FarmArgs, FarmCommand};
 use crate::console::print;
 use crate::exit::{Exit, Failure};
 use crate::output::default_image;
 use crate::scene_io::{self, Format};
 use formats::is_obeyed;
+use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
 /// Prints a job file.
@@ -39,6 +40,7 @@ pub(crate) fn run(command: &FarmCommand) -> Result<Exit, Failure> {
         let message = format!("`{word}` has control characters, which a job file cannot show");
         return Err(Failure::usage(message).with_hint("rename the file"));
     }
+    check_part(args)?;
     let default = || default_image(Path::new(&args.scene), None);
     let image = args.output.as_ref().map_or_else(default, PathBuf::from);
     scene_io::image_format(&image, &[Format::Exr])?;
@@ -47,6 +49,15 @@ pub(crate) fn run(command: &FarmCommand) -> Result<Exit, Failure> {
         args,
         &image.with_extension("").to_string_lossy(),
     ))
+}
+
+/// Checks the command line of a part, in which no flag may select other passes or another film.
+fn check_part(args: &FarmArgs) -> Result<(), Failure> {
+    let own = ["--part=1/2", "--checkpoint=a.film", "--resume"];
+    let words = ["bidir", "render", &args.scene].into_iter().chain(own);
+    let flags = args.flags.iter().map(String::as_str);
+    let words: Vec<_> = words.chain(flags).map(OsString::from).collect();
+    Cli::check(&words)
 }
 
 /// Fills in the placeholders of a template in one pass, so that braces in `name`, the image's without ending, are

@@ -83,6 +83,15 @@ impl Cli {
         })
     }
 
+    /// Checks that these words are a command line.
+    pub(crate) fn check(words: &[OsString]) -> Result<(), Failure> {
+        let mut command = command();
+        match Self::parsed(&mut command, words) {
+            Ok(_) => Ok(()),
+            Err(error) => Err(mistakes::explained(&error, &command, words)),
+        }
+    }
+
     fn parsed(command: &mut clap::Command, arguments: &[OsString]) -> Result<Self, clap::Error> {
         let matches = command.try_get_matches_from_mut(arguments)?;
         if let Some(("experiment", matches)) = matches.subcommand()
