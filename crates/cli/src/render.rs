@@ -190,15 +190,16 @@ impl Job<'_> {
         show.end(render);
         let is_empty = render.session.film().passes().is_empty();
         // A signal has no effect on a render that is complete.
-        let end = match self.signals.exit().filter(|_| limit.is_none()) {
+        let signal = self.signals.exit().filter(|_| limit.is_none());
+        let end = match signal {
             Some(exit) if !is_empty => End::Signal(exit),
             None if limit.is_some() || render.spent.passes > 0 => End::Complete,
             _ => End::Nothing(reporter.pass_time(clock.first_pass.elapsed())),
         };
-        match end {
-            End::Complete => reporter.complete(),
-            End::Signal(_) => reporter.say_stop(),
-            End::Nothing(_) => {}
+        if signal.is_some() {
+            reporter.say_stop();
+        } else if matches!(end, End::Complete) {
+            reporter.complete();
         }
         reporter.finish();
         end
