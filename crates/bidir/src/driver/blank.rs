@@ -10,20 +10,20 @@ use crate::settings::Settings;
 use crate::strategy::Strategies;
 use crate::view::View;
 
-/// Rays to each side of the grid that looks at the scene.
+/// Rays along each side of the grid over the film.
 const SIDE: u32 = 16;
 
-/// The first surfaces that a camera sees through a grid of points of the film.
+/// Counts of the first surfaces that a camera sees through a grid of points of the film.
 #[derive(Clone, Copy, Default)]
 struct Sight {
-    /// Points where a surface is seen.
+    /// The number of rays that hit a surface.
     hits: usize,
-    /// The samples that see it from its back.
+    /// The number of rays that hit a surface from behind.
     backs: usize,
 }
 
 impl Sight {
-    /// Looks through the part of the film that is rendered.
+    /// Counts what the camera sees through the rendered part of the film.
     fn of(scene: &Scene, view: &View) -> Self {
         let crop = view.film().crop;
         let sampler = Sampler::new(SamplerKind::Independent, 0);
@@ -46,8 +46,8 @@ impl Sight {
     }
 }
 
-/// Returns a warning for a picture that is black, or has one colour everywhere, with the reason. None: it has
-/// content, or a single pixel that is not black.
+/// Returns a warning, with the reason, for a picture that is black or has one colour everywhere. None: pixels differ,
+/// or the picture is a single pixel that is not black.
 pub(super) fn blank_warning(
     scene: &Scene,
     view: &View,

@@ -49,7 +49,7 @@ pub struct Spent {
     pub passes: u64,
     /// All time that counts.
     pub total: Duration,
-    /// The part of it since the first pass of this run.
+    /// The part of `total` since the first pass of this run.
     pub rendering: Duration,
 }
 
@@ -70,7 +70,7 @@ impl Budget {
 
     /// Returns the limit of passes or time that is reached after `passes`.
     ///
-    /// A pass is expected to take the mean time of those of this run. The first one of a run always has time:
+    /// Expects the next pass to take the mean time of this run's passes. The first pass of a run always has time:
     /// otherwise a render that is continued might never end.
     fn used_up(&self, passes: u64, spent: Spent) -> Option<Stopping> {
         if self.passes.is_some_and(|most| passes >= most) {

@@ -1,4 +1,4 @@
-//! From a batch to the running pass: the picture, its parts, and raw images.
+//! Adds a batch to the running pass: to the picture, its parts, and raw images.
 
 use super::features::Features;
 use crate::contribution::Contribution;
@@ -52,7 +52,7 @@ impl Deposit<'_> {
         }
     }
 
-    /// Returns the place of a sample's pixel in the crop.
+    /// Returns the index of a sample's pixel in the crop.
     fn pixel(&self, sample: &Sample) -> Option<usize> {
         let [x, y] = sample.pixel.map(i64::from);
         self.job.view.film().crop.index(x, y)
@@ -63,7 +63,7 @@ impl Deposit<'_> {
         view.film().sensor.respond(lanes.to_rgb(value))
     }
 
-    /// Adds to the parts of the sample's own pixel.
+    /// Adds a contribution to the parts at the sample's own pixel.
     fn part_of_pixel(&self, sample: &Sample, contribution: &Contribution) {
         let value = self.rgb(contribution.value());
         for part in self.parts_of(contribution) {
@@ -83,7 +83,7 @@ impl Deposit<'_> {
         self.layers.parts_of(contribution.term.strategy, group)
     }
 
-    /// Adds to raw images, and counts squares.
+    /// Adds raw values to the raw images of strategies, and squares of weighted luminances to the counts.
     fn strategies(&self, batch: &mut Batch) {
         let Batch {
             walked,
@@ -108,9 +108,9 @@ impl Deposit<'_> {
         }
     }
 
-    /// Adds to what a sample gives the weighted image of a strategy, if there is one. A strategy may
-    /// contribute often, and others in between: by several light points, by several vertices of a light
-    /// cache, by each environment that a walk escapes to.
+    /// Adds a contribution's luminance to the sum of its sample and strategy, if the strategy has a weighted image. A
+    /// strategy may contribute to a sample several times, and not in a row: by several light points, by several
+    /// vertices of a light cache, by each environment that a walk escapes to.
     fn add_luminance(&self, entry: &Entry, sums: &mut Vec<((u32, Strategy), f64)>) {
         let strategy = entry.contribution.term.strategy;
         if self.layers.weighted_part(strategy).is_none() {
@@ -124,7 +124,7 @@ impl Deposit<'_> {
         }
     }
 
-    /// Adds a splat to its raw image, and counts its square, where it reaches the film.
+    /// Adds a splat to its strategy's raw image, and counts its square, if it reaches the film.
     fn splat(&self, contribution: &Contribution, place: SplatPlace, stats: &mut Stats) {
         let (film, strategy) = (self.job.view.film(), contribution.term.strategy);
         let Some((_, weight)) = film.pick_pixel(place) else {
@@ -144,8 +144,8 @@ impl Deposit<'_> {
         f64::from(luminance(self.rgb(contribution.value())))
     }
 
-    /// Returns the raw image of a contribution, and the value added to it. None: it has none, or the value is
-    /// counted as dropped from it.
+    /// Returns the part that is the raw image of a contribution's strategy, and the value to add to it. None: there
+    /// is no such image, or no film can sum the value, which is counted as dropped.
     fn raw(&self, contribution: &Contribution, stats: &mut Stats) -> Option<(usize, Rgb)> {
         let part = self.layers.raw_part(contribution.term.strategy)?;
         let Some(value) = contribution.unweighted() else {

@@ -1,7 +1,7 @@
-//! Images of camera samples: features of the first surface, and the cost of the sample.
+//! Features of camera samples: of the first surface, and the cost of the sample.
 //!
-//! All are plain numbers of one sample; the film makes means or sums of them. The camera subpath
-//! finds the surface; an estimator that walks none is given one ray for it.
+//! Each feature is a number, or three, of one sample; the film makes means or sums of them. The camera subpath finds
+//! the surface; an estimator that walks no camera subpath traces one ray for it.
 
 use super::Progress;
 use crate::film::{Aov, AovKind, Layers};
@@ -12,14 +12,14 @@ use crate::sampler::{Dimension, Purpose};
 use crate::scene::RayDraws;
 use crate::spectrum::Spectrum;
 
-/// The cost of a sample so far in its thread: read before and after it.
+/// The work of a thread so far: the difference of two readings is the cost of a sample.
 pub(super) struct Meter {
     rays: u64,
     nanoseconds: u64,
 }
 
 impl Meter {
-    /// Looks at the counters, and at the host's clock where `layers` ask for it.
+    /// Reads the counters, and the host's clock if `layers` ask for times.
     #[inline]
     pub(super) fn read(layers: &Layers, batch: &Batch, progress: &dyn Progress) -> Self {
         let is_timed = layers.feature(Aov::Time).is_some();
@@ -47,7 +47,7 @@ struct FirstSurface {
 }
 
 impl Features {
-    /// Returns the features of the one sample of `batch`, which was just taken, between two looks at what it cost.
+    /// Returns the features of the one sample of `batch`, with the meters read before and after the sample.
     pub(super) fn new(
         job: &Job<'_>,
         layers: &Layers,
@@ -91,7 +91,7 @@ impl FirstSurface {
     /// Finds the first surface of the one sample of `batch`. None: the ray escapes.
     fn find(job: &Job<'_>, batch: &mut Batch) -> Option<Self> {
         let sample = &batch.walked.samples[0];
-        // A walk may scatter in a medium before it.
+        // A walk in a medium may scatter before it reaches a surface.
         if batch.walked.camera.count() > 0 && !job.scene.has_media() {
             let surface = batch.walked.camera.get(0).vertices.get(1)?;
             return Some(Self::new(job, surface));

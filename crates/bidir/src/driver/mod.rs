@@ -1,11 +1,10 @@
 //! Rendering: passes of samples into a film.
 //!
-//! A pass is one sample of every pixel and a light subpath for each or for several of them. [`Session`] renders pass by
-//! pass for hosts that want to look, stop and go on; [`render`] does all at once. The state is
-//! (settings, next pass, film, counters) and nothing hidden. Whatever the number of threads, the
-//! same passes give the same bits.
+//! A pass is one sample of every pixel, and a light subpath for each sample or for several. [`Session`] renders pass
+//! by pass for hosts that want to look, stop and go on; [`render`] does all at once. The state is (settings, next
+//! pass, film, counters), and no more. The same passes give the same bits for any number of threads.
 //!
-//! A host that wants a time budget gives [`Budget`] its own time between passes: there is no clock here.
+//! There is no clock here: a host with a time budget passes the time that it measured to [`Budget`] between passes.
 
 mod blank;
 mod budget;
@@ -34,14 +33,14 @@ use crate::stats::Clock;
 use crate::view::View;
 use thiserror::Error;
 
-/// The resources that a render may use; nothing here changes an image.
+/// The resources that a render may use. They do not change the image.
 #[derive(Clone, Copy, Debug)]
 pub struct Resources {
-    /// Threads; 0 is one per processor, and [`Threads`] has the most.
+    /// The number of threads, limited as [`Threads`] says; 0 is one per processor.
     pub threads: usize,
-    /// The largest film. Unit: bytes.
+    /// The most memory of the film. Unit: bytes.
     pub film_memory: u64,
-    /// Measures the stages of some samples, for [`Session::stage_times`]. None: nothing is measured.
+    /// The clock that measures the stages of some samples, for [`Session::stage_times`]. None: nothing is measured.
     pub clock: Option<Clock>,
 }
 
@@ -65,20 +64,20 @@ pub trait Progress: Sync {
     /// Reports `samples` finished samples.
     fn advance(&self, samples: u64);
 
-    /// Asks to give up the running pass, which is then forgotten. All threads look at it before every ray, and on the
-    /// way of a ray before every instance.
+    /// Returns the flag by which the host gives up the running pass, which is then forgotten. All threads check it
+    /// before every ray, and a ray checks it before every instance.
     fn stop(&self) -> Stop<'_> {
         Stop::NEVER
     }
 
-    /// Returns the host's clock, which a session looks at only where its film keeps
-    /// [`Aov::Time`](crate::film::Aov::Time). Unit: nanoseconds since any moment.
+    /// Returns the time of the host's clock, since any moment. A session reads it only if its film keeps
+    /// [`Aov::Time`](crate::film::Aov::Time). Unit: nanoseconds.
     fn nanoseconds(&self) -> u64 {
         0
     }
 }
 
-/// Nobody listens.
+/// Ignores reports, and never stops.
 impl Progress for () {
     fn advance(&self, _samples: u64) {}
 }
@@ -86,7 +85,7 @@ impl Progress for () {
 /// Why a session cannot begin.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 pub enum SessionError {
-    /// The film cannot be made.
+    /// The film needs too much memory.
     #[error(transparent)]
     Film(#[from] FilmError),
     /// The list of strategies makes no path within the limit of length.

@@ -1,8 +1,8 @@
-//! One sample again, with every term of its estimate: its value, its probability of being traced, its
+//! A sample repeated with every term of its estimate: the term's value, its probability of being traced, its
 //! visibility, and its outcome.
 //!
-//! Nothing here adds to a film. Visibility of what was not traced is found afterwards, by rays that
-//! are not counted.
+//! Replays add nothing to a film. Connections that the render did not trace are traced here, by rays that are not
+//! counted.
 
 use crate::contribution::{Contribution, Term};
 use crate::film::{FilmSettings, SplatPlace};
@@ -13,22 +13,23 @@ use crate::select::Selector;
 use crate::spectrum::{Lanes, Spectrum};
 use serde::Serialize;
 
-/// One sample again, with all that it made.
+/// A repeated sample, with all its terms.
 pub struct Replay {
-    /// The meaning of the lanes of its light.
+    /// The meaning of the lanes of the sample's spectra.
     pub lanes: Lanes,
-    /// The one sample, with what its stages left.
+    /// The batch of this one sample, as its stages left it.
     pub batch: Batch,
-    /// The number of its light subpath. None: it uses that of another sample, or none was walked.
+    /// The number of the sample's light subpath in the batch. None: the sample uses that of another, or no light
+    /// subpath was walked.
     light: Option<usize>,
-    /// The terms that are not zero: hits, connections, the light image.
+    /// The terms that are not zero: hits, connections, splats of the light image.
     pub terms: Vec<ReplayedTerm>,
-    /// The connections of the two subpaths without a term: they are zero, for a Dirac distribution or for sides
-    /// that face away, take no part, or were not asked for.
+    /// The connections of the two subpaths that have no term. They are zero: a vertex is a Dirac distribution, a side
+    /// faces away, or the strategy is not asked for.
     pub zeros: Vec<Strategy>,
 }
 
-/// A term of the estimate, and what came of it.
+/// A term of the estimate, and its outcome.
 #[derive(Clone, Copy, Debug)]
 pub struct ReplayedTerm {
     /// The term, as its strategy gives it.
@@ -37,22 +38,22 @@ pub struct ReplayedTerm {
     pub fate: Fate,
     /// The ends of its shadow ray, light and camera. None for s = 0, which needs none.
     pub ends: Option<[Locus; 2]>,
-    /// For what is chosen from: importance and probability.
+    /// The score and probability of a candidate. None: the term is not subject to selection.
     pub selection: Option<Selection>,
-    /// How much of it arrives, traced or not: 0 where something opaque is in the way, 1 where nothing
-    /// is.
+    /// The fraction that arrives, whether the render traced it or not. Range: 0 if something opaque is in the way, 1
+    /// if nothing is.
     pub transmittance: f32,
-    /// For t = 1: where it lands if it is visible.
+    /// For t = 1, the position on the film.
     pub landing: Option<Landing>,
-    /// The value it added to a pixel of an image of one pass.
+    /// The value that the term added to a pixel, in an image of one pass.
     pub added: Spectrum,
 }
 
-/// How a candidate was chosen from.
+/// The values by which selection treated a candidate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Selection {
-    /// The score that candidates are compared by: the mean of the lanes of the weighted contribution, times a guess at
-    /// that of T, and times √V̂ if visibility is learned.
+    /// The score that candidates are compared by: the mean of the lanes of the weighted contribution, times an
+    /// estimate of the mean of T, and times √V̂ if visibility is learned.
     pub score: f32,
     /// The probability π of being traced.
     pub prob: f64,
@@ -69,7 +70,8 @@ pub struct Landing {
 }
 
 impl Replay {
-    /// Looks into `batch`, a sample with light subpath number `light`; `selector` is the rule that chose its rays.
+    /// Makes the replay of `batch`, a sample with light subpath number `light`; `selector` is the rule that chose its
+    /// shadow rays.
     pub(super) fn new(
         job: &Job<'_>,
         batch: Batch,
@@ -106,18 +108,18 @@ impl Replay {
         replay
     }
 
-    /// Returns the sum of the terms that it adds to its own pixel.
+    /// Returns the sum of the terms that the sample adds to its own pixel.
     pub fn value(&self) -> Spectrum {
         self.batch.values[0]
     }
 
-    /// Returns the terms that it adds to the light image, with their places.
+    /// Returns the terms that the sample adds to the light image, with their positions.
     pub fn splats(&self) -> impl Iterator<Item = (&Contribution, SplatPlace)> {
         let splats = self.batch.splats.iter();
         splats.filter_map(|entry| Some((&entry.contribution, entry.splat_place()?)))
     }
 
-    /// Returns the light subpath of the sample; empty where it has that of another, or none was walked.
+    /// Returns the light subpath of the sample; empty if the sample uses that of another, or none was walked.
     pub fn light(&self) -> Subpath<'_> {
         let light = self.light.map(|number| self.batch.walked.light.get(number));
         light.unwrap_or_default()
@@ -130,7 +132,7 @@ impl Replay {
         camera.unwrap_or_default()
     }
 
-    /// Returns the connections within the limit of length that no term is about.
+    /// Returns the connections within the limit of length that have no term.
     fn zeros(&self, job: &Job<'_>) -> Vec<Strategy> {
         let [light, camera] = [self.light(), self.camera()].map(|walk| walk.vertices.len());
         let all = (2..=camera).flat_map(|t| (1..=light).map(move |s| Strategy::new(s, t)));
@@ -184,23 +186,23 @@ impl ReplayedTerm {
         }
     }
 
-    /// Returns true where something of it arrives.
+    /// Returns true if the transmittance of the term is not 0.
     pub fn is_visible(&self) -> bool {
         self.transmittance > 0.0
     }
 
-    /// Returns true where the term is let through by selection, or where nothing is chosen from.
+    /// Returns true if selection kept the term, or if the term was not subject to selection.
     pub fn is_chosen(&self) -> bool {
         match self.fate {
             Fate::NotTraced => false,
-            // Dropped before selection, or after.
+            // A candidate is dropped after it was chosen, a term without selection before.
             Fate::Dropped => self.selection.is_some(),
             Fate::Blocked | Fate::Added => true,
         }
     }
 }
 
-/// Returns the place of a splat, and the factor that turns its value into its part of a pixel in one pass's image.
+/// Returns the landing of a splat, and the factor that turns its value into its part of a pixel in one pass's image.
 fn land(film: &FilmSettings, place: SplatPlace) -> (Landing, f32) {
     let picked = film.pick_pixel(place);
     let landing = Landing {

@@ -1,6 +1,6 @@
-//! One pass after another: threads take groups of pixels, each sample is a pure function of its pixel
-//! and pass, and the film gets the pass when all of it is done. A pass that was stopped leaves no
-//! trace. No clock is looked at but the host's, where it gives one.
+//! Renders one pass after another: threads take groups of pixels, each sample is a pure function of its pixel and
+//! pass, and the film gets a pass when all of it is done. A pass that was stopped leaves no trace. The only clock is
+//! the host's, if it gives one.
 
 mod group;
 mod handle;
@@ -32,8 +32,8 @@ use std::ops::Range;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError};
 
-/// How many samples go through the stages together: so many that a stage's code serves some before another stage's
-/// takes its place in a processor's fastest cache, and so few that their vertices stay in the next one.
+/// The number of samples that go through the stages together. It is large enough that each stage's code serves
+/// several samples while it is in the fastest cache, and small enough that their vertices stay in the next one.
 const BATCH: usize = 32;
 
 /// A render that goes pass by pass.
@@ -85,15 +85,15 @@ pub struct Session<'a> {
     training: Option<Training>,
     film: Film,
     order: Order,
-    /// The meaning of lanes of each group; groups take the elements in turn.
+    /// The meaning of lanes in each group: group i has element i modulo the length.
     lanes: Vec<Lanes>,
     /// The medium around the camera.
     medium: MediumId,
-    /// No pass before this one is rendered.
+    /// The number of the first pass that this session may render.
     first_pass: u64,
     buffer: PassBuffer,
-    /// True from the beginning of a pass to its end: what a pass left that was given up, or that a panic of the host
-    /// ended, is forgotten.
+    /// True from the beginning of a pass to its end. If it is true when a pass begins, the last one was given up, or
+    /// ended by a panic of the host, and its results are cleared.
     is_in_pass: bool,
     stats: Stats,
     stage_times: StageTimes,
@@ -163,15 +163,15 @@ impl<'a> Session<'a> {
         })
     }
 
-    /// Goes on from what was rendered before, with the same scene and settings: its passes will not
-    /// be rendered again, and the film is the one that a session without a break would have.
+    /// Adds a film of the same scene and settings that was rendered before: its passes will not be rendered again,
+    /// and the film is the one that a session without a break would have.
     ///
     /// Errors: the film is of another size, has other layers, or holds passes that are here already.
     pub fn add_film(&mut self, film: Film) -> Result<(), MergeError> {
         self.film.adopt(film)
     }
 
-    /// Leaves the passes before `first` to others.
+    /// Skips the passes before `first`, for other sessions to render.
     pub fn start_at(&mut self, first: u64) {
         self.first_pass = first;
     }
@@ -196,7 +196,7 @@ impl<'a> Session<'a> {
             let Some(batch) = this.batches.get(thread) else {
                 return;
             };
-            // Only this thread locks it; a panic elsewhere does not make its buffers wrong.
+            // Only this thread locks the batch; a panic elsewhere does not make it wrong.
             let mut batch = batch.lock().unwrap_or_else(PoisonError::into_inner);
             if !this.render_groups(pass, &next, &mut batch, progress) {
                 given_up.store(true, Ordering::Relaxed);
@@ -266,7 +266,7 @@ impl<'a> Session<'a> {
         }
     }
 
-    /// Returns the data that samples of the group of `place` share.
+    /// Returns the job that all samples of the group of `place` share.
     fn job<'j>(&'j self, place: u64, stop: Stop<'j>) -> Job<'j> {
         Job {
             scene: &self.scene,
@@ -280,7 +280,7 @@ impl<'a> Session<'a> {
         }
     }
 
-    /// Returns how many samples strategies take.
+    /// Returns the number of samples that each kind of strategy takes in a pass.
     pub(super) fn counts(&self) -> SampleCounts {
         match self.guiding() {
             Some(training) => training.counts(self.settings.lvc, self.light_subpaths()),
@@ -298,8 +298,8 @@ impl<'a> Session<'a> {
         training.filter(|_| self.settings.integrator == IntegratorKind::Lvc)
     }
 
-    /// Takes the samples at `places` batch by batch, and keeps what they found. False: it was asked to stop, and they
-    /// are given up.
+    /// Renders the samples at `places` batch by batch, and adds them to the pass. False: the host asked to stop, and
+    /// the pass is to be given up.
     fn render_group(
         &self,
         job: &Job<'_>,
@@ -309,7 +309,7 @@ impl<'a> Session<'a> {
         progress: &dyn Progress,
     ) -> bool {
         let layers = self.film.layers();
-        // Features are measured of one sample at a time.
+        // The cost of a sample is measured for a batch of one.
         let size = if layers.features() > 0 { 1 } else { BATCH };
         while !places.is_empty() {
             let samples = places.by_ref().take(size);
@@ -325,7 +325,7 @@ impl<'a> Session<'a> {
                 self.deposit(job).take_features(batch, &features);
             }
             batch.worker.stopwatch.end(Stage::Film);
-            // After the last ray: whoever saw the flag before, sees it here.
+            // Checked after the last ray: if a thread saw the flag during the batch, it is seen here.
             if job.stop.is_asked() {
                 return false;
             }
@@ -371,7 +371,7 @@ impl<'a> Session<'a> {
         &self.scene
     }
 
-    /// Returns how it is rendered, with everything decided that was left open.
+    /// Returns the settings, with everything decided that was left open.
     pub fn settings(&self) -> &Settings {
         &self.settings
     }
@@ -382,8 +382,8 @@ impl<'a> Session<'a> {
     }
 
     /// Returns the noise that is left in the picture
-    /// ([`Picture::relative_error`](crate::film::Picture::relative_error)). Without any light it is 0: the picture is
-    /// black for good, where one that is black so far may have found nothing yet.
+    /// ([`Picture::relative_error`](crate::film::Picture::relative_error)). It is 0 in a scene without lights, whose
+    /// picture stays black; with lights, a black picture may have found no light yet.
     pub fn noise(&self) -> f64 {
         if self.scene.lights().is_empty() {
             return 0.0;
@@ -391,14 +391,14 @@ impl<'a> Session<'a> {
         self.film.develop().relative_error()
     }
 
-    /// Returns true for the numbers of passes after which a render that ends by its [`Self::noise`] looks at it,
-    /// from 16 on: developing a film takes time. A function of the number alone, so that a render that
-    /// was interrupted ends where it would have ended.
+    /// Returns true for the numbers of passes after which a render that ends by its [`Self::noise`] checks it. They
+    /// begin at 16 and grow further apart, because developing a film takes time. They depend only on `passes`, so
+    /// that an interrupted render ends after the same pass.
     pub fn looks_at_noise(passes: u64) -> bool {
         passes >= 16 && passes.is_multiple_of(1 << (passes.ilog2() - 3))
     }
 
-    /// Returns a warning that the image is black, or the same everywhere, with the reason. None: it has content, or no
+    /// Returns a warning, with the reason, that the image is black or the same everywhere. None: pixels differ, or no
     /// pass was rendered. Takes as long as developing the film.
     pub fn blank_warning(&self) -> Option<String> {
         if self.film.passes().is_empty() {
@@ -413,8 +413,7 @@ impl<'a> Session<'a> {
         &self.stats
     }
 
-    /// Returns the time of stages, measured in some samples of those; zero without
-    /// [`Resources::clock`].
+    /// Returns the time of stages, measured in some of the samples; zero without [`Resources::clock`].
     pub fn stage_times(&self) -> &StageTimes {
         &self.stage_times
     }
@@ -429,15 +428,14 @@ impl<'a> Session<'a> {
         self.batches.len()
     }
 
-    /// Threads that the system did not start; their part of the work is done by the others.
+    /// Returns the threads that the system did not start, and why. None: it started all.
     pub fn shortage(&self) -> Option<&Shortage> {
         self.workers.shortage()
     }
 
-    /// Returns the film with what was counted for it; the session goes on with an empty one, and knows no
-    /// longer which passes were rendered.
+    /// Takes the film and its counters. The session goes on with an empty film, as if no pass had been rendered.
     ///
-    /// Errors: the system does not have the memory of another film; the session is as before.
+    /// Errors: the system has no memory for another film; the session is then unchanged.
     pub fn take_film(&mut self) -> Result<(Film, Stats), FilmError> {
         let empty = self.film.emptied()?;
         let film = std::mem::replace(&mut self.film, empty);

@@ -1,14 +1,14 @@
-//! Pixels in an order in which those that follow each other lie far apart on the film.
+//! Orders of pixels in which consecutive pixels lie far apart on the film.
 
 use crate::film::PixelRect;
 use rayon::prelude::*;
 
-/// Steps of the additive recurrence by 1/ρ and 1/ρ², ρ being the root of ρ³ = ρ + 1 \[Roberts18\], which
-/// spreads evenly over both sides whatever their lengths are, as steps through the pixels row by row do
-/// not. Unit: 2⁻⁶⁴ of a side.
+/// Steps of the additive recurrence by 1/ρ and 1/ρ², ρ being the root of ρ³ = ρ + 1 \[Roberts18\]. Its points are
+/// even along both sides, whatever their lengths. Unit: 2⁻⁶⁴ of a side.
 const STEPS: [u64; 2] = [0xc13f_a9a9_02a6_328f, 0x91e1_0da5_c79e_7b1d];
 
-/// Returns the pixel of point number `i` of the sequence, without end: a film is filled evenly at any time.
+/// Returns the pixel of point number `i` of the endless sequence. Its first points fill the film evenly, however many
+/// they are.
 pub(super) fn point(crop: &PixelRect, i: u64) -> [u32; 2] {
     let along = |step: u64, size: u32| {
         let part = i.wrapping_mul(step) >> 32;
@@ -21,11 +21,11 @@ pub(super) fn point(crop: &PixelRect, i: u64) -> [u32; 2] {
     [crop.min[0] + x, crop.min[1] + y]
 }
 
-/// All pixels of a crop once, by their positions in row order, sorted by the fraction of x/ρ + y/ρ².
+/// Returns the indices of all pixels of a crop in row order, sorted by the fraction of x/ρ + y/ρ².
 ///
-/// A run of one part in n of them lies on the film like the points of a lattice. Pixels no more than
-/// two columns and two rows apart differ by 0.06 or more, so that none of them are in the same run where n is
-/// 18 or more: not 17, as fractions of few pixels are not quite even. The crop has at most 2³² - 1 pixels.
+/// A run of 1/n of the pixels lies on the film like the points of a lattice. The fractions of pixels that are at most
+/// two columns and two rows apart differ by 0.06 or more, so that no two of them are in the same run if n is at least
+/// 18. It is not 17, because the fractions of few pixels are not quite even. The crop has at most 2³² - 1 pixels.
 pub(super) fn permutation(crop: &PixelRect) -> Vec<u32> {
     let fraction = |i: u32| {
         let [x, y] = crop.pixel(i as usize).map(u64::from);

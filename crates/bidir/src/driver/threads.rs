@@ -1,14 +1,14 @@
-//! Threads: how many there are, and a pool that works with as many as the system gives.
+//! Numbers of threads, and pools of as many threads as the system gives.
 //!
-//! A system limits the threads of a user and the memory for their stacks. A pool has as many as it starts
-//! at once; without any, the calling thread does all work.
+//! A system limits the threads of a user and the memory for their stacks. A pool has as many threads as the system
+//! starts at once; if it starts none, the calling thread does all work.
 
 use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
 use std::sync::{Mutex, PoisonError};
 use std::thread;
 use std::{fmt, io};
 
-/// How many threads compute: as many as were asked for, within what a processor has a use for.
+/// The number of threads to compute with: the one asked for, but at most [`Self::PER_PROCESSOR`] for each processor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Threads {
     asked: usize,
@@ -16,13 +16,12 @@ pub struct Threads {
 }
 
 impl Threads {
-    /// The most that may be asked for.
+    /// The most threads that a user may ask for.
     pub const MOST: usize = 1024;
-    /// The most for each processor. With many more, threads that wait for each other take the time of
-    /// those that they wait for.
+    /// The most threads for each processor. With many more, waiting threads take time from those that they wait for.
     pub const PER_PROCESSOR: usize = 4;
 
-    /// So many; 0 is one per processor.
+    /// Makes the number from the one asked for; 0 is one per processor.
     pub fn new(asked: usize) -> Self {
         Self {
             asked,
@@ -30,7 +29,7 @@ impl Threads {
         }
     }
 
-    /// Returns how many there are to be.
+    /// Returns the number of threads to start.
     pub fn count(self) -> usize {
         match self.asked {
             0 => self.processors,
@@ -38,7 +37,7 @@ impl Threads {
         }
     }
 
-    /// Says that there are fewer than were asked for. None: there are as many.
+    /// Returns a warning that there are fewer threads than were asked for. None: there are as many.
     pub fn warning(self) -> Option<String> {
         let Self { asked, processors } = self;
         (self.count() < asked).then(|| {
@@ -52,7 +51,7 @@ impl Threads {
     }
 }
 
-/// Threads that the system did not start.
+/// The threads that the system did not start, and why.
 #[derive(Debug)]
 pub struct Shortage {
     started: usize,
@@ -61,7 +60,7 @@ pub struct Shortage {
 }
 
 impl Shortage {
-    /// Returns true where no thread was started.
+    /// Returns true if no thread was started.
     pub fn is_total(&self) -> bool {
         self.started == 0
     }
@@ -87,7 +86,8 @@ impl fmt::Display for Shortage {
     }
 }
 
-/// Returns how many threads the system starts at once, up to so many, and why no more.
+/// Returns the number of threads, at most `wanted`, that the system starts at once, and the error that kept it from
+/// starting more.
 fn startable(wanted: usize) -> (usize, Option<io::Error>) {
     let gate = Mutex::new(());
     let wait = || drop(gate.lock());
@@ -105,16 +105,16 @@ fn startable(wanted: usize) -> (usize, Option<io::Error>) {
         };
         drop(closed);
         let count = started.len();
-        // Each has ended before others take its place.
+        // Joined, so that their places are free for the pool's threads.
         for thread in started {
-            // It cannot panic: it only waits.
+            // A thread that only waits cannot panic.
             let _ = thread.join();
         }
         (count, error)
     })
 }
 
-/// Makes a pool of as many threads as the system starts. None: it starts none.
+/// Makes a pool of as many threads as the system starts. Returns no pool if it starts none.
 fn build_pool<T>(
     threads: Threads,
     build: impl FnOnce(ThreadPoolBuilder) -> Result<T, ThreadPoolBuildError>,
@@ -135,10 +135,10 @@ fn build_pool<T>(
     }
 }
 
-/// Makes the pool that everything outside of a session runs on; once in a process, before anything
-/// else is computed. If no thread can be started, the calling thread becomes a pool of its own.
+/// Makes the pool of the process, on which everything outside of a session runs. Call it once, before anything else
+/// is computed. If no thread can be started, the calling thread becomes a pool of its own.
 ///
-/// None: there are as many threads as were asked for.
+/// None: all threads were started.
 pub fn start_pool(threads: Threads) -> Option<Shortage> {
     let (pool, shortage) = build_pool(threads, ThreadPoolBuilder::build_global);
     if pool.is_none() {
@@ -147,13 +147,13 @@ pub fn start_pool(threads: Threads) -> Option<Shortage> {
     shortage
 }
 
-/// Makes the calling thread a pool of its own, for good, unless it is in one: parallel iterators then
-/// run on it alone, where the pool of the process may have no thread. Its few kilobytes are not freed.
+/// Makes the calling thread a pool of its own, for good, unless it is in a pool: parallel iterators then run on this
+/// thread only, even if the pool of the process has none. The pool's few kilobytes are not freed.
 pub fn stand_alone() {
     if rayon::current_thread_index().is_none() {
         let builder = ThreadPoolBuilder::new().num_threads(1);
-        // It starts no thread, so there is nothing to refuse; where it fails all the same, work goes to
-        // the pool of the process.
+        // The pool starts no thread, so that the system has nothing to refuse; if building it fails all the same,
+        // work goes to the pool of the process.
         let pool = builder.use_current_thread().build();
         std::mem::forget(pool);
     }
@@ -177,12 +177,12 @@ impl Workers {
         pool.map_or(1, ThreadPool::current_num_threads)
     }
 
-    /// Threads that are missing.
+    /// Returns the threads that the system did not start. None: it started all.
     pub(super) fn shortage(&self) -> Option<&Shortage> {
         self.shortage.as_ref()
     }
 
-    /// Runs `work` with its parallel iterators on these threads.
+    /// Runs `work`, with its parallel iterators, on these threads.
     pub(super) fn install<T: Send>(&self, work: impl FnOnce() -> T + Send) -> T {
         if let Some(pool) = &self.pool {
             pool.install(work)
@@ -192,7 +192,7 @@ impl Workers {
         }
     }
 
-    /// Runs `work` on each of these threads, with its number.
+    /// Runs `work` on each of these threads, with the number of the thread.
     pub(super) fn broadcast(&self, work: impl Fn(usize) + Sync) {
         match &self.pool {
             Some(pool) => drop(pool.broadcast(|context| work(context.index()))),

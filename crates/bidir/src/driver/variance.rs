@@ -1,18 +1,18 @@
-//! How much each strategy's weighted contribution varies.
+//! The variance of each strategy's weighted contribution.
 //!
-//! Y is the luminance that a pass adds to a pixel by one strategy, and m its mean. The variance is
-//! that of a pass in the mean pixel: V = mean over pixels of E\[Y²\] - m². Σ y² is counted over the n
-//! samples of this session, m is the pixel of the strategy's image of all P passes.
+//! Y is the luminance that a pass adds to a pixel by one strategy, and m its mean. V is the variance of a pass,
+//! averaged over pixels: V = mean over pixels of E\[Y²\] - m². The n samples of this session give Σ y²; the
+//! strategy's image of all P passes gives m of each pixel.
 //!
-//! - t ≥ 2: a sample adds y to its own pixel alone, so V = Σ y² / n - mean m².
+//! - t ≥ 2: a sample adds y only to its own pixel, so V = Σ y² / n - mean m².
 //! - t = 1: a pass has L = N/k light paths, N pixels and k samples for each light path. A path adds
 //!   y/N, k being in y already, to one of the pixels. The nL/N paths of the session have the mean
 //!   E\[y²\] = k Σ y² / n, of which each pixel has 1/N on average, so
 //!   V = L (k Σ y² / (n N³) - mean (m/L)²) = (Σ y² / (n N k) - mean m²) / L.
 //!
-//! Both are one formula, with N = k = L = 1 for t ≥ 2. The mean m̂ of the image has the variance V/P,
-//! so that m̂² is too large by it on average, and the result is divided by 1 - 1/(P L). Stratified
-//! passes are taken as independent, so V is rather too large than too small.
+//! Both are one formula, with N = k = L = 1 for t ≥ 2. The mean m̂ of the image has the variance V/P, which makes m̂²
+//! too large by V/P on average, so the result is divided by 1 - 1/(P L). Stratified passes are treated as
+//! independent, so V is rather too large than too small.
 
 use super::Session;
 use crate::path::Strategy;
@@ -23,9 +23,9 @@ use crate::spectrum::luminance;
 pub struct StrategyMoments {
     /// The strategy.
     pub strategy: Strategy,
-    /// The luminance of its weighted image, of all passes, exposed.
+    /// The mean luminance of its weighted image, of all passes, with exposure.
     pub mean: f64,
-    /// The variance V, exposed. None: less than two passes, or none of them in this session.
+    /// The variance V, with exposure. None: the film has less than two passes, or this session rendered none.
     pub variance: Option<f64>,
 }
 
@@ -49,7 +49,7 @@ impl Session<'_> {
         })
     }
 
-    /// Returns V, where the squares of the image's pixels have the mean `mean_square`.
+    /// Returns V of a strategy, given the mean square of its image's pixels.
     fn variance(&self, strategy: Strategy, mean_square: f64) -> Option<f64> {
         let (passes, samples) = (self.film().passes().len(), self.stats().samples);
         if passes < 2 || samples == 0 {

@@ -1,4 +1,4 @@
-//! From sums to values: mean = camera / passes + light / (passes · light paths), exposed.
+//! Turns sums into values: mean = camera / passes + light / (passes · light paths), times exposure.
 
 use super::layers::{Aov, AovKind, PART_SUMS, PICTURE_SUMS};
 use super::{CAMERA, Film, LIGHT, MOMENT};
@@ -9,11 +9,11 @@ use crate::spectrum::{Rgb, luminance};
 /// crop.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Picture {
-    /// Pixels per row.
+    /// The number of pixels in a row.
     pub width: usize,
-    /// Rows.
+    /// The number of rows.
     pub height: usize,
-    /// Linear Rec. 709. Shape: `width · height`.
+    /// The mean of each pixel, in linear Rec. 709. Shape: `width · height`.
     pub pixels: Vec<Rgb>,
     /// The estimated variance of each pixel's mean; zero after a single pass.
     /// Shape: `width · height`.
@@ -24,8 +24,8 @@ impl Picture {
     /// Returns the noise that is left: the root mean square of the pixels' standard errors, divided by the
     /// mean of the picture, both of luminance. Infinite for a black picture.
     ///
-    /// Errors of a pixel's channels are taken as fully correlated, and stratified passes as
-    /// independent, so it is rather too large than too small.
+    /// The errors of a pixel's channels are treated as fully correlated, and stratified passes as independent, so
+    /// that the result is rather too large than too small.
     pub fn relative_error(&self) -> f64 {
         let n = self.pixels.len().max(1) as f64;
         let luminances = self.pixels.iter().map(|rgb| f64::from(luminance(*rgb)));
@@ -43,20 +43,20 @@ impl Picture {
     }
 }
 
-/// A developed image beside the picture, of its size.
+/// A developed image beside the picture, with the same pixels.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LayerImage {
     /// Its name; empty for channels that stand alone.
     pub name: String,
     /// The channels' names.
     pub channels: &'static [&'static str],
-    /// Row by row from the top left of the crop, the channels side by side.
-    /// Shape: `width · height · channels`.
+    /// The values, row by row from the top left of the crop; the channels of a pixel are side by side. Shape: `width
+    /// · height · channels`.
     pub data: Vec<f32>,
 }
 
 impl Film {
-    /// Returns the mean of all passes with the variance of that mean, exposed.
+    /// Returns the mean of all passes and the variance of this mean, both with exposure.
     pub fn develop(&self) -> Picture {
         let developed = self.pixels().map(|sums| self.develop_pixel(sums));
         let (pixels, variance) = developed.unzip();
@@ -71,7 +71,7 @@ impl Film {
     /// Returns the images beside the picture: those of [`Layers::aovs`](super::Layers::aovs) in that order,
     /// then the parts of the picture.
     ///
-    /// Parts are exposed as the picture is; for the others [`AovKind`] gives numerator and divisor.
+    /// Parts have exposure applied. The values of an [`Aov`] are the mean or the sum that its [`AovKind`] describes.
     pub fn develop_layers(&self) -> Vec<LayerImage> {
         let aovs = self.layers.aovs().iter().flat_map(|&aov| self.aov(aov));
         let names = self.layers.part_names().enumerate();
@@ -83,12 +83,12 @@ impl Film {
         aovs.chain(parts).collect()
     }
 
-    /// Returns the camera samples of a pixel.
+    /// Returns the number of camera samples of a pixel, at least 1.
     fn samples(&self) -> f64 {
         self.passes.len().max(1) as f64
     }
 
-    /// Returns the mean of both layers, not exposed.
+    /// Returns the mean of camera samples plus the mean of splats, without exposure.
     fn mean(&self, camera: i128, light: i128) -> f64 {
         let light_paths = self.samples() * self.settings.light_paths().max(1) as f64;
         fixed::to_f64(camera, VALUE_SCALE) / self.samples()
@@ -109,12 +109,12 @@ impl Film {
         (value, variance)
     }
 
-    /// Returns the pixels of part number `part` of [`Layers`](super::Layers), exposed.
+    /// Returns the pixels of part number `part` of [`Layers`](super::Layers), with exposure.
     pub fn part_pixels(&self, part: usize) -> impl Iterator<Item = Rgb> {
         self.pixels().map(move |sums| self.part(sums, part))
     }
 
-    /// Returns a pixel of part number `part`.
+    /// Returns a pixel of part number `part`, with exposure.
     fn part(&self, sums: &[i128], part: usize) -> Rgb {
         let begin = PICTURE_SUMS + self.layers.features() + PART_SUMS * part;
         let exposure = f64::from(self.settings.exposure);
@@ -124,14 +124,14 @@ impl Film {
         })
     }
 
-    /// Returns the cost that each pixel has, row by row from the top left of the crop. None: the film does not
-    /// keep it.
+    /// Returns the cost of each pixel, time or rays, row by row from the top left of the crop. None: the film does
+    /// not keep `aov`.
     pub fn cost(&self, aov: Aov) -> Option<Vec<f32>> {
         let is_kept = aov.kind() == AovKind::Cost && self.layers.aovs().contains(&aov);
         is_kept.then(|| self.feature(aov))
     }
 
-    /// Returns the images that `aov` becomes.
+    /// Returns the images that `aov` develops into.
     fn aov(&self, aov: Aov) -> Vec<LayerImage> {
         let channels = aov.channels();
         let data = match aov {
@@ -148,8 +148,8 @@ impl Film {
             .collect()
     }
 
-    /// Returns the variance of every channel's mean, and the same relative to the square of the mean, 0
-    /// where that is 0.
+    /// Returns the variance of the mean of each channel, and this variance divided by the square of the mean, or 0 if
+    /// the mean is 0.
     fn variances(&self) -> [Vec<f32>; 2] {
         let Picture {
             pixels, variance, ..
@@ -164,7 +164,7 @@ impl Film {
         [absolute, relative]
     }
 
-    /// Returns the values of an image of camera samples.
+    /// Returns the developed values of a feature of camera samples. They are empty if the film does not keep it.
     fn feature(&self, aov: Aov) -> Vec<f32> {
         let of = |aov| Some(PICTURE_SUMS + self.layers.feature(aov)?);
         let Some(begin) = of(aov) else {

@@ -1,7 +1,7 @@
-//! h(x, y) = h_x(x) h_y(y) with ∫∫ h = 1: the pixel filter, 1/pixel².
+//! The pixel filter h(x, y) = h_x(x) h_y(y), with ∫∫ h = 1. Unit: 1/pixel².
 //!
-//! Pixels are drawn by |h|, and so, but for the steps of tables, are offsets; where h is negative their weight is too.
-//! The box and the triangle have closed forms, all others are tables. The cubic is that of \[Mitchell88\].
+//! Pixels are drawn by |h|. So are offsets, up to the steps of tables. Where h is negative, the weight is, too. The
+//! box and the triangle have closed forms, all others are tables. The cubic is that of \[Mitchell88\].
 
 use crate::math::{Distribution1d, ONE_MINUS_EPSILON, PI, Vec2, safe_sqrt, sqr};
 
@@ -10,7 +10,7 @@ use crate::math::{Distribution1d, ONE_MINUS_EPSILON, PI, Vec2, safe_sqrt, sqr};
 pub enum FilterKind {
     /// Constant.
     Box,
-    /// Falling linearly to zero at the radius.
+    /// Falls linearly to zero at the radius.
     Triangle,
     /// A Gaussian of this standard deviation, lowered to reach zero at the radius.
     Gaussian {
@@ -64,7 +64,8 @@ impl Filter {
         self.x.eval(offset.x) * self.y.eval(offset.y)
     }
 
-    /// Draws an offset from the pixel's centre by |h|, or nearly so: the offset, and h divided by its density.
+    /// Draws an offset from the pixel's centre by |h|, up to the steps of tables. Returns the offset, and h divided
+    /// by its density.
     #[inline]
     pub fn sample(&self, u: Vec2) -> (Vec2, f32) {
         let (x, weight_x) = self.x.sample(u.x);
@@ -72,8 +73,8 @@ impl Filter {
         (Vec2::new(x, y), weight_x * weight_y)
     }
 
-    /// Draws a pixel q by |h(raster - q)| among all pixels whose filter reaches `raster`: its
-    /// coordinates, and sign(h) · Σ|h|. None: none reaches it.
+    /// Draws a pixel q by |h(raster - q)| among the pixels whose filter reaches `raster`. Returns its coordinates,
+    /// and the weight sign(h) · Σ|h|. None: no filter reaches `raster`.
     #[inline]
     pub fn pick_pixel(&self, raster: Vec2, u: Vec2) -> Option<(i64, i64, f32)> {
         let (x, weight_x) = self.x.pick(raster.x, u.x)?;
@@ -97,7 +98,7 @@ enum Profile {
     Table(Table),
 }
 
-/// A filter wider than this is refused by readers; pixels are gathered into a buffer of this size.
+/// The most pixels along an axis whose filters may reach a point: readers refuse wider filters.
 const MAX_PIXELS: usize = 66;
 
 impl Axis {
@@ -117,7 +118,7 @@ impl Axis {
     #[inline]
     fn eval(&self, x: f32) -> f32 {
         let x = x.abs();
-        // The box includes its rim: which pixel a rim belongs to is decided by the caller.
+        // The box includes its rim: the caller decides to which pixel the rim belongs.
         if x > self.radius {
             return 0.0;
         }
@@ -144,8 +145,8 @@ impl Axis {
 
     #[inline]
     fn pick(&self, x: f32, u: f32) -> Option<(i64, f32)> {
-        // A pixel's centre lies at q + 1/2. The interval is half open, so that a box of one pixel
-        // always reaches exactly one.
+        // A pixel's centre lies at q + 1/2. The interval is half open, so that a point is always in exactly one box
+        // of one pixel.
         let first = floor(x - 0.5 - self.radius) + 1;
         let last = floor(x - 0.5 + self.radius);
         if first == last {
@@ -176,14 +177,14 @@ impl Axis {
     }
 }
 
-/// Returns ⌊x⌋ as [`f32::floor`] finds it, which is a call to a library without SSE4.1.
+/// Returns ⌊x⌋, like [`f32::floor`], which is a library call on processors without SSE4.1.
 #[inline]
 fn floor(x: f32) -> i64 {
     let towards_zero = x as i64;
     towards_zero.saturating_sub(i64::from(x < towards_zero as f32))
 }
 
-/// Returns the inverse of the cumulative tent over [-1, 1].
+/// Returns the inverse of the cumulative distribution of the tent over [-1, 1].
 #[inline]
 fn tent(u: f32) -> f32 {
     if u < 0.5 {
@@ -193,21 +194,21 @@ fn tent(u: f32) -> f32 {
     }
 }
 
-/// h along one axis by its values at evenly spaced places from the centre to the radius, linear between them.
+/// h along one axis, by its values at evenly spaced offsets from the centre to the radius. It is linear between them.
 #[derive(Clone, Debug)]
 struct Table {
     values: Vec<f32>,
-    /// |h| in cells from -radius to radius.
+    /// The distribution of draws: |h| in cells from -radius to radius.
     cells: Distribution1d,
 }
 
 impl Table {
-    /// In a pixel, and more where the radius is below `LEAST_RADIUS`.
+    /// The number of intervals in a pixel; there are more if the radius is below `LEAST_RADIUS`.
     const INTERVALS: usize = 256;
     const LEAST_RADIUS: f32 = 4.0;
     const INTERVALS_OF_CELL: usize = 4;
 
-    /// Returns the table of a symmetrical shape, normalised.
+    /// Makes the table of a symmetrical shape, normalised.
     fn new(radius: f32, shape: &dyn Fn(f32) -> f32) -> Self {
         let n = Self::INTERVALS * radius.max(Self::LEAST_RADIUS).ceil() as usize;
         let mut values: Vec<_> = (0..=n)
@@ -219,7 +220,8 @@ impl Table {
         for value in &mut values {
             *value = (f64::from(*value) / integral) as f32;
         }
-        // The largest |h| of a cell, whose ends are included, so that no part of h has density zero.
+        // A cell has the largest |h| between its ends, which it includes, so that the density is zero nowhere where h
+        // is not.
         let largest = |cell: &[f32]| cell.iter().fold(0.0, |most: f32, h| most.max(h.abs()));
         let of_cell = |i: usize| largest(&values[i..=i + Self::INTERVALS_OF_CELL]);
         let half = (0..n).step_by(Self::INTERVALS_OF_CELL).map(of_cell);
@@ -227,7 +229,7 @@ impl Table {
         Self { values, cells }
     }
 
-    /// Returns h at the part `x` of the radius, from 0 to 1.
+    /// Returns h at `x` times the radius, for x from 0 to 1.
     #[inline]
     fn eval(&self, x: f32) -> f32 {
         let intervals = self.values.len() - 1;
@@ -238,7 +240,7 @@ impl Table {
     }
 }
 
-/// Returns exp(-x² / 2σ²) less its value at the radius. Of a wide one both are nearly 1.
+/// Returns exp(-x² / 2σ²) minus its value at the radius, without cancellation: for a large σ both are nearly 1.
 fn lowered_gaussian(x: f32, sigma: f32, radius: f32) -> f32 {
     let exponent = |x: f32| {
         let deviations = f64::from(x) / f64::from(sigma);

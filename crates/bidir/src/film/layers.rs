@@ -1,61 +1,58 @@
-//! Images that a film keeps beside the picture, when asked: what the camera sees ([`Aov`]), and the
-//! picture in parts, by light and by strategy. All are sums over passes, so films with layers merge
-//! as any other.
+//! Images that a film keeps beside the picture, if they are asked for: features that the camera sees ([`Aov`]), and
+//! parts of the picture, by light and by strategy. All are sums over passes, so that films with layers merge like any
+//! other.
 //!
-//! A contribution goes into the part of its light's group and into that of its strategy; the groups
-//! add up to the picture, and so do the strategies.
+//! A contribution is added to the part of its light's group and to the part of its strategy. The parts of all groups
+//! add up to the picture, and so do the parts of all strategies.
 //!
-//! Of strategies there may be **raw** images too: C/π without the weight, so that each is the
-//! estimate that its strategy would make alone of all paths of its length that it can make. They
-//! are unbiased there, but nothing bounds their variance: a strategy has a small weight where it
-//! rarely makes a path that then counts much. They are made of what the weighted picture is made
-//! of: a connection whose weighted value is zero is never traced, and is in no image. A raw value
-//! beyond [`fixed::LARGEST_CONTRIBUTION`](crate::math::fixed::LARGEST_CONTRIBUTION) is left out of the
-//! raw image alone, and counted ([`LayerCounts`](crate::stats::LayerCounts)).
+//! Strategies may also have **raw** images: C/π without the weight. Each of them estimates the light of all paths of
+//! its length that its strategy can make, by this strategy only. Raw images are unbiased, but their variance is
+//! unbounded: a strategy has a small weight for paths that it rarely makes, and their raw values are large. They have
+//! the same terms as the weighted picture: a connection whose weighted value is zero is never traced, and is in no
+//! image. A raw value beyond [`fixed::LARGEST_CONTRIBUTION`](crate::math::fixed::LARGEST_CONTRIBUTION) is left out of
+//! the raw image only, and counted ([`LayerCounts`](crate::stats::LayerCounts)).
 
 use crate::names::named;
 use crate::strategy::Strategy;
 use serde::{Deserialize, Serialize};
 
-/// The sums of a pixel of the picture: camera samples, splats and squares of pass totals, each of
-/// red, green and blue.
+/// The number of sums of a pixel of the picture: camera samples, splats and squares of pass totals, each of red,
+/// green and blue.
 pub(super) const PICTURE_SUMS: usize = 9;
-/// The sums of a pixel of a part: camera samples and splats.
+/// The number of sums of a pixel of a part: camera samples and splats, each of red, green and blue.
 pub(super) const PART_SUMS: usize = 6;
 
-/// An image beside the picture: features of the first surface that camera samples meet, the
-/// certainty of the picture, and its cost. In film files and on the command line by
-/// [`NAMES`](Self::NAMES).
+/// An image beside the picture: a feature of the first surface that camera samples meet, the variance of the picture,
+/// or its cost. Film files and the command line use the names in [`NAMES`](Self::NAMES).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Aov {
-    /// About which part of the light the surface scatters: 1 for glass, 0 where there is none.
+    /// The approximate fraction of light that the surface scatters: 1 for glass, 0 without a surface.
     Albedo,
-    /// The point. Space: world.
+    /// The point of the surface. Space: world.
     Position,
     /// The geometric normal, towards the camera. Space: world.
     Normal,
     /// The shading normal, towards the camera. Space: world.
     ShadingNormal,
-    /// The distance along the viewing direction, from the camera's place.
+    /// The distance from the camera along the viewing direction. Space: world.
     Depth,
-    /// The part of the camera samples that meet a surface. Kept wherever an image is a mean over
-    /// those alone.
+    /// The fraction of the camera samples that meet a surface. Kept whenever an image is a mean over these samples.
     Coverage,
-    /// Camera samples.
+    /// The number of camera samples.
     Samples,
-    /// The variance of the pixel's mean, and the same divided by the square of the mean.
+    /// The variance of the pixel's mean, and this variance divided by the square of the mean.
     Variance,
-    /// The time of all samples, without light subpaths that they share. Unit: seconds. The one image whose
-    /// bits no run repeats.
+    /// The time of all samples, without the light subpaths that they share. Unit: seconds. It is the only image whose
+    /// bits differ from run to run.
     Time,
-    /// The rays of all samples, with those of light subpaths of their own.
+    /// The number of rays of all samples, including the light subpaths that belong to one sample only.
     Rays,
 }
 
 /// The source of the values of an [`Aov`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AovKind {
-    /// A mean over the camera samples that meet a surface; 0 where none does.
+    /// A mean over the camera samples that meet a surface; 0 if none does.
     Surface,
     /// A mean over all camera samples.
     Sample,
@@ -91,7 +88,7 @@ named!(Aov {
 });
 
 impl Aov {
-    /// Returns the names in image files: those of pbrt-v4's film `gbuffer` where it has them.
+    /// Returns the layers and channels in image files, with the names of pbrt-v4's film `gbuffer` if it has them.
     pub fn channels(self) -> &'static [Channels] {
         const fn of(layer: &'static str, names: &'static [&'static str]) -> Channels {
             Channels { layer, names }
@@ -110,7 +107,7 @@ impl Aov {
         }
     }
 
-    /// Returns the number of sums that a pixel has for it; none if it is computed from other sums.
+    /// Returns the number of sums that a pixel has for it; 0 if it is computed from other sums.
     pub fn sums(self) -> usize {
         match self.kind() {
             AovKind::Film => 0,
@@ -138,24 +135,24 @@ pub struct Layers {
     strategies: StrategyImages,
 }
 
-/// Which images of strategies are kept.
+/// The images of strategies that are kept.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum StrategyImages {
-    /// Weighted ones: parts of the picture.
+    /// Weighted images: parts of the picture.
     #[default]
     Weighted,
-    /// These, and raw ones.
+    /// Weighted and raw images.
     WeightedAndRaw,
 }
 
 impl Layers {
-    /// The most vertices of paths whose strategies have images of their own.
+    /// The largest number of vertices of paths whose strategies may have images.
     pub const MOST_STRATEGY_VERTICES: usize = 16;
 
-    /// Returns the layers of `aovs`, in any order, of all `light_groups` of the scene by name (none: no such
-    /// layers), and of each strategy of paths with at most `strategy_vertices` vertices (0: no such
-    /// layers; at most [`Self::MOST_STRATEGY_VERTICES`]).
+    /// Makes the layers of `aovs`, in any order; of all `light_groups` of the scene, by name (empty: no such layers);
+    /// and of each strategy of paths with at most `strategy_vertices` vertices (0: no such layers; at most
+    /// [`Self::MOST_STRATEGY_VERTICES`]).
     pub fn new(aovs: &[Aov], light_groups: &[String], strategy_vertices: usize) -> Self {
         let mut aovs = aovs.to_vec();
         if aovs.iter().any(|aov| aov.kind() == AovKind::Surface) {
@@ -171,7 +168,7 @@ impl Layers {
         }
     }
 
-    /// Adds raw images of the strategies that have images.
+    /// Adds raw images of the strategies that have weighted images.
     #[must_use]
     pub fn with_raw(self) -> Self {
         let strategies = match self.strategy_vertices {
@@ -186,32 +183,32 @@ impl Layers {
         &self.aovs
     }
 
-    /// Returns the names of the groups of lights that have images, in the order of the scene's.
+    /// Returns the names of the groups of lights that have images, in the order of the scene.
     pub fn light_groups(&self) -> &[String] {
         &self.light_groups
     }
 
-    /// Returns the most vertices of paths whose strategies have images.
+    /// Returns the largest number of vertices of paths whose strategies have images.
     pub fn strategy_vertices(&self) -> usize {
         self.strategy_vertices
     }
 
-    /// Which images of strategies are kept.
+    /// Returns the choice of images of strategies.
     pub fn strategy_images(&self) -> StrategyImages {
         self.strategies
     }
 
-    /// Returns true where nothing but the picture is kept.
+    /// Returns true if the film keeps only the picture.
     pub fn is_empty(&self) -> bool {
         *self == Self::default()
     }
 
-    /// Returns the sums of a pixel: the picture's, the features', and both layers of the parts.
+    /// Returns the number of sums of a pixel: of the picture, of features, and of parts.
     pub fn sums(&self) -> usize {
         PICTURE_SUMS + self.features() + PART_SUMS * self.parts()
     }
 
-    /// Returns the sums of a pixel for all images of camera samples.
+    /// Returns the number of sums of a pixel for features of camera samples.
     pub fn features(&self) -> usize {
         self.aovs.iter().map(|aov| aov.sums()).sum()
     }
@@ -222,8 +219,8 @@ impl Layers {
         Some(self.aovs[..at].iter().map(|aov| aov.sums()).sum())
     }
 
-    /// Returns the number of parts: one for each group of lights, then one for each strategy, shorter paths
-    /// first, then one for all longer paths, and then those of raw images, in the same order.
+    /// Returns the number of parts: one for each group of lights; one for each strategy, shorter paths first; one for
+    /// all longer paths; and one for each raw image, in the order of strategies.
     pub fn parts(&self) -> usize {
         match self.strategies {
             StrategyImages::Weighted => self.first_raw(),
@@ -233,7 +230,7 @@ impl Layers {
         }
     }
 
-    /// Returns the number of parts that are weighted.
+    /// Returns the number of weighted parts, which is the index of the first raw part.
     fn first_raw(&self) -> usize {
         let strategies = match self.strategy_vertices {
             0 => 0,
@@ -242,7 +239,7 @@ impl Layers {
         self.light_groups.len() + strategies
     }
 
-    /// Returns the index of `strategy` among those that have images. None: it has none.
+    /// Returns the index of `strategy` among the strategies that have images. None: it has none.
     #[inline]
     fn strategy(&self, strategy: Strategy) -> Option<usize> {
         let n = usize::from(strategy.s + strategy.t);
@@ -250,13 +247,13 @@ impl Layers {
         is_kept.then(|| strategies_below(n) + usize::from(strategy.s))
     }
 
-    /// Returns the part of the weighted image of `strategy` alone. None: it has none.
+    /// Returns the part that is the weighted image of `strategy`. None: it has no image of its own.
     #[inline]
     pub fn weighted_part(&self, strategy: Strategy) -> Option<usize> {
         Some(self.light_groups.len() + self.strategy(strategy)?)
     }
 
-    /// Returns the part of the raw image of `strategy`. None: it has none.
+    /// Returns the part that is the raw image of `strategy`. None: it has none.
     #[inline]
     pub fn raw_part(&self, strategy: Strategy) -> Option<usize> {
         match self.strategies {
@@ -271,8 +268,7 @@ impl Layers {
         rows.flat_map(|n| (0..n).map(move |s| Strategy::new(s, n - s)))
     }
 
-    /// Returns the parts that a contribution of `strategy` and of lights in `group` belongs to; raw images
-    /// have values of their own, and are not among them.
+    /// Returns the weighted parts that a contribution of `strategy` and of lights in `group` belongs to.
     #[inline]
     pub fn parts_of(&self, strategy: Strategy, group: u32) -> impl Iterator<Item = usize> {
         let groups = self.light_groups.len();
@@ -284,7 +280,7 @@ impl Layers {
         of_group.into_iter().chain(of_strategy)
     }
 
-    /// Returns the layers' names of all parts: `lightgroup.NAME`, `sStT`, `longer`, and `raw.sStT`.
+    /// Returns the names of the layers of all parts: `lightgroup.NAME`, `sStT`, `longer`, and `raw.sStT`.
     pub fn part_names(&self) -> impl Iterator<Item = String> + '_ {
         let groups = (self.light_groups.iter()).map(|name| format!("lightgroup.{name}"));
         let longer = (self.strategy_vertices > 0).then(|| "longer".to_owned());
@@ -295,8 +291,8 @@ impl Layers {
     }
 }
 
-/// Returns the strategies of paths with fewer than `n` vertices: Σ_{m=2}^{n-1} m, as a path of m vertices has
-/// s = 0 … m-1.
+/// Returns the number of strategies of paths with fewer than `n` vertices: Σ_{m=2}^{n-1} m, because a path of m
+/// vertices has s = 0 … m-1.
 fn strategies_below(n: usize) -> usize {
     (n * n.saturating_sub(1) / 2).saturating_sub(1)
 }

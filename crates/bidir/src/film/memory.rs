@@ -1,8 +1,8 @@
-//! Memory whose size users choose, by that of the image: the system may refuse it.
+//! Allocation of memory whose size depends on the resolution, which users choose: the system may refuse it.
 
 use super::FilmError;
 
-/// Returns `count` values of `make`.
+/// Returns `count` values, each made by `make`.
 ///
 /// Errors: the system does not have the memory.
 pub fn filled<T>(count: usize, make: impl FnMut() -> T) -> Result<Vec<T>, FilmError> {

@@ -1,20 +1,19 @@
-//! The film, which adds up contributions exactly.
+//! The film: exact sums of contributions.
 //!
-//! Two layers, as bidirectional estimators need them: **camera samples**, normalised per pixel and
-//! pass, and the **light image**, whose splats may land anywhere and are normalised by the number of
-//! light paths. Sums are fixed-point integers ([`fixed`]), so adding is associative and
-//! commutative: the film has the same bits for any number of threads, any order, and any split of
-//! the passes.
+//! A film has two layers, as bidirectional estimators need: **camera samples**, normalised per pixel and pass, and
+//! the **light image**, whose splats may be anywhere and are normalised by the number of light paths. Sums are
+//! fixed-point integers ([`fixed`]), so that addition is associative and commutative: the film has the same bits for
+//! any number of threads, any order, and any split of the passes.
 //!
-//! A pixel's value is ∫ h(x - q) L(x) dx with ∫ h = 1 ([`Filter`]). Camera samples are drawn by |h|,
-//! or nearly so; a splat goes to one pixel drawn by |h|, so that neighbouring pixels stay uncorrelated and
-//! filters may be negative.
+//! A pixel's value is ∫ h(x - q) L(x) dx with ∫ h = 1 ([`Filter`]). Camera samples are drawn by |h|, up to the steps
+//! of tables. A splat goes to one pixel drawn by |h|, so that neighbouring pixels stay uncorrelated and filters may
+//! be negative.
 //!
-//! A [`Film`] collects whole passes and knows which ([`PassSet`]), so that films of different passes
-//! can be merged; the running one is in a [`PassBuffer`], shared by all threads without locks.
-//! Squares of each pass's pixel totals, both layers together, give the variance.
+//! A [`Film`] holds whole passes and their numbers ([`PassSet`]), so that films of different passes can be merged.
+//! The running pass is in a [`PassBuffer`], which all threads share without locks. The variance comes from the
+//! squares of the pixel totals of each pass, both layers together.
 //!
-//! Beside the picture a film keeps [`Layers`] where they are asked for.
+//! A film keeps images beside the picture if they are asked for ([`Layers`]).
 
 mod develop;
 mod filter;
@@ -40,17 +39,17 @@ use rayon::prelude::{IndexedParallelIterator, ParallelIterator, ParallelSliceMut
 use std::slice::ChunksExact;
 use thiserror::Error;
 
-/// The index of a pixel's first sum: camera samples in [`fixed::VALUE_SCALE`].
+/// The index of the first sum of camera samples in a pixel. Unit: [`fixed::VALUE_SCALE`].
 const CAMERA: usize = 0;
-/// Splats, in [`fixed::VALUE_SCALE`].
+/// The index of the first sum of splats. Unit: [`fixed::VALUE_SCALE`].
 const LIGHT: usize = 3;
-/// Squares of pass totals, in [`fixed::MOMENT_SCALE`].
+/// The index of the first sum of squares of pass totals. Unit: [`fixed::MOMENT_SCALE`].
 const MOMENT: usize = 6;
 
 /// Why two films cannot become one.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 pub enum MergeError {
-    /// Both hold the same passes.
+    /// Both films hold these passes.
     #[error("both have the passes {0}")]
     Overlap(PassSet),
     /// The films show different pixels.
@@ -67,12 +66,12 @@ pub struct Film {
     settings: FilmSettings,
     layers: Layers,
     passes: PassSet,
-    /// Pixel by pixel: the picture's sums, those of features, those of parts ([`Layers`]).
+    /// The sums, pixel by pixel: of the picture, of features, of parts ([`Layers`]).
     sums: Vec<i128>,
 }
 
 impl Film {
-    /// Makes an empty film of a picture alone.
+    /// Makes an empty film of the picture only.
     ///
     /// Errors: as [`Self::with_layers`].
     pub fn new(settings: FilmSettings, memory_limit: u64) -> Result<Self, FilmError> {
@@ -105,7 +104,7 @@ impl Film {
 
     /// Makes a film as it was stored, with `sums` in the form of [`Self::sums`].
     ///
-    /// Errors: there are not as many of them as the crop's pixels have.
+    /// Errors: the number of sums does not match the crop and the layers.
     pub fn restore(
         settings: FilmSettings,
         layers: Layers,
@@ -131,7 +130,7 @@ impl Film {
         Self::with_layers(settings, layers, u64::MAX)
     }
 
-    /// Makes a film with the same passes.
+    /// Makes a copy of the film.
     ///
     /// Errors: the system does not have the memory.
     pub fn try_clone(&self) -> Result<Self, FilmError> {
@@ -141,13 +140,13 @@ impl Film {
         Ok(copy)
     }
 
-    /// Returns the memory of a film, the running pass included. Unit: bytes.
+    /// Returns the memory of a film and its running pass. Unit: bytes.
     pub fn memory(settings: &FilmSettings, layers: &Layers) -> u64 {
         let of_pixel = layers.sums() * size_of::<i128>() + PassBuffer::bytes_per_pixel(layers);
         settings.crop.area().saturating_mul(of_pixel as u64)
     }
 
-    /// Returns the film's geometry and filter.
+    /// Returns the settings of the film.
     pub fn settings(&self) -> &FilmSettings {
         &self.settings
     }
@@ -157,14 +156,14 @@ impl Film {
         &self.layers
     }
 
-    /// Returns the passes that were added.
+    /// Returns the set of passes that were added.
     pub fn passes(&self) -> &PassSet {
         &self.passes
     }
 
-    /// Returns the exact sums, row by row from the top left of the crop. Of each pixel there are, each for
-    /// red, green and blue: camera samples, splats, and squares of pass totals; then the sums of
-    /// [`Layers::aovs`]; then, for each part, camera samples and splats.
+    /// Returns the exact sums, row by row from the top left of the crop. Each pixel has, in this order: camera
+    /// samples, splats, and squares of pass totals, each of red, green and blue; the sums of [`Layers::aovs`]; and,
+    /// for each part, camera samples and splats.
     pub fn sums(&self) -> &[i128] {
         &self.sums
     }
@@ -176,19 +175,19 @@ impl Film {
 
     /// Adds the passes of another film of the same render.
     ///
-    /// Errors: some passes are in both, or the geometries differ.
+    /// Errors: some passes are in both films, or the geometries or layers differ.
     pub fn merge(&mut self, other: &Self) -> Result<(), MergeError> {
         self.check_mergeable(other)?;
         self.passes = self.passes.union(&other.passes);
         for (sum, &added) in self.sums.iter_mut().zip(&other.sums) {
-            // Squares alone come to the top. They are positive, so that stopping there depends on
-            // no order.
+            // Only squares can reach the largest number. They are positive, so that saturation does not depend on the
+            // order.
             *sum = sum.saturating_add(added);
         }
         Ok(())
     }
 
-    /// Merges as [`Self::merge`] does, without a second set of sums where no pass was added yet.
+    /// Merges like [`Self::merge`], but takes the sums of `other` without a copy if no pass was added yet.
     pub fn adopt(&mut self, other: Self) -> Result<(), MergeError> {
         if !self.passes.is_empty() {
             return self.merge(&other);
@@ -214,7 +213,7 @@ impl Film {
         }
     }
 
-    /// Adds finished pass number `index`, which must not be there yet.
+    /// Adds the finished pass number `index`, which the film must not hold yet.
     pub fn add_pass(&mut self, index: u64, pass: &PassBuffer) {
         debug_assert!(
             !self.passes.contains(index),
@@ -243,7 +242,7 @@ impl Film {
     }
 }
 
-/// The same passes, geometry and sums, bit for bit.
+/// Compares passes, resolution, crop, layers and sums, bit for bit.
 impl PartialEq for Film {
     fn eq(&self, other: &Self) -> bool {
         self.passes == other.passes

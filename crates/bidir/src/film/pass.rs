@@ -1,8 +1,7 @@
-//! The running pass: written by all threads at once, without locks, and added to the film when it
-//! is whole.
+//! The running pass. All threads write to it at once, without locks; the film adds it when it is complete.
 //!
-//! Each pixel's camera sample is stored by the one thread that renders it, and so are its features
-//! and parts; splats are summed in fixed point, whose order cannot matter. Nothing is normalised here.
+//! The one thread that renders a pixel stores its camera sample, features and parts. All threads add splats, in fixed
+//! point, so that their order does not matter. Nothing is normalised here.
 
 use super::layers::PART_SUMS;
 use super::memory::filled;
@@ -12,15 +11,14 @@ use crate::spectrum::Rgb;
 use rayon::prelude::{ParallelIterator, ParallelSliceMut};
 use std::sync::atomic::{AtomicU32, Ordering};
 
-/// One pass while it is rendered: one camera sample per pixel, and splats anywhere. All threads
-/// write to it at once.
+/// A pass while it is rendered: one camera sample per pixel, and splats anywhere.
 #[derive(Debug)]
 pub struct PassBuffer {
     /// The camera sample of each pixel: the bits of three `f32`.
     camera: Vec<[AtomicU32; 3]>,
     /// The sum of splats in each pixel.
     light: Vec<[FixedSum; 3]>,
-    /// The images of camera samples: the bits of as many `f32` per pixel as there are features.
+    /// The features of camera samples: for each pixel, the bits of one `f32` for each feature.
     features: Vec<AtomicU32>,
     /// The camera sample of each part: the bits of three `f32` for each part of each pixel.
     part_camera: Vec<[AtomicU32; 3]>,
@@ -30,7 +28,7 @@ pub struct PassBuffer {
     layers: [usize; 2],
 }
 
-/// Returns a value that a sum has room for, whatever a scene's size.
+/// Clamps a value to the range that a sum has room for; NaN becomes 0.
 fn bounded(value: f32) -> f32 {
     if value.is_nan() {
         0.0
@@ -49,7 +47,7 @@ fn load(cell: &AtomicU32) -> f32 {
     f32::from_bits(cell.load(Ordering::Relaxed))
 }
 
-/// Adds a splat that the filter weighs to all of `sums`.
+/// Adds a splat of `value` times the filter's `weight` to each of `sums`.
 #[inline]
 fn add<'a>(sums: impl Iterator<Item = &'a [FixedSum; 3]>, value: Rgb, weight: f32) {
     let value = value.map(|channel| {
@@ -63,7 +61,7 @@ fn add<'a>(sums: impl Iterator<Item = &'a [FixedSum; 3]>, value: Rgb, weight: f3
     }
 }
 
-/// Calls `change` for each of `cells`, a thread for many of them.
+/// Calls `change` for each of `cells`, in parallel runs of many cells.
 fn each<T: Send>(cells: &mut [T], change: impl Fn(&mut T) + Sync) {
     let runs = cells.par_chunks_mut(1 << 16);
     runs.for_each(|run| run.iter_mut().for_each(&change));
@@ -95,7 +93,7 @@ impl PassBuffer {
         })
     }
 
-    /// Empties the buffer for the next pass, by the threads of the pool that it is called in.
+    /// Clears the buffer for the next pass, on the threads of the current pool.
     pub fn clear(&mut self) {
         let clear_bits = |bits: &mut AtomicU32| *bits.get_mut() = 0;
         for cells in [&mut self.camera, &mut self.part_camera] {
@@ -107,15 +105,15 @@ impl PassBuffer {
         }
     }
 
-    /// Stores the camera sample of pixel `i` (row order of the crop). Finite, at most
+    /// Stores the camera sample of pixel `i`, in row order of the crop. `value` is finite, and at most
     /// [`fixed::LARGEST_CONTRIBUTION`] times the number of strategies.
     #[inline]
     pub fn set_camera_sample(&self, i: usize, value: Rgb) {
         store(&self.camera[i], value);
     }
 
-    /// Stores the features of the camera sample of pixel `i`, in the order of
-    /// [`Layers::aovs`]. Values beyond [`fixed::LARGEST_CONTRIBUTION`] are cut there; NaN becomes 0.
+    /// Stores the features of the camera sample of pixel `i`, in the order of [`Layers::aovs`]. Values are clamped to
+    /// [`fixed::LARGEST_CONTRIBUTION`]; NaN becomes 0.
     pub fn set_features(&self, i: usize, values: impl Iterator<Item = f32>) {
         let features = self.layers[0];
         let cells = &self.features[i * features..(i + 1) * features];
@@ -124,16 +122,15 @@ impl PassBuffer {
         }
     }
 
-    /// Adds to the camera sample of a part of pixel `i`.
+    /// Adds `value` to the camera sample of a part of pixel `i`.
     pub fn add_to_part(&self, i: usize, part: usize, value: Rgb) {
         let cells = &self.part_camera[i * self.layers[1] + part];
-        // One thread renders a pixel: between load and store nobody else comes.
+        // One thread renders a pixel: no other thread writes between load and store.
         let sum = std::array::from_fn(|channel| load(&cells[channel]) + value[channel]);
         store(cells, sum);
     }
 
-    /// Adds a light-image contribution at `place`, to one pixel, and
-    /// to `parts` of that pixel. Nothing happens where it is outside the crop.
+    /// Adds a splat to one pixel, drawn at `place`, and to `parts` of this pixel. Outside the crop it adds nothing.
     #[inline]
     pub fn splat(
         &self,
@@ -149,8 +146,7 @@ impl PassBuffer {
         add(std::iter::once(&self.light[i]).chain(parts), value, weight);
     }
 
-    /// Adds a contribution to one part alone, in the pixel where [`Self::splat`] adds with the same
-    /// numbers.
+    /// Adds a splat only to one part, of the pixel that [`Self::splat`] draws at the same `place`.
     pub fn splat_to_part(
         &self,
         settings: &FilmSettings,
@@ -164,7 +160,7 @@ impl PassBuffer {
         }
     }
 
-    /// Returns the camera sample and the sum of splats of pixel `i`, in [`fixed::VALUE_SCALE`].
+    /// Returns the camera sample and the sum of splats of pixel `i`. Unit: [`fixed::VALUE_SCALE`].
     #[inline]
     pub(super) fn pixel(&self, i: usize) -> ([i128; 3], [i128; 3]) {
         (
@@ -173,7 +169,7 @@ impl PassBuffer {
         )
     }
 
-    /// Adds the features and parts of pixel `i` to their sums.
+    /// Adds the features and parts of pixel `i` to `sums`, the film's sums of that pixel.
     #[inline]
     pub(super) fn add_layers(&self, i: usize, sums: &mut [i128]) {
         let [features, parts] = self.layers;

@@ -1,7 +1,7 @@
-//! Which passes a film holds: disjoint half-open ranges, counted from 0.
+//! The set of passes that a film holds: disjoint half-open ranges, counted from 0.
 //!
-//! Written `0..64` or `0..16, 32..64`. Sets are kept sorted with neighbours joined, so that equal
-//! sets are equal values.
+//! Its text is `0..64` or `0..16, 32..64`. Ranges are sorted, and neighbours are joined, so that equal sets are equal
+//! values.
 
 use std::fmt;
 use std::ops::Range;
@@ -11,11 +11,11 @@ use thiserror::Error;
 /// A set of passes.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
 pub struct PassSet {
-    /// Sorted, not empty, and never touching.
+    /// The ranges: sorted, none empty, none touching the next.
     ranges: Vec<Range<u64>>,
 }
 
-/// The text is no set of passes.
+/// The error of a text that is not a set of passes.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 #[error("`{0}` is not a range of passes like 0..64")]
 pub struct ParsePassSetError(pub String);
@@ -29,7 +29,7 @@ impl PassSet {
             .sum()
     }
 
-    /// Returns true where no pass is held.
+    /// Returns true if the set has no pass.
     pub fn is_empty(&self) -> bool {
         self.ranges.is_empty()
     }
@@ -39,14 +39,14 @@ impl PassSet {
         &self.ranges
     }
 
-    /// Returns true where `pass` is held.
+    /// Returns true if the set has `pass`.
     pub fn contains(&self, pass: u64) -> bool {
         self.ranges[self.first_ending_after(pass)..]
             .first()
             .is_some_and(|range| range.start <= pass)
     }
 
-    /// Adds passes, those that were there included.
+    /// Adds a range of passes, some of which may be in the set already.
     pub fn insert(&mut self, range: Range<u64>) {
         if range.is_empty() {
             return;
@@ -60,14 +60,14 @@ impl PassSet {
         self.ranges.splice(begin..end, [joined]);
     }
 
-    /// Returns both sets.
+    /// Returns the passes of both sets.
     #[must_use]
     pub fn union(&self, other: &Self) -> Self {
         let ranges = self.ranges.iter().chain(&other.ranges);
         ranges.cloned().collect()
     }
 
-    /// Returns the passes that both hold.
+    /// Returns the passes that are in both sets.
     #[must_use]
     pub fn intersection(&self, other: &Self) -> Self {
         let mut ranges = Vec::new();
@@ -77,7 +77,7 @@ impl PassSet {
         );
         while let (Some(x), Some(y)) = (a.peek(), b.peek()) {
             let both = x.start.max(y.start)..x.end.min(y.end);
-            // The range that ends first meets nothing more of the other.
+            // The range that ends first overlaps no later range of the other set.
             if x.end < y.end {
                 a.next();
             } else {
@@ -90,7 +90,7 @@ impl PassSet {
         Self { ranges }
     }
 
-    /// Returns the passes of `self` that `other` lacks.
+    /// Returns the passes of `self` that are not in `other`.
     #[must_use]
     pub fn difference(&self, other: &Self) -> Self {
         let mut ranges = Vec::new();
@@ -110,20 +110,20 @@ impl PassSet {
         Self { ranges }
     }
 
-    /// Returns the first pass at or after `from` that is not held.
+    /// Returns the first pass, from `from` on, that is not in the set.
     pub fn first_missing(&self, from: u64) -> u64 {
         let range = self.ranges.get(self.first_ending_after(from));
         let held = range.filter(|range| range.start <= from);
         held.map_or(from, |range| range.end)
     }
 
-    /// Returns the number of the first range that ends after `pass`.
+    /// Returns the index of the first range that ends after `pass`.
     fn first_ending_after(&self, pass: u64) -> usize {
         self.ranges.partition_point(|range| range.end <= pass)
     }
 }
 
-/// In any order; they may overlap and be empty.
+/// Makes a set of ranges in any order, which may overlap or be empty.
 impl FromIterator<Range<u64>> for PassSet {
     fn from_iter<I: IntoIterator<Item = Range<u64>>>(ranges: I) -> Self {
         let mut sorted: Vec<_> = ranges.into_iter().filter(|r| !r.is_empty()).collect();

@@ -1,18 +1,18 @@
-//! The response of a sensor to light before the film sums it: balance · RGB, cut at a limit.
+//! The response of a sensor to light before the film sums it: balance · RGB, limited.
 
 use crate::math::{Mat3, Vec3};
 use crate::spectrum::Rgb;
 
-/// How a film responds to light. The default takes it as it is.
+/// The response of a film to light. The default is the identity.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Sensor {
     /// White balance: the matrix that multiplies linear Rec. 709. None: the identity.
     pub balance: Option<Mat3>,
-    /// The largest value of a channel in one camera sample, or in one contribution to the light
-    /// image, before exposure: brighter ones keep their hue. None: there is no limit.
+    /// The largest value that a channel may have in one camera sample, or in one contribution to the light image,
+    /// before exposure. Brighter colours are scaled down, so that they keep their hue. None: there is no limit.
     ///
-    /// A limit takes light away, and more of it the noisier the estimator: pictures of different
-    /// estimators, and parts of one picture, do not add up any more.
+    /// A limit removes light, and removes more of it if the estimator is noisier. Hence pictures of different
+    /// estimators differ, and the parts of a picture do not add up to it.
     pub limit: Option<f32>,
 }
 

@@ -1,5 +1,5 @@
-//! The settings of a film, fixed before rendering: pixels, crop, filter and exposure. Lengths are
-//! in pixels, (0, 0) the top left one of the whole film, whatever the crop.
+//! The settings of a film, fixed before rendering: pixels, crop, filter and exposure. Lengths are in pixels; (0, 0)
+//! is the top left pixel of the whole film, not of the crop.
 
 use super::{Filter, Sensor};
 use crate::math::Vec2;
@@ -8,19 +8,19 @@ use thiserror::Error;
 /// A rectangle of pixels: `min` inclusive, `max` exclusive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PixelRect {
-    /// Left and top.
+    /// The left and top pixel.
     pub min: [u32; 2],
-    /// Right and bottom, exclusive.
+    /// The right and bottom pixel, exclusive.
     pub max: [u32; 2],
 }
 
 impl PixelRect {
-    /// Pixels per row.
+    /// Returns the number of pixels in a row.
     pub fn width(&self) -> u32 {
         self.max[0].saturating_sub(self.min[0])
     }
 
-    /// Rows.
+    /// Returns the number of rows.
     pub fn height(&self) -> u32 {
         self.max[1].saturating_sub(self.min[1])
     }
@@ -30,7 +30,7 @@ impl PixelRect {
         u64::from(self.width()) * u64::from(self.height())
     }
 
-    /// Returns the position of a pixel in row order. None: it is outside.
+    /// Returns the index of a pixel in row order. None: it is outside.
     #[inline]
     pub fn index(&self, x: i64, y: i64) -> Option<usize> {
         let (dx, dy) = (x - i64::from(self.min[0]), y - i64::from(self.min[1]));
@@ -39,7 +39,7 @@ impl PixelRect {
         inside.then(|| dy as usize * self.width() as usize + dx as usize)
     }
 
-    /// Returns the pixel at position `i` of row order.
+    /// Returns the pixel with index `i` in row order.
     #[inline]
     pub fn pixel(&self, i: usize) -> [u32; 2] {
         let width = self.width() as usize;
@@ -59,9 +59,9 @@ pub struct FilmSettings {
     pub crop: PixelRect,
     /// The pixel filter.
     pub filter: Filter,
-    /// The factor on developed values.
+    /// The factor of developed values.
     pub exposure: f32,
-    /// The response to light before it is summed.
+    /// The response of the sensor to light before the film sums it.
     pub sensor: Sensor,
 }
 
@@ -81,45 +81,45 @@ impl FilmSettings {
         }
     }
 
-    /// Returns the pixel that a splat goes to, drawn by the filter: its position in row order of the crop, and
-    /// what its value is multiplied by. None: it is outside.
+    /// Draws the pixel of a splat by the filter. Returns its index in row order of the crop, and the factor of the
+    /// splat's value. None: the pixel is outside.
     #[inline]
     pub fn pick_pixel(&self, place: SplatPlace) -> Option<(usize, f32)> {
         let (x, y, weight) = self.filter.pick_pixel(place.raster, place.u)?;
         Some((self.crop.index(x, y)?, weight))
     }
 
-    /// Returns the number of light subpaths of a pass in which each sample has its own: one for each pixel that is
-    /// rendered. If k samples share a subpath, weights and the light image count 1/k of this number.
+    /// Returns the number of light subpaths of a pass in which each sample has its own: one for each pixel of the
+    /// crop. If k samples share a subpath, weights and the light image use 1/k of this number.
     pub fn light_paths(&self) -> u64 {
         self.crop.area()
     }
 }
 
-/// The place of a contribution to the light image.
+/// The position of a splat on the film, and the numbers that draw its pixel.
 #[derive(Clone, Copy, Debug)]
 pub struct SplatPlace {
     /// The point on the film. Unit: pixels.
     pub raster: Vec2,
-    /// The numbers by which the filter draws a pixel.
+    /// The random numbers by which the filter draws a pixel.
     pub u: Vec2,
 }
 
 /// Why a film cannot be made.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 pub enum FilmError {
-    /// It would need too much memory.
+    /// The film needs more memory than the limit.
     #[error("the film needs {} GiB of memory, more than the limit of {} GiB", needed >> 30, limit >> 30)]
     TooLarge {
-        /// Bytes needed.
+        /// The memory that the film needs. Unit: bytes.
         needed: u64,
-        /// Bytes allowed.
+        /// The limit. Unit: bytes.
         limit: u64,
     },
     /// The system refused the memory.
     #[error("the system does not have the {bytes} bytes of memory that it needs")]
     NoMemory {
-        /// Bytes that were asked for.
+        /// The memory that was asked for. Unit: bytes.
         bytes: u64,
     },
 }

@@ -1,40 +1,41 @@
-//! Cells of vertices: boxes of space, each divided by the directions of normals. Training learns about
-//! connections for cells.
+//! Cells of vertices: boxes of space, each divided by the direction of the normal. Training learns about connections
+//! between cells.
 //!
-//! The boxes are the leaves of a k-d tree over vertices of a training render, so that each has about
-//! as many of them. A plane goes through the widest gap near the median: a wall that lies in a plane
-//! would be in one box or the other by rounding, that is by the walk that found it, and weights would
-//! not be one function of the path.
+//! The boxes are the leaves of a k-d tree over vertices of training, so that each has about the same number of them.
+//! A plane goes through the widest gap near the median. If it lay in a wall, rounding would decide in which box a
+//! point of the wall is: the box would depend on the walk that found the point, and weights would not be a function
+//! of the path.
 
 use crate::math::Vec3;
 use std::cmp::Ordering;
 
-/// A cell, by number.
+/// The number of a cell.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Cell(u8);
 
 impl Cell {
-    /// The cell of every vertex where nothing is learned.
+    /// The cell of every vertex if nothing is learned.
     pub(crate) const FIRST: Self = Self(0);
 
-    /// Returns its number, below [`Cells::COUNT`], so that tables of [`Cells::NAMES`] entries need no check.
+    /// Returns its number, which is less than [`Cells::COUNT`]. Tables of [`Cells::NAMES`] entries need no check of
+    /// bounds.
     #[inline]
     pub(crate) fn index(self) -> usize {
         usize::from(self.0)
     }
 }
 
-/// Levels of planes.
+/// The number of levels of planes in the tree.
 const LEVELS: u32 = 5;
-/// The boxes.
+/// The number of boxes.
 const BOXES: usize = 1 << LEVELS;
-/// The classes of normals: the axis that they are nearest to, and its sign.
+/// The number of classes of normals: by the axis that a normal is nearest to, and its sign.
 const NORMALS: usize = 6;
 
-/// The part of the vertices, on either side of the median, among which a gap is looked for.
+/// The fraction of the vertices, on either side of the median, among which a gap is searched for.
 const NEAR_MEDIAN: f64 = 0.15;
 
-/// How far points of one wall may lie apart by rounding, as a part of the coordinate.
+/// The largest distance of points of one wall by rounding, relative to the coordinate.
 const ROUNDING: f32 = 4e-6;
 
 /// A division of space and normals into cells.
@@ -44,7 +45,7 @@ pub struct Cells {
     planes: Vec<Plane>,
 }
 
-/// Before it is where coordinate number `axis` is below `at`, in m.
+/// A plane: points whose coordinate number `axis` is less than `at` are before it. Unit: m.
 #[derive(Clone, Copy, Debug)]
 struct Plane {
     axis: u32,
@@ -52,24 +53,25 @@ struct Plane {
 }
 
 impl Cells {
-    /// How many there are.
+    /// The number of cells.
     pub const COUNT: usize = BOXES * NORMALS;
-    /// How many a [`Cell`] could name.
+    /// The number of values of a [`Cell`].
     pub(crate) const NAMES: usize = 1 << u8::BITS;
 
-    /// Returns the number of a pair of cells, by that of camera vertices first, among the square of as many.
+    /// Returns the number of a pair of cells, less than the square of [`Self::COUNT`]. Pairs with the same cell of
+    /// camera vertices have consecutive numbers.
     #[inline]
     pub(crate) fn pair(light: Cell, camera: Cell) -> usize {
         camera.index() * Self::COUNT + light.index()
     }
 
-    /// Returns the cell of a number.
+    /// Returns the cell with number `index`.
     #[inline]
     pub(crate) fn cell(index: usize) -> Cell {
         Cell(index as u8)
     }
 
-    /// Divides space so that each box has about as many of `points`.
+    /// Divides space so that each box has about the same number of `points`.
     pub fn new(points: &mut [Vec3]) -> Self {
         let nowhere = Plane { axis: 0, at: 0.0 };
         let mut planes = vec![nowhere; BOXES];
@@ -97,13 +99,13 @@ impl Cells {
     }
 }
 
-/// Sets plane number `i`, and those below, for `points`.
+/// Sets plane number `i`, and the planes below it in the tree, for `points`.
 fn divide(points: &mut [Vec3], i: usize, planes: &mut [Plane]) {
     if i >= planes.len() || points.is_empty() {
         return;
     }
     let axis = longest(points);
-    // By all coordinates, so that the order is one whatever sorts.
+    // Points are compared by all coordinates, so that their order does not depend on the sorting algorithm.
     points.sort_unstable_by(|a, b| {
         let axes = [axis, (axis + 1) % 3, (axis + 2) % 3].into_iter();
         let mut orders = axes.map(|axis| a[axis].total_cmp(&b[axis]));
@@ -135,8 +137,8 @@ fn longest(points: &[Vec3]) -> usize {
     }
 }
 
-/// Returns the number of the first point behind the widest gap of sorted `points` near their median; where a wall
-/// takes all of that, behind the gap that is nearest to it.
+/// Returns the index of the first point behind the widest gap of sorted `points` near their median. If a wall holds
+/// all points near the median, it is the gap nearest to the median.
 fn widest_gap(points: &[Vec3], axis: usize) -> usize {
     let count = points.len() as f64;
     let end = |part: f64| ((count * part) as usize).clamp(1, points.len());

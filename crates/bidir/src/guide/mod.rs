@@ -1,9 +1,9 @@
-//! The knowledge of training that estimators use: which light vertices suit a camera vertex, how many of
-//! their shadow rays arrive, and where light subpaths begin.
+//! The knowledge from training that estimators use: probabilities of light vertices for a camera vertex, visibilities
+//! of their shadow rays, and the light on which light subpaths begin.
 //!
-//! It knows no paths. A vertex asks for its [`Cell`] when it is made, weights ask for `count_factor`, selection
-//! for `root_visibility`, and the light vertex cache draws by [`LightProposals`]. All of it is frozen before the
-//! first pass.
+//! This module does not know paths. A vertex asks for its [`Cell`] when it is made, weights ask for `count_factor`,
+//! selection for `root_visibility`, and the light vertex cache draws by [`LightProposals`]. All of it is fixed before
+//! the first pass.
 
 mod cells;
 mod proposals;
@@ -15,17 +15,17 @@ pub use proposals::{LightProposals, PairSums};
 use crate::light::LightChoice;
 use crate::math::Vec3;
 
-/// The parts of a training that an estimator uses; the default has none.
+/// The results of training that an estimator uses; the default has none.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Guide<'a> {
-    /// The choice of light vertices. None: each is as likely as others.
+    /// The choice of light vertices. None: all are equally likely.
     pub proposals: Option<&'a LightProposals>,
-    /// The choice of the light that light subpaths begin on. None: by power.
+    /// The choice of the light on which a light subpath begins. None: by power.
     pub light_start: Option<&'a LightChoice>,
 }
 
 impl<'a> Guide<'a> {
-    /// Returns the cell of a vertex with the unit normal `n`; the default one without proposals.
+    /// Returns the cell of a vertex with the unit normal `n`; without proposals it is the default.
     #[inline]
     pub(crate) fn cell(&self, point: Vec3, n: Vec3) -> Cell {
         let cell = |all: &LightProposals| all.cells().of(point, n);
@@ -44,14 +44,14 @@ impl<'a> Guide<'a> {
 pub(crate) struct CellGuide<'a>(Option<(&'a LightProposals, &'a ProposalRow)>);
 
 impl<'a> CellGuide<'a> {
-    /// Returns the choice of light vertices. None: each is as likely as others.
+    /// Returns the choice of light vertices. None: all are equally likely.
     #[inline]
     pub(crate) fn row(self) -> Option<&'a ProposalRow> {
         self.0.map(|(_, row)| row)
     }
 
     /// Returns n κ / M: the number of samples of a connection with the cell `light`, relative to uniform proposals; 1
-    /// without proposals. It is a function of the path alone.
+    /// without proposals. It depends only on the path.
     #[inline(always)]
     pub(crate) fn count_factor(self, light: Cell) -> f64 {
         self.0

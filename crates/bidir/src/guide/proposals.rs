@@ -1,76 +1,75 @@
-//! P(z | y) = ε / K + (1 - ε) Γ(c_z | c_y) / K_c: which of K cached light vertices z is a candidate for
-//! the camera vertex y, by their cells c; K_c of the K are in the cell of z. Γ is learned before the
-//! first pass, and frozen: in the spirit of the subspaces of \[Su22\].
+//! P(z | y) = ε / K + (1 - ε) Γ(c_z | c_y) / K_c is the probability that, of K cached light vertices, z is the
+//! candidate for the camera vertex y. It depends on their cells c; K_c of the K vertices are in the cell of z. Γ is
+//! learned before the first pass, and then fixed, in the spirit of the subspaces of \[Su22\].
 //!
-//! With X the contribution of a connection, weighted and behind what is in its way, the variance of
-//! one candidate is least where Γ(c | r) ∝ κ_c √E[X² | r, c], κ_c the mean of K_c for a light subpath.
-//! In a training render whose candidates are uniform, pairs of cells come up in proportion to κ_c, so
-//! that this is √(κ_c Σ X²), the sum over the candidates of the pair. A path that any strategy finds adds to
-//! the sums of all connections that could have made it (docs/derivations/mis-weights.md): the same sum on
-//! average, with less noise.
+//! Let X be the weighted contribution of a connection, with its visibility, and κ_c the mean of K_c for a light
+//! subpath. The variance of one candidate is least for Γ(c | r) ∝ κ_c √E[X² | r, c]. Training draws candidates
+//! uniformly, so that pairs of cells occur in proportion to κ_c, and this is √(κ_c Σ X²), with the sum over the
+//! candidates of the pair. A path that any strategy finds adds to the sums of all connections that could have made it
+//! (docs/derivations/mis-weights.md): they have the same mean, with less noise.
 //!
-//! **Weights** need the number of samples that a strategy takes of a path, as a function of the path
-//! alone: K and K_c are of the group at hand, and κ and κ_c stand in for them,
+//! **Weights** need the number of samples that a strategy takes of a path, as a function only of the path. K and K_c
+//! depend on the group, so κ and κ_c replace them:
 //!
 //! n = (M / κ) (ε + (1 - ε) Γ(c | r) κ / κ_c),
 //!
 //! with M candidates for the camera vertex.
 //!
-//! **Visibility.** Of candidates with contributions C of which parts V arrive, the sum over chosen ones
-//! varies least where the probability to be chosen is ∝ √E[C² V] = C √V̂ for binary V: that is what
-//! they are compared by, V̂ being the part of the connections of two cells that arrived in training.
+//! **Visibility.** Candidates have contributions C, of which fractions V arrive. The sum over the chosen ones varies
+//! least if the probability of choosing is ∝ √E[C² V], which for binary V is C √V̂: this is the score of candidates.
+//! V̂ is the fraction of the connections between two cells that were visible in training.
 
 use super::cells::{Cell, Cells};
 use std::array::from_fn;
 
-/// The bits of a unit's number. Γ and ε come in whole units, of which all proposals to a vertex have 2^16: numbers
-/// lead to each cell with exactly the probability that weights and shares are told, and all pairs of cells stay in the
-/// cache beside the vertices.
+/// The number of bits of a unit's number. Γ and ε are whole units, of which all proposals to a vertex have 2^16. So
+/// draws lead to each cell with exactly the probability that weights and shares use, and the tables of all pairs of
+/// cells stay in the cache beside the vertices.
 const UNIT_BITS: u32 = 16;
 const UNITS: u32 = 1 << UNIT_BITS;
 
-/// ε in units, a fifth: the uniform proposals. Connections that training did not see cost at most 1/ε times as much as
-/// without them.
+/// ε in units, a fifth: the fraction of uniform proposals. It bounds the growth of variance by 1/ε, for connections
+/// that training did not see.
 const UNIFORM_UNITS: u16 = 13_107;
 /// ε.
 const UNIFORM_PART: f64 = UNIFORM_UNITS as f64 / UNITS as f64;
 
-/// The least V̂: where all connections of training were blocked, others are chosen a quarter as often
-/// as if all had arrived.
+/// The least V̂: if all connections of a pair were blocked in training, its score is a quarter of what it is if all
+/// arrived.
 const LEAST_VISIBILITY: f64 = 1.0 / 16.0;
 
-/// √V̂ comes in whole units as well.
+/// The number of units in √V̂ = 1.
 const VISIBILITY_UNITS: u8 = u8::MAX;
 
-/// Into how many parts the numbers of a draw are divided, each of which knows the first cell that it
-/// may lead to: a guide table \[Chen74\].
+/// The number of parts of the range of random numbers. Each part stores the first cell that its numbers may lead to:
+/// a guide table \[Chen74\].
 const PARTS: usize = 512;
-/// The units of a part.
+/// The number of units of a part.
 const UNITS_OF_PART: u16 = (UNITS / PARTS as u32) as u16;
 const _: () = assert!(
     Cells::COUNT <= Cells::NAMES,
     "the number of a cell takes a byte"
 );
 
-/// The proposals of light vertices of a cache to camera vertices.
+/// The proposals of cached light vertices to camera vertices.
 #[derive(Clone, Debug)]
 pub struct LightProposals {
     cells: Cells,
     /// One row for each cell of camera vertices.
     rows: Vec<ProposalRow>,
-    /// For each cell of light vertices κ / κ_c for a unit of (1 - ε) Γ; 0 where κ_c is 0.
+    /// For each cell of light vertices, κ / κ_c times a unit of (1 - ε) Γ; 0 if κ_c is 0.
     count_factors: [f64; Cells::NAMES],
 }
 
 /// The proposals to camera vertices of one cell r.
 #[derive(Clone, Debug)]
 pub(crate) struct ProposalRow {
-    /// The last unit of all uniform proposals, which come first; then, cell by cell, the last unit of (1 - ε) Γ(c | r),
-    /// which is that of the cell before where Γ is 0; then the last unit of all.
+    /// The last unit of the uniform proposals, which come first; then the last unit of (1 - ε) Γ(c | r) of each cell
+    /// c, which equals the one before if Γ is 0; the rest is the last unit of all.
     last: LastUnits,
-    /// The first cell c that numbers of each part lead to: draws begin there instead of at the first cell of all.
+    /// The first cell c that the numbers of each part lead to: draws search from it.
     first: [u8; PARTS],
-    /// √V̂, in units, by the cell of light vertices.
+    /// √V̂ for each cell of light vertices. Unit: 1 / [`VISIBILITY_UNITS`].
     root_visibility: [u8; Cells::NAMES],
 }
 
@@ -81,14 +80,14 @@ type LastUnits = [u16; 1 + Cells::NAMES];
 pub struct PairSums {
     /// κ_c.
     pub light_vertices: Vec<f64>,
-    /// Σ X², by the cell of camera vertices first. Unit: squared luminance, of any scale.
+    /// Σ X² of each pair, in the order of [`Cells::pair`]. Unit: squared luminance, of any scale.
     pub squares: Vec<f64>,
-    /// The number of connections that were traced, and of those that arrived.
+    /// For each pair, the number of connections that were traced, and the number of those that were visible.
     pub arrived: Vec<[u32; 2]>,
 }
 
 impl PairSums {
-    /// Makes sums that know nothing of pairs, of cells with these numbers of light vertices for each light subpath.
+    /// Makes sums without knowledge of pairs, for cells with these numbers of light vertices per light subpath.
     pub fn uniform(light_vertices: Vec<f64>) -> Self {
         Self {
             light_vertices,
@@ -97,19 +96,19 @@ impl PairSums {
         }
     }
 
-    /// Adds to Σ X² of pair number `pair`.
+    /// Adds `square` to Σ X² of pair number `pair`.
     pub(crate) fn add(&mut self, pair: usize, square: f64) {
         self.squares[pair] += square;
     }
 
-    /// Adds a connection of pair number `pair` that was traced.
+    /// Counts a traced connection of pair number `pair`.
     pub(crate) fn see(&mut self, pair: usize, has_arrived: bool) {
         let [traced, arrived] = &mut self.arrived[pair];
         *traced += 1;
         *arrived += u32::from(has_arrived);
     }
 
-    /// Returns for each cell of camera vertices Σ_c √(κ_c Σ X²).
+    /// Returns Σ_c √(κ_c Σ X²) for each cell of camera vertices.
     pub(crate) fn roots(&self) -> Vec<f64> {
         let rows = self.squares.chunks_exact(Cells::COUNT);
         rows.map(|squares| {
@@ -119,8 +118,9 @@ impl PairSums {
         .collect()
     }
 
-    /// Returns n κ / M of a connection of these cells if it did not add `square` to what is known, where `all` is κ and
-    /// `sum` that of [`roots`](Self::roots), and if `more` light vertices of each light subpath were in its cell.
+    /// Returns n κ / M of a connection between the cells `light` and `camera`, as if its own `square` were not in the
+    /// sums, and as if each light subpath had `more` light vertices in its cell. `all` is κ, and `sum` the element of
+    /// [`roots`](Self::roots) for `camera`.
     pub(crate) fn count_factor(
         &self,
         [all, sum]: [f64; 2],
@@ -133,7 +133,7 @@ impl PairSums {
         let own = root(squares - square);
         let others = sum - root(squares) + own;
         let learned = if others <= 1e-9 * sum {
-            // Without knowledge all light vertices are as likely as others.
+            // Without knowledge all light vertices are equally likely.
             1.0
         } else if kappa > 0.0 {
             own / others * all / (kappa + more)
@@ -143,7 +143,8 @@ impl PairSums {
         UNIFORM_PART + (1.0 - UNIFORM_PART) * learned
     }
 
-    /// Returns √V̂ of pair number `pair` if a connection that arrived or not were not known.
+    /// Returns √V̂ of pair number `pair`, as if one traced connection, visible if `has_arrived`, were not in the
+    /// sums.
     pub(crate) fn root_visibility_without(&self, pair: usize, has_arrived: bool) -> f32 {
         let [traced, arrived] = self.arrived[pair];
         let others = [
@@ -154,33 +155,33 @@ impl PairSums {
     }
 }
 
-/// A draw of a cell.
+/// A drawn cell of light vertices, with the random number that is left.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum CellDraw {
-    /// None: all light vertices, at this part of them.
+    /// No cell: the light vertex is at this fraction of all.
     All(Part),
-    /// One, with its units, at this part of its light vertices.
+    /// A cell, with its units: the light vertex is at this fraction of those in the cell.
     One(Cell, u16, Part),
 }
 
-/// A part of a whole: how many of so many numbers come before.
+/// A fraction of a range of numbers: the count of numbers before, and of all numbers.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Part(u32, f64);
 
 impl Part {
-    /// Returns the part `number` / 2^32.
+    /// Returns the fraction `number` / 2^32.
     #[inline]
     pub(crate) fn of_all(number: u32) -> Self {
         Self(number, 4_294_967_296.0)
     }
 
-    /// Returns the number of the thing at this part of `count`; below it, unless it is 0.
+    /// Returns the index at this fraction of `count`. It is less than `count`, unless that is 0.
     #[inline]
     pub(crate) fn pick(self, count: u32) -> usize {
-        /// The last digits of a sum with it are the nearest whole number, in one step on every machine.
+        /// A sum with this constant has the nearest whole number in its last digits, in one step on every machine.
         const WHOLE: f64 = 1.5 * 4_503_599_627_370_496.0;
-        // Divisions of f64 are faster than those of integers, and what they round is far less than the numbers tell
-        // apart.
+        // Divisions of f64 are faster than those of integers, and their rounding is far less than the resolution of
+        // the numbers.
         let Self(before, all) = self;
         let middle = f64::from(before) * f64::from(count) / all - 0.5;
         (middle + WHOLE).to_bits() as u32 as usize
@@ -188,7 +189,7 @@ impl Part {
 }
 
 impl LightProposals {
-    /// Returns the proposals that suit `sums`.
+    /// Makes proposals from the sums of training.
     pub fn new(cells: Cells, sums: &PairSums) -> Self {
         let kappa = &sums.light_vertices;
         let all: f64 = kappa.iter().sum();
@@ -208,7 +209,7 @@ impl LightProposals {
         }
     }
 
-    /// Returns the cells of vertices.
+    /// Returns the division into cells.
     #[inline]
     pub(super) fn cells(&self) -> &Cells {
         &self.cells
@@ -237,7 +238,7 @@ impl ProposalRow {
         }
     }
 
-    /// Draws a cell of light vertices by `number`, one of 2^32.
+    /// Draws a cell of light vertices by `number`, which is uniform among 2^32.
     #[inline]
     pub(crate) fn draw(&self, number: u32) -> CellDraw {
         let unit = (number >> UNIT_BITS) as u16;
@@ -276,20 +277,20 @@ pub(crate) fn inverse_prob(units: u16, counts: [u32; 2]) -> f32 {
     UNITS as f32 * all * of_cell / sum
 }
 
-/// Returns the count among 2^32 numbers that lead to this number of units.
+/// Returns how many of 2^32 numbers lead to `units` units.
 #[inline]
 const fn numbers_of(units: u16) -> f64 {
     units as f64 * UNITS as f64
 }
 
-/// Returns the first cell that has a unit of this part, or one behind it.
+/// Returns the first cell whose last unit is in this part, or behind it.
 fn first_cell_of_part(last: &LastUnits, part: usize) -> u8 {
     let begin = part as u16 * UNITS_OF_PART;
     last[1..Cells::COUNT].partition_point(|&last| last < begin) as u8
 }
 
-/// Returns √V̂ in units by the numbers of connections traced and arrived. Pairs of cells that training did not see count
-/// as visible, and none counts as hidden for sure.
+/// Returns √V̂ from the numbers of traced and of visible connections. A pair without traced connections counts as
+/// visible, and no pair as surely hidden. Unit: 1 / [`VISIBILITY_UNITS`].
 fn root_visibility(arrived: Option<&[u32; 2]>) -> u8 {
     let [traced, arrived] = arrived.copied().unwrap_or_default();
     let visible = f64::from(arrived + 1) / f64::from(traced + 1);
@@ -297,8 +298,8 @@ fn root_visibility(arrived: Option<&[u32; 2]>) -> u8 {
     (root * f64::from(VISIBILITY_UNITS)).round() as u8
 }
 
-/// Returns the last units of all uniform proposals and of each cell, with Γ(c | r) ∝ √(κ_c Σ X²), or κ_c where nothing
-/// was found.
+/// Returns the last unit of the uniform proposals and of each cell, with Γ(c | r) ∝ √(κ_c Σ X²), or ∝ κ_c if training
+/// found nothing.
 fn last_units(kappa: &[f64], squares: &[f64]) -> LastUnits {
     let learned = || kappa.iter().zip(squares).map(|(k, q)| (k * q).sqrt());
     let total: f64 = learned().sum();

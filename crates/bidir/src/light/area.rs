@@ -1,8 +1,7 @@
-//! Surfaces that emit: radiance L, times a pattern, wherever the side emits; power π ∫ L dA for each
-//! such side.
+//! Area lights: each emitting side of a surface has radiance L, times a pattern, and power π ∫ L dA.
 //!
-//! A point is drawn by area, or as the receiver sees its shape (1/m²); a direction by |cosθ|/π
-//! (1/sr), half of that where both sides emit.
+//! A point is drawn by area, or by the solid angle of its shape from the receiver (1/m²); a direction by |cosθ|/π
+//! (1/sr), or half of it if both sides emit.
 
 use super::{Cone, EmissionSample, EmitterBounds, LightContext, LightPoint, LightSample, Part};
 use crate::math::{Distribution1d, Frame, PI, Vec2, Vec3, warp};
@@ -11,12 +10,12 @@ use crate::spectrum::{Rgb, luminance};
 use crate::texture::clamped_alpha;
 use crate::texture::{ColorTexture, FloatTexture, TexturePoint};
 
-/// A mesh of more primitives is many emitters for a tree of lights: a quadrilateral is one.
+/// The most primitives of a mesh that is one emitter for a tree of lights: a quadrilateral has two.
 const UNDIVIDED: usize = 2;
-/// Points at which a pattern's mean is estimated: lights are chosen by it.
+/// The number of points that estimate a pattern's mean, by which lights are chosen.
 const PATTERN_POINTS: usize = 4096;
 
-/// Which sides of a surface emit.
+/// The sides of a surface that emit.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum EmissionSides {
     /// The front.
@@ -29,26 +28,26 @@ pub enum EmissionSides {
 /// A shape that emits the same radiance in all directions of its emitting sides.
 #[derive(Clone, Debug)]
 pub struct AreaLight {
-    /// The shape, by index.
+    /// The index of the shape.
     shape: usize,
     radiance: Rgb,
-    /// The factor of the radiance. None: it is the same everywhere.
+    /// The factor of the radiance at each point. None: the radiance is constant.
     pattern: Option<ColorTexture>,
-    /// The mean over the area. Unit: luminance.
+    /// The mean radiance over the area, with the pattern. Unit: luminance.
     mean: f32,
     sides: EmissionSides,
     /// The choice of a primitive, by area.
     primitives: Distribution1d,
-    /// One over the area; 0 where there is none. Unit: 1/m².
+    /// One over the area; 0 if that is 0. Unit: 1/m².
     inverse_area: f32,
-    /// How much of the surface is there. None: all of it.
+    /// The coverage of the surface. None: it is 1 everywhere.
     alpha: Option<FloatTexture>,
-    /// True where no ray meets the surface.
+    /// True if no ray can hit the surface.
     is_hidden: bool,
 }
 
 impl AreaLight {
-    /// Returns the light of `shape`, which is number `index` of the scene.
+    /// Makes the light of `shape`, which has number `index` in the scene.
     pub fn new(index: usize, shape: &Shape, radiance: Rgb, sides: EmissionSides) -> Self {
         let areas = (0..shape.primitive_count()).map(|i| shape.primitive_area(i));
         let primitives = Distribution1d::new(areas);
@@ -67,8 +66,8 @@ impl AreaLight {
         }
     }
 
-    /// Multiplies the radiance at each point of `shape`, which is the light's. Negative values
-    /// count as black.
+    /// Sets the factor of the radiance at each point of `shape`, the light's own shape. Negative values count as
+    /// black.
     pub(crate) fn set_pattern(&mut self, shape: &Shape, pattern: ColorTexture) {
         self.pattern = Some(pattern);
         let points = (0..PATTERN_POINTS).map(|i| {
@@ -81,7 +80,7 @@ impl AreaLight {
         let sum: f32 = points
             .map(|surface| luminance(self.radiance_at(&surface)))
             .sum();
-        // A light that may emit somewhere has to be chosen now and then.
+        // A light that may emit somewhere needs a probability above 0.
         let least = 1e-3 * luminance(self.radiance);
         self.mean = (sum / PATTERN_POINTS as f32).max(least);
     }
@@ -96,7 +95,7 @@ impl AreaLight {
         std::array::from_fn(|channel| self.radiance[channel] * factor[channel].max(0.0))
     }
 
-    /// Returns the radiance of a light point: whoever drew it, it is the same function of the point.
+    /// Returns the radiance at a light point. It depends only on the point, not on the strategy that drew it.
     #[inline]
     fn radiance(&self, context: &LightContext<'_>, at: &LightPoint) -> Rgb {
         if self.pattern.is_none() {
@@ -107,12 +106,12 @@ impl AreaLight {
         self.radiance_at(&shape.surface_point(primitive, parameters, at.locus.point))
     }
 
-    /// Lets no ray meet the surface, though it emits.
+    /// Hides the surface from rays; it still emits.
     pub(crate) fn hide(&mut self) {
         self.is_hidden = true;
     }
 
-    /// Returns the shape, by index.
+    /// Returns the index of the shape.
     pub(crate) fn shape_index(&self) -> usize {
         self.shape
     }
@@ -121,12 +120,12 @@ impl AreaLight {
         self.is_hidden
     }
 
-    /// Lets only a part of the surface be there, and emit.
+    /// Sets the coverage of the surface, which is also a factor of its emission.
     pub(crate) fn set_alpha(&mut self, alpha: FloatTexture) {
         self.alpha = Some(alpha);
     }
 
-    /// Returns false where all its primitives are degenerate.
+    /// Returns false if all primitives of the shape are degenerate.
     pub fn has_area(&self) -> bool {
         self.inverse_area > 0.0
     }
@@ -148,13 +147,13 @@ impl AreaLight {
         }
     }
 
-    /// Returns how many emitters it is for a tree of lights. None: one.
+    /// Returns the number of emitters that it is for a tree of lights. None: it is one.
     pub(super) fn divided_into(&self, context: &LightContext<'_>) -> Option<u32> {
         let count = context.shapes[self.shape].primitive_count();
         (count > UNDIVIDED).then_some(count as u32)
     }
 
-    /// Returns the bounds of `part`, and of the directions it sends light to.
+    /// Returns bounds of `part`, and of the directions in which it emits.
     pub(super) fn bounds(&self, context: &LightContext<'_>, part: Part) -> EmitterBounds {
         let shape = &context.shapes[self.shape];
         let of_primitive = |i| self.primitive_bounds(shape, i);
@@ -174,7 +173,7 @@ impl AreaLight {
         let (cone, intensity) = match shape.normals(i) {
             Normals::One(n) => (Cone::flat(n, both), facing),
             Normals::Opposite(n) => (Cone::flat(n, true), facing),
-            // A convex surface shows a quarter of its area, in the mean over directions.
+            // On average over directions, the projected area of a convex surface is a quarter of its area.
             Normals::Any => (Cone::EVERYWHERE, facing / 4.0),
         };
         EmitterBounds {
@@ -193,7 +192,7 @@ impl AreaLight {
         }
     }
 
-    /// Draws a point of the shape with `sample`, given the primitive and the rest of the numbers.
+    /// Draws a point of the shape: chooses a primitive, and calls `sample` with it and the remaining numbers.
     #[inline]
     fn sample_shape(&self, u: Vec2, sample: impl Fn(usize, Vec2) -> ShapeSample) -> LightSample {
         let (primitive, prob, rest) = self.primitives.sample(u.x);
@@ -205,7 +204,7 @@ impl AreaLight {
         }
     }
 
-    /// Returns a point drawn on a primitive, with its density among the points of that primitive.
+    /// Converts a point drawn on a primitive; its density is among the points of this primitive.
     #[inline]
     fn light_sample(&self, primitive: u32, drawn: &ShapeSample) -> LightSample {
         let alpha = self.alpha.as_ref();
@@ -250,7 +249,7 @@ impl AreaLight {
     #[inline]
     pub(super) fn pdf_position(&self, context: &LightContext<'_>, at: &LightPoint) -> f32 {
         match &context.shapes[self.shape] {
-            // A primitive by area and a point evenly on it: evenly over all.
+            // A primitive chosen by area, and a uniform point on it: a uniform point of the shape.
             Shape::Mesh(_) | Shape::Disk(_) => self.inverse_area,
             Shape::Sphere(sphere) => sphere.pdf(at.locus.point),
             Shape::Cylinder(cylinder) => cylinder.pdf(at.locus.point),

@@ -4,7 +4,7 @@
 use super::{Light, LightContext};
 use crate::math::Distribution1d;
 
-/// The choice of one light, whoever it is for: by power, or else for light subpaths alone.
+/// A distribution of lights that does not depend on the receiver: by power, or learned, for light subpaths only.
 #[derive(Clone, Debug)]
 pub struct LightChoice {
     lights: Distribution1d,
@@ -29,8 +29,8 @@ impl LightChoice {
         self.count
     }
 
-    /// Draws a light: its index and its probability. None: there are none. The number `u` is asked for
-    /// where there is a choice.
+    /// Draws a light, and returns its index and its probability. Calls `u` only if there are two lights or more.
+    /// None: there are no lights.
     #[inline]
     pub fn sample(&self, u: impl FnOnce() -> f32) -> Option<(usize, f32)> {
         match self.count {

@@ -12,14 +12,14 @@ use crate::math::{
 use crate::spectrum::{Rgb, luminance};
 use crate::texture::Image;
 
-/// Returns the density of where a ray from infinity crosses the disk around the scene, perpendicular to
-/// it. Measure: area, 1/m².
+/// Returns the density of the point at which a ray from infinity crosses the disk around the scene, which is
+/// perpendicular to the ray. Measure: area, 1/m².
 #[inline]
 pub(super) fn pdf_disk(context: &LightContext<'_>) -> f32 {
     1.0 / (PI * sqr(context.radius))
 }
 
-/// Returns a ray from the light at infinity in `direction`, through an even point of the scene's disk.
+/// Returns a ray from the light at infinity through a uniformly drawn point of the disk around the scene.
 #[inline]
 fn ray_from_infinity(
     context: &LightContext<'_>,
@@ -67,7 +67,7 @@ impl DistantLight {
 /// Radiance by direction.
 #[derive(Clone, Debug)]
 pub enum Radiance {
-    /// The same from everywhere.
+    /// The same radiance from all directions.
     Constant(Rgb),
     /// An equal-area octahedral image ([`square_to_direction`]), with z up in its own space; each
     /// texel is one value. `distribution` is over its texels' luminance.
@@ -98,8 +98,8 @@ impl InfiniteLight {
         }
     }
 
-    /// Returns `scale` times an equal-area octahedral image of finite, non-negative texels, turned by the
-    /// rotation `world_from_light`.
+    /// Makes an environment of `scale` times an equal-area octahedral image of finite, non-negative texels, turned by
+    /// the rotation `world_from_light`.
     pub fn image(image: Image<3>, scale: f32, world_from_light: Mat3) -> Self {
         let weights: Vec<f32> = image
             .texels()

@@ -45,9 +45,9 @@ use tree::{Cone, EmitterBounds};
 /// The start of a path.
 #[derive(Clone, Copy, Debug)]
 pub struct LightPoint {
-    /// The place.
+    /// Its position and normal.
     pub locus: Locus,
-    /// The primitive of the emitting shape; 0 where there is none.
+    /// The primitive of the emitting shape; 0 if there is no shape.
     pub primitive: u32,
 }
 
@@ -68,7 +68,7 @@ impl LightPoint {
         }
     }
 
-    /// Makes a point where a medium glows.
+    /// Makes a point in a medium that emits.
     pub fn in_medium(point: Vec3, medium: MediumId) -> Self {
         Self {
             locus: Locus::in_medium(point, medium),
@@ -76,7 +76,7 @@ impl LightPoint {
         }
     }
 
-    /// Returns the unit `direction` towards a light at infinity.
+    /// Makes the light point of a light at infinity in the unit `direction`.
     pub fn at_infinity(direction: Vec3) -> Self {
         Self {
             locus: Locus::at_infinity(direction),
@@ -92,12 +92,12 @@ pub struct LightSample {
     pub at: LightPoint,
     /// Its density, in the measure of the module's table.
     pub pdf: f32,
-    /// How much of the surface is there, in `[0, 1]`: a factor of what leaves it, in no density.
+    /// The coverage of the surface at the point: a factor of its emission that no density includes. Range: `[0, 1]`.
     pub alpha: f32,
 }
 
 impl LightSample {
-    /// Makes a point where all of the light is there.
+    /// Makes a sample with full coverage.
     pub fn new(at: LightPoint, pdf: f32) -> Self {
         Self {
             at,
@@ -119,27 +119,27 @@ pub struct EmissionSample {
     pub direction: Vec3,
     /// The density of `direction`, in the measure of the module's table.
     pub pdf_direction: f32,
-    /// Emitted radiance, or intensity, times the cosine at the light where it has a surface.
+    /// The emitted radiance or intensity, times the cosine at the light if it has a surface.
     pub emitted_cos: Rgb,
 }
 
-/// The scene around lights, as far as they need it.
+/// The parts of the scene that lights need.
 #[derive(Clone, Copy)]
 pub struct LightContext<'a> {
     /// The shapes that area lights refer to.
     pub shapes: &'a [Shape],
-    /// The media that glow, and others.
+    /// The media of the scene.
     pub media: &'a [Medium],
-    /// Centre of a sphere around everything.
+    /// The centre of a sphere around the scene.
     pub centre: Vec3,
-    /// Its radius.
+    /// The radius of this sphere.
     pub radius: f32,
 }
 
 /// The part of a light that a point is drawn on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Part {
-    /// Anywhere.
+    /// All of the light.
     Whole,
     /// A primitive of its shape, by number.
     Primitive(u32),
@@ -158,7 +158,7 @@ pub enum Light {
     Distant(DistantLight),
     /// An environment around the scene.
     Infinite(InfiniteLight),
-    /// A medium that glows.
+    /// A medium that emits.
     Volume(VolumeLight),
 }
 
@@ -175,8 +175,8 @@ impl Light {
         }
     }
 
-    /// Returns true where no ray can hit the light by chance: its position, or its direction, is a Dirac
-    /// distribution, or its surface is hidden.
+    /// Returns true if no ray can hit the light by chance: its position or its direction is a Dirac distribution, or
+    /// its surface is hidden.
     #[inline]
     pub fn is_delta(&self) -> bool {
         match self {
@@ -186,7 +186,7 @@ impl Light {
         }
     }
 
-    /// Returns true for a medium without an end: nothing but walks from the camera finds all of its points.
+    /// Returns true for a medium of infinite extent: only camera walks reach all of its points.
     pub fn is_endless(&self) -> bool {
         matches!(self, Self::Volume(light) if light.is_endless())
     }
@@ -232,7 +232,7 @@ impl Light {
         }
     }
 
-    /// Draws a ray that leaves the light; the number `u_depth` is asked for in media. None: the draw has no density.
+    /// Draws a ray that leaves the light. Calls `u_depth` only for a medium. None: the draw has no density.
     #[inline]
     pub fn sample_emission(
         &self,
@@ -275,7 +275,7 @@ impl Light {
         }
     }
 
-    /// Returns the parts that are chosen among by themselves: all of it, or each primitive.
+    /// Returns the parts that are emitters of their own: the whole light, or each primitive.
     fn parts(&self, context: &LightContext<'_>) -> impl Iterator<Item = Part> {
         let primitives = match self {
             Self::Area(light) => light.divided_into(context),
@@ -287,7 +287,7 @@ impl Light {
         })
     }
 
-    /// Returns the share of [`power`](Self::power) that a part has. Unit: W, luminance.
+    /// Returns the power of a part, its share of [`power`](Self::power). Unit: W, luminance.
     fn part_power(&self, context: &LightContext<'_>, part: Part) -> f32 {
         match (self, part) {
             (Self::Area(light), Part::Primitive(i)) => light.primitive_power(context, i),
@@ -295,7 +295,7 @@ impl Light {
         }
     }
 
-    /// Returns the bounds of a part, and of the directions it sends light to. None: it is at infinity.
+    /// Returns bounds of a part, and of the directions in which it emits. None: it is at infinity.
     fn bounds(&self, context: &LightContext<'_>, part: Part) -> Option<EmitterBounds> {
         match self {
             Self::Area(light) => Some(light.bounds(context, part)),
@@ -306,8 +306,8 @@ impl Light {
         }
     }
 
-    /// Draws a light point of `part` for a receiver at `reference`; the number `u_depth` is asked for in media. None:
-    /// the draw has no density.
+    /// Draws a light point of `part` for a receiver at `reference`. Calls `u_depth` only for a medium. None: the draw
+    /// has no density.
     #[inline(always)]
     pub fn sample_next_event(
         &self,

@@ -52,7 +52,7 @@ impl PointLight {
 
 /// A point that emits into a cone, with a soft rim.
 ///
-/// Angles are kept as 1 - cosθ, which has its digits where the cone is narrow.
+/// Angles are stored as 1 - cosθ, which is precise for narrow cones.
 #[derive(Clone, Copy, Debug)]
 pub struct SpotLight {
     /// Its position.
@@ -64,8 +64,8 @@ pub struct SpotLight {
     rim: Rim,
 }
 
-/// How intensity falls from the full cone to its rim, as a function of x, 1 and 0 there and linear in
-/// the cosine.
+/// The falloff of intensity as a function of x, which is 1 at the end of the full cone and 0 at the rim, and linear
+/// in the cosine between them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Rim {
     /// x² (3 - 2x).
@@ -107,8 +107,8 @@ impl SpotLight {
         }
     }
 
-    /// The same with the rim of glTF's spots, whose intensity is the square of what falls evenly with
-    /// the cosine.
+    /// Makes a spot with the rim of glTF's spots, whose intensity is the square of a number that is linear in the
+    /// cosine.
     pub fn squared(position: Vec3, axis: Vec3, intensity: Rgb, angles: [f32; 2]) -> Self {
         Self {
             rim: Rim::Squared,
@@ -121,7 +121,7 @@ impl SpotLight {
         2.0 * PI * (self.full_height + rim) * luminance(self.intensity)
     }
 
-    /// As bright as within the full cone, up to the end of the rim.
+    /// Returns bounds with the intensity of the full cone up to the end of the rim.
     pub(super) fn bounds(&self) -> EmitterBounds {
         let angle = |height: f32| 2.0 * libm::asinf((height / 2.0).sqrt().min(1.0));
         let [full, end] = [self.full_height, self.end_height].map(angle);

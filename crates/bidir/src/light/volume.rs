@@ -1,8 +1,8 @@
-//! Media that glow: σ_a L_e (W/(m³ sr)) in all directions from each point; power 4π ∫ σ_a L_e dV, and at most
-//! π times the area and the largest L_e, of which more does not leave a thick medium.
+//! Media that emit σ_a L_e (W/(m³ sr)) in all directions from each point. Their power is 4π ∫ σ_a L_e dV, but at most
+//! π times the area of the box times the largest L_e: no more leaves a thick medium.
 //!
-//! A point is drawn by cells of the medium's box, in proportion to the light of each (1/m³); a direction evenly,
-//! 1/(4π) (1/sr). A walk from the camera comes upon the light where it stops in the medium.
+//! A point is drawn by the cells of the medium's box, in proportion to the light of each (1/m³), and a direction
+//! uniformly, 1/(4π) (1/sr). A camera walk hits the light where it stops in the medium.
 
 use super::{
     Cone, EmissionSample, EmitterBounds, LightContext, LightPoint, LightSample, PointLight,
@@ -12,17 +12,17 @@ use crate::medium::{GlowCells, Medium, MediumId};
 use crate::spectrum::Rgb;
 use accel::Aabb;
 
-/// A medium that glows.
+/// A medium that emits light.
 #[derive(Clone, Debug)]
 pub struct VolumeLight {
     medium: MediumId,
-    /// None: nothing but walks from the camera finds points of it.
+    /// The distribution of points. None: only camera walks find points of the light.
     cells: Option<Cells>,
-    /// True where the medium reaches beyond the cells, if it has any.
+    /// True if the medium extends beyond the cells, or has none.
     is_endless: bool,
 }
 
-/// The choice of a point.
+/// The distribution of points over the cells of a box.
 #[derive(Clone, Debug)]
 struct Cells {
     world_from_cube: Affine3A,
@@ -31,12 +31,12 @@ struct Cells {
     /// Unit: 1/m³.
     inverse_volume: f32,
     bounds: Aabb,
-    /// ∫ σ_a L_e dV, or less where the medium takes much of it. Unit: W/sr, luminance.
+    /// ∫ σ_a L_e dV, or less if the medium is so thick that less leaves it. Unit: W/sr, luminance.
     intensity: f32,
 }
 
 impl VolumeLight {
-    /// Returns the light of a medium of a scene that is not built yet.
+    /// Makes the light of a medium of a scene that is not built yet.
     pub(crate) fn of(medium: MediumId) -> Self {
         Self {
             medium,
@@ -45,7 +45,7 @@ impl VolumeLight {
         }
     }
 
-    /// Returns the light of medium number `id`, which is within `bounds` if it has no box of its own.
+    /// Makes the light of medium number `id`. If the medium has no box of its own, it is within `bounds`.
     pub(crate) fn new(id: MediumId, medium: &Medium, bounds: Option<Aabb>) -> Self {
         let cells = medium.glow_cells(bounds).and_then(|cells| {
             let bounds = medium.bounds().or(bounds)?;
@@ -58,7 +58,7 @@ impl VolumeLight {
         }
     }
 
-    /// Notes that the medium has no end, unless it has a box of its own.
+    /// Notes that the medium surrounds the scene: unless it has a box of its own, it is endless.
     pub(crate) fn set_around(&mut self, medium: &Medium) {
         self.is_endless |= medium.bounds().is_none();
     }
@@ -92,7 +92,7 @@ impl VolumeLight {
         medium.map_or([0.0; 3], |medium| medium.emission(at.locus.point))
     }
 
-    /// Draws a point of the medium's box. The medium may end before it, which the scene knows.
+    /// Draws a point of the medium's box. The medium may end before the point; the scene checks that.
     #[inline]
     pub(super) fn sample(&self, u: Vec3) -> Option<LightSample> {
         let cells = self.cells.as_ref()?;
@@ -129,14 +129,14 @@ impl VolumeLight {
 }
 
 impl Cells {
-    /// None: nothing is within.
+    /// Makes the distribution over `cells`. None: they emit nothing, or numbers would overflow.
     fn new(cells: &GlowCells, bounds: Aabb, brightest: f32) -> Option<Self> {
-        /// The sum over all lights stays finite.
+        /// The largest intensity, with which the sum over all lights stays finite.
         const MOST: f32 = 1e30;
         let volume = cells.world_from_cube.matrix3.determinant().abs();
         let sum: f64 = cells.emission.iter().copied().map(f64::from).sum();
         let emitted = (sum / cells.emission.len() as f64) as f32 * volume;
-        // A convex surface of area A and radiance L sends out π A L, and no medium within it more.
+        // A convex surface of area A and radiance L emits π A L, and a medium within it no more.
         let intensity = emitted.min(0.5 * bounds.half_area() * brightest);
         let [nx, ny, _] = cells.size;
         let fits = intensity > 0.0 && intensity < MOST && (1.0 / volume).is_finite();
@@ -152,7 +152,7 @@ impl Cells {
 
     #[inline]
     fn pdf(&self, point: Vec3) -> f32 {
-        /// The tolerance, as part of the side of the box: points of its faces may lie beyond them, by rounding.
+        /// The tolerance, as a fraction of the side of the box: by rounding, points of its faces may lie outside.
         const ERROR: f32 = 1e-5;
         let p = self.cube_from_world.transform_point3(point);
         let within = p.clamp(Vec3::ZERO, Vec3::splat(ONE_MINUS_EPSILON));

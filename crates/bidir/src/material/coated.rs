@@ -1,7 +1,7 @@
-//! Coated materials: their textures, and what is integrated for their surfaces before rendering.
+//! Coated materials: their textures, and the integrals that are tabulated for them before rendering.
 //!
-//! The integrals depend on slopes. If slopes are constant, there is one of each; if they are
-//! textures, there are some for slopes between 0 and 1, with interpolation between them.
+//! The integrals depend on slopes. For constant slopes there is one of each; for textures there are several, for
+//! slopes between 0 and 1, and values between them are interpolated.
 
 use super::{Roughness, unit};
 use crate::bsdf::coat::{Filled, Layer, Reflections, Slab};
@@ -21,7 +21,7 @@ pub struct CoatSettings {
     pub roughness: Roughness,
     /// Its optical depth.
     pub thickness: FloatTexture,
-    /// The part of the optical depth that scatters.
+    /// The fraction of the optical depth that scatters.
     pub albedo: ColorTexture,
     /// The mean cosine of the angle of scattering.
     pub g: FloatTexture,
@@ -50,12 +50,12 @@ impl CoatSettings {
     }
 }
 
-/// Values of a parameter that something was integrated for: increasing.
+/// The values of a parameter for which integrals are tabulated, increasing.
 #[derive(Clone, Debug)]
 struct Axis(Vec<f32>);
 
 impl Axis {
-    /// Returns one slope where it is constant; else some from 0 to 1, closer where they are small.
+    /// Returns one slope if it is constant; otherwise several from 0 to 1, closer where they are small.
     fn of(roughness: &Roughness) -> Self {
         let is_constant = |texture: &FloatTexture| matches!(texture, FloatTexture::Constant(_));
         if is_constant(&roughness.u) && is_constant(&roughness.v) {
@@ -66,7 +66,7 @@ impl Axis {
         Self((0..=steps).map(|i| sqr(i as f32 / steps as f32)).collect())
     }
 
-    /// Returns the value where it is constant; else `nodes`.
+    /// Returns one value if the texture is constant; otherwise `nodes`.
     fn of_texture(texture: &FloatTexture, nodes: impl Iterator<Item = f32>) -> Self {
         match texture {
             FloatTexture::Constant(value) => Self(vec![*value]),
@@ -74,7 +74,7 @@ impl Axis {
         }
     }
 
-    /// Returns the position of `value`, limited to the ends.
+    /// Returns the position of `value`, clamped to the ends.
     #[inline]
     fn locate(&self, value: f32) -> Position {
         let after = self.0.partition_point(|&node| node < value);
@@ -97,7 +97,7 @@ struct Position {
     t: f32,
 }
 
-/// Layers by slope.
+/// Layers, tabulated by the slope of the interface.
 #[derive(Clone, Debug)]
 struct Layers {
     axis: Axis,
@@ -121,7 +121,7 @@ impl Layers {
     }
 }
 
-/// Filled layers, by slope, optical depth, mean cosine and albedo of scattering.
+/// Filled layers, tabulated by slope, optical depth, mean cosine and albedo of scattering.
 #[derive(Clone, Debug)]
 struct InterlayerTables {
     depths: Axis,
@@ -139,7 +139,7 @@ impl InterlayerTables {
         let (cosines, albedos) = if coat.is_clear() {
             (Axis(vec![0.0]), Axis(vec![0.0]))
         } else {
-            // Closer where light scatters often.
+            // The nodes are closer where light scatters often.
             let albedos = (0..=16).map(|i| 1.0 - sqr(1.0 - i as f32 / 16.0));
             (cosines, Axis(albedos.collect()))
         };
@@ -160,7 +160,7 @@ impl InterlayerTables {
         }
     }
 
-    /// Returns the tables of each lane, for the slope between two of the layers.
+    /// Returns the interpolated table of each lane; `slope` is the position between the slopes of the layers.
     fn at(&self, slope: Position, medium: &InterlayerMedium) -> [Filled; 4] {
         if let [only] = *self.tables {
             return [only; 4];
@@ -174,7 +174,7 @@ impl InterlayerTables {
         lanes.map(|albedo| if is_first(albedo) { first } else { at(albedo) })
     }
 
-    /// Returns the mean of the tables around a point, of which this is the position on each axis.
+    /// Returns the interpolated table at a point, which is given by its position on each axis.
     fn mixed(&self, point: [Position; 4]) -> Filled {
         let sizes = [
             self.depths.0.len(),
@@ -249,11 +249,11 @@ pub struct CoatedConductorMaterial {
 }
 
 impl CoatedConductorMaterial {
-    /// Makes metal of `index` and `roughness`.
+    /// Makes metal of `index` and `roughness` under a layer.
     pub fn new(coat: CoatSettings, index: super::ConductorIndex, roughness: Roughness) -> Self {
         let layers = Layers::new(&coat);
         let metal_axis = Axis::of(&roughness);
-        // Ways within the layer hardly depend on its depth.
+        // The reflections within the layer hardly depend on its depth.
         let depth = match coat.thickness {
             FloatTexture::Constant(depth) => depth,
             _ => 0.1,

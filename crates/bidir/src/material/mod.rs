@@ -1,7 +1,7 @@
 //! Materials of surfaces: textures that become a [`Bsdf`] at a point.
 //!
-//! A mixture is one of its materials at each vertex, chosen by a number of the path's own: the choice is
-//! part of the path, as likely from whichever end the vertex was drawn, so that it cancels in densities.
+//! A mixture is one of its materials at each vertex, chosen by a random number of the path. The choice is part of the
+//! path, and equally likely for walks from both ends, so that it cancels in densities.
 //!
 //! **Adding one**: a variant here that builds the [`Bsdf`], and a mapping in the scene reader.
 
@@ -24,7 +24,7 @@ use crate::spectrum::{Lanes, Rgb, Spectrum};
 use crate::texture::{ColorTexture, FloatTexture, RequiredInputs, TexturePoint};
 use std::sync::Arc;
 
-/// How a described roughness becomes a slope α.
+/// The map from a given roughness to a slope α.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RoughnessMapping {
     /// α = √roughness: steps of roughness look even.
@@ -40,7 +40,7 @@ pub struct Roughness {
     pub u: FloatTexture,
     /// Across it.
     pub v: FloatTexture,
-    /// How the textures' values become slopes.
+    /// The map from the values of the textures to slopes.
     pub mapping: RoughnessMapping,
 }
 
@@ -72,7 +72,7 @@ impl Roughness {
 /// The index of refraction of a metal.
 #[derive(Clone, Debug)]
 pub enum ConductorIndex {
-    /// As measured: real and imaginary part.
+    /// Measured: the real and the imaginary part.
     Complex {
         /// Real part.
         eta: ColorTexture,
@@ -184,7 +184,8 @@ impl Material {
         }
     }
 
-    /// Returns the relief that turns the shading frame. None: nothing does, or each part of a mixture for itself.
+    /// Returns the relief that turns the shading frame. None: there is none, or the material is a mixture, whose
+    /// parts have their own.
     #[inline]
     pub fn relief(&self) -> Option<&Relief> {
         match self {
@@ -203,7 +204,7 @@ impl Material {
         }
     }
 
-    /// Returns the material of a mixture that the number `u` chooses at a point; other materials as they are.
+    /// Returns the material of a mixture that the number `u` chooses at a point; any other material itself.
     #[inline]
     pub fn choose(&self, at: &TexturePoint, u: impl FnOnce() -> f32) -> &Self {
         match self {
@@ -212,7 +213,7 @@ impl Material {
         }
     }
 
-    /// Returns the dependences of its textures and its relief, beside the parameters.
+    /// Returns the inputs, besides the parameters, that its textures and its relief need.
     pub fn needs(&self) -> RequiredInputs {
         match self {
             Self::Diffuse { reflectance } => reflectance.needs(),
@@ -234,12 +235,12 @@ impl Material {
                 let parts = first.needs().and(second.needs());
                 parts.and(mixture.amount.needs())
             }
-            // Tangents, and the width of a pixel between heights that are compared.
+            // Relief needs tangents, and the width of a pixel as the distance between compared heights.
             Self::Perturbed(_) => RequiredInputs::ALL,
         }
     }
 
-    /// Returns the scattering at a point, that of a mixture's first material: [`choose`](Self::choose) first.
+    /// Returns the scattering at a point; for a mixture, of its first material: call [`choose`](Self::choose) first.
     #[inline]
     pub fn bsdf(&self, at: &TexturePoint, lanes: Lanes) -> Bsdf {
         let albedo = |texture: &ColorTexture| lanes.albedo(unit(texture.eval(at)));
@@ -285,11 +286,11 @@ impl Material {
 }
 
 impl Mixture {
-    /// Returns the number is stretched for what is chosen, so that mixtures within mixtures can use it again.
+    /// Returns the material that `u` chooses. It rescales `u` for the choice in a nested mixture.
     fn choose(&self, at: &TexturePoint, u: f32) -> &Material {
         let amount = self.amount.eval(at).clamp(0.0, 1.0);
         let [first, second] = &self.materials;
-        // If the amount is not a number, the first stands for both.
+        // If the amount is NaN, the first material is chosen.
         let (material, rest) = if u < amount {
             (second, u / amount)
         } else {
@@ -299,13 +300,13 @@ impl Mixture {
     }
 }
 
-/// Returns a reflectance between 0 and 1; NaN stays NaN, to be found and counted where light carries it.
+/// Clamps a reflectance to 0 to 1; NaN stays NaN, to be found and counted where light carries it.
 #[inline]
 fn unit(rgb: Rgb) -> Rgb {
     rgb.map(|channel| channel.clamp(0.0, 1.0))
 }
 
-/// Returns the k that reflects `r` at normal incidence where η = 1.
+/// Returns the k that reflects `r` at normal incidence if η = 1.
 #[inline]
 fn absorption_of_reflectance(r: f32) -> f32 {
     let r = r.min(0.9999);

@@ -1,4 +1,4 @@
-//! The principled material: factors and textures as glTF 2.0 has them, each value the product of both.
+//! The principled material, with the factors and textures of glTF 2.0: each value is the product of both.
 
 use super::{NormalMap, unit};
 use crate::bsdf::microfacet::Ggx;
@@ -18,7 +18,7 @@ pub struct ScaledColor {
 }
 
 impl ScaledColor {
-    /// The same everywhere.
+    /// Makes a constant colour.
     pub const fn constant(factor: Rgb) -> Self {
         Self {
             factor,
@@ -68,7 +68,7 @@ pub struct ScaledFloat {
 }
 
 impl ScaledFloat {
-    /// The same everywhere.
+    /// Makes a constant number.
     pub const fn constant(factor: f32) -> Self {
         Self {
             factor,
@@ -92,7 +92,7 @@ impl ScaledFloat {
             .map_or(RequiredInputs::NOTHING, FloatTexture::needs)
     }
 
-    /// Returns the product between 0 and 1; where the number is 0 nothing is looked up.
+    /// Returns the product, clamped to 0 to 1. If the number is 0, the texture is not looked up.
     #[inline]
     fn fraction(&self, at: &TexturePoint) -> f32 {
         if self.factor == 0.0 {
@@ -102,21 +102,22 @@ impl ScaledFloat {
     }
 }
 
-/// How much longer facets' highlights are in one direction.
+/// The stretch of highlights along one direction.
 #[derive(Clone, Debug)]
 pub struct Anisotropy {
     /// 0: not at all. Range: `[0, 1]`.
     pub strength: f32,
-    /// The direction that highlights stretch in: cosine and sine of its angle from the tangent towards the side of ∂p/∂v.
+    /// The direction along which highlights stretch: cosine and sine of its angle from the tangent towards the side
+    /// of ∂p/∂v.
     pub direction: Vec2,
-    /// The direction in the first two channels, 0.5 standing for 0, and what strength is scaled by in
-    /// the third. None: (1, 0) and 1.
+    /// The direction in the first two channels, where 0.5 stands for 0, and the factor of `strength` in the third.
+    /// None: (1, 0) and 1.
     pub texture: Option<ColorTexture>,
 }
 
 impl Anisotropy {
-    /// Returns strength, and the direction as cosine and sine in the shading frame, whose y is on the side of ∂p/∂v
-    /// or its opposite.
+    /// Returns the strength, and the direction as cosine and sine in the shading frame, whose y is on the side of
+    /// ∂p/∂v or opposite to it.
     #[inline]
     fn eval(&self, at: &TexturePoint) -> (f32, Vec2) {
         let on_surface = |[x, y]: [f32; 2]| Vec2::new(x, y * at.handedness.sign());
@@ -142,27 +143,27 @@ pub struct PrincipledMaterial {
     pub metallic: ScaledFloat,
     /// Perceived roughness, the square root of slopes.
     pub roughness: ScaledFloat,
-    /// Brushed metal and the like.
+    /// The anisotropy of highlights, as of brushed metal.
     pub anisotropy: Anisotropy,
-    /// The index of refraction of what is no metal; 0: it reflects all light.
+    /// The index of refraction of the part that is not metal; 0: this part reflects all light.
     pub ior: f32,
-    /// The factor of its reflectance.
+    /// The factor of the reflectance of the part that is not metal.
     pub specular: ScaledFloat,
-    /// A further factor of its reflectance along the normal.
+    /// A further factor of that reflectance along the normal.
     pub specular_color: ScaledColor,
-    /// The share of it that is transparent.
+    /// The share of the part that is not metal that is transparent.
     pub transmission: ScaledFloat,
     /// The medium behind the transparent part.
     pub thickness: Thickness,
-    /// The share of the rest that lets light through diffusely.
+    /// The share of the opaque rest that transmits light diffusely.
     pub diffuse_transmission: ScaledFloat,
-    /// The colour of that.
+    /// The colour of diffuse transmission.
     pub diffuse_transmission_color: ScaledColor,
-    /// How much of the surface a clear coat covers.
+    /// The fraction of the surface that a clear coat covers.
     pub coat: ScaledFloat,
     /// The perceived roughness of the coat.
     pub coat_roughness: ScaledFloat,
-    /// The normals of the coat. None: those of the mesh, whatever turns the base's.
+    /// The normals of the coat. None: those of the mesh, whatever relief the base has.
     pub coat_normal: Option<NormalMap>,
     /// The colour of the sheen.
     pub sheen: ScaledColor,
@@ -171,7 +172,7 @@ pub struct PrincipledMaterial {
 }
 
 impl Default for PrincipledMaterial {
-    /// Makes a glTF material without any setting: white rough metal.
+    /// Returns the defaults of glTF: white rough metal.
     fn default() -> Self {
         let [black, white] = [0.0, 1.0].map(|value| ScaledColor::constant([value; 3]));
         let [zero, one] = [0.0, 1.0].map(ScaledFloat::constant);
@@ -208,7 +209,7 @@ impl PrincipledMaterial {
         (self.coat.factor > 0.0).then(normal)
     }
 
-    /// Slopes along the grain and across, and where the grain points.
+    /// Returns the slopes along the grain and across it, and the direction of the grain.
     #[inline]
     fn facets(&self, at: &TexturePoint) -> (Ggx, Vec2) {
         let across = sqr(self.roughness.fraction(at));
@@ -258,7 +259,7 @@ impl PrincipledMaterial {
             .fold(sides, RequiredInputs::and)
     }
 
-    /// Returns the scattering at a point. Parts that the material lacks are not looked up.
+    /// Returns the scattering at a point. Textures of parts that the material lacks are not looked up.
     pub(super) fn bsdf(&self, at: &TexturePoint, lanes: Lanes) -> Bsdf {
         let albedo = |of: &ScaledColor| lanes.albedo(unit(of.eval(at)));
         let (ggx, grain) = self.facets(at);

@@ -1,5 +1,5 @@
-//! A test of whether a material scatters by Dirac distributions anywhere, by its numbers and the bounds
-//! of its textures. Draws would miss lobes that are rarely drawn, and points the places between them.
+//! A test whether a material scatters by a Dirac distribution anywhere, from its numbers and the bounds of its
+//! textures. Random draws would miss rare lobes, and sample points what lies between them.
 
 use super::{
     CoatSettings, CoatedConductorMaterial, CoatedDiffuseMaterial, Material, Mixture,
@@ -31,7 +31,7 @@ impl Material {
     }
 }
 
-/// Returns true where slopes may be so small; also where `least` is no number.
+/// Returns true if slopes from `least` on may be those of a smooth surface, or if `least` is NaN.
 fn is_smooth(least: f32) -> bool {
     least.is_nan() || least < SMOOTH_ALPHA
 }
@@ -47,7 +47,7 @@ impl Roughness {
 }
 
 impl CoatSettings {
-    /// Returns true where the interface may mirror; one that bends nothing does not.
+    /// Returns true if the interface may be a mirror; with η = 1 it is none.
     fn may_mirror(&self) -> bool {
         (self.eta - 1.0).abs() > 0.0 && self.roughness.may_be_smooth()
     }
@@ -60,7 +60,8 @@ impl CoatedDiffuseMaterial {
 }
 
 impl CoatedConductorMaterial {
-    /// Rough interfaces scatter what smooth metal mirrors.
+    /// Returns true if the interface may be a mirror, or the metal under a smooth interface: a rough interface
+    /// scatters what smooth metal mirrors.
     fn may_be_specular(&self) -> bool {
         let are_smooth = || self.coat.roughness.may_be_smooth() && self.roughness.may_be_smooth();
         self.coat.may_mirror() || are_smooth()
@@ -68,7 +69,7 @@ impl CoatedConductorMaterial {
 }
 
 impl ScaledFloat {
-    /// Returns the bounds of the product between 0 and 1.
+    /// Returns the bounds of the product, clamped to 0 to 1.
     fn shares(&self) -> Range {
         let texels = self
             .texture
@@ -94,7 +95,7 @@ impl PrincipledMaterial {
         self.coat.may_be_positive() && is_smooth(sqr(self.coat_roughness.shares().least))
     }
 
-    /// Returns true where facets are smooth along the grain, in which they are roughest.
+    /// Returns true if facets may be smooth along the grain, where they are roughest.
     fn has_smooth_facets(&self) -> bool {
         let across = sqr(self.roughness.shares().least);
         let strength = match self.anisotropy.texture {
@@ -106,7 +107,7 @@ impl PrincipledMaterial {
 }
 
 impl Mixture {
-    /// By parts that it is somewhere, however seldom.
+    /// Returns true if a part that is chosen anywhere, however seldom, may be specular.
     fn may_be_specular(&self) -> bool {
         let Range { least, most } = self.amount.range();
         let is_part = [least < 1.0, most > 0.0];

@@ -19,14 +19,14 @@ pub(super) struct CubeBox {
     pub(super) last: [i32; 3],
 }
 
-/// Iterates over the cubes of a line, and the part of it in each.
+/// Iterates over the cubes that a line goes through, with the part of the line in each.
 #[derive(Debug)]
 pub(super) struct Cubes {
     line: Line,
     side: f32,
     within: CubeBox,
     cube: [i32; 3],
-    /// Where the line leaves the cube along each axis.
+    /// Where the line leaves the cube along each axis, in units of its direction.
     leave: [f32; 3],
     range: Range,
 }
@@ -38,7 +38,7 @@ impl Line {
         self.origin + self.direction * t
     }
 
-    /// Returns the part of `range` between two corners. None: the line passes by.
+    /// Returns the part of `range` in the box between two corners. None: the line misses the box.
     pub(super) fn within(&self, [low, high]: [Vec3; 2], range: Range) -> Option<Range> {
         let [mut begin, mut end] = range;
         for axis in 0..3 {
@@ -56,7 +56,7 @@ impl Line {
         (begin < end).then_some([begin, end])
     }
 
-    /// Returns the cubes of `within`, of this side and with corners at multiples of it, along a part of the line.
+    /// Returns the cubes of `within` along a part of the line. They have this side, and corners at multiples of it.
     pub(super) fn cubes(&self, side: f32, within: CubeBox, range: Range) -> Cubes {
         let start = self.at(range[0]) / side;
         let nearest = |axis: usize| {
@@ -79,7 +79,8 @@ impl Line {
 }
 
 impl Cubes {
-    /// Computed from the number of the cube, so that errors do not add up.
+    /// Returns where the line leaves the cube along an axis. Computed from the number of the cube, so that errors do
+    /// not add up.
     #[inline]
     fn leave_along(&self, axis: usize) -> f32 {
         let direction = self.line.direction[axis];

@@ -1,4 +1,4 @@
-//! The optical depth along a part of a ray, and the place where a drawn depth is reached.
+//! The optical depth along a part of a ray, and the point at which a drawn depth is reached.
 
 use super::grid::{Detail, Grid, Piece};
 use super::{Field, Medium};
@@ -23,12 +23,12 @@ pub(crate) struct Drawn {
     pub(crate) depth: f32,
 }
 
-/// The way through a stretch.
+/// The flight of a walk through a stretch.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Flight {
-    /// τ up to where the drawn depth was reached, or else to the end.
+    /// τ up to the point where the drawn depth is reached, or else to the end.
     pub(crate) depth: Spectrum,
-    /// Where it was reached, in units of the ray.
+    /// The point where the drawn depth is reached, in units of the ray. None: it is not reached.
     pub(crate) reached: Option<f32>,
 }
 
@@ -41,7 +41,7 @@ impl Stretch<'_> {
 }
 
 impl Medium {
-    /// Returns τ of a stretch, in the detail asked for. `lanes` makes lanes of coefficients.
+    /// Returns τ of a stretch in this detail. `lanes` converts coefficients to lanes.
     pub(crate) fn depth(
         &self,
         stretch: &Stretch<'_>,
@@ -58,7 +58,8 @@ impl Medium {
         }
     }
 
-    /// Returns the way through a stretch of a walk that drew a depth. It ends within only a medium with vertices.
+    /// Returns the flight through a stretch of a walk that drew a depth. It ends within the stretch only if the
+    /// medium stops walks.
     pub(crate) fn fly(
         &self,
         stretch: &Stretch<'_>,
@@ -150,8 +151,8 @@ fn fly_through<const N: usize>(
     }
 }
 
-/// Returns the place in a piece where the drawn depth, less than that of the whole piece, is reached: by Newton's
-/// method, and by halves where it would leave the bracket \[Press07, §9.4\].
+/// Returns the point of a piece, in units of the ray, where the drawn depth, less than that of the whole piece, is
+/// reached: by Newton's method, and by bisection where that would leave the bracket \[Press07, §9.4\].
 fn reach<const N: usize>(
     piece: &Piece<N>,
     unit: f32,
@@ -159,7 +160,7 @@ fn reach<const N: usize>(
     extinction: impl Fn([f32; N]) -> Spectrum,
 ) -> f32 {
     const STEPS: usize = 12;
-    /// The relative error of the drawn depth.
+    /// The tolerated relative error of the drawn depth.
     const ERROR: f32 = 1e-6;
     let sigma = |values| extinction(values)[drawn.lane] * unit;
     let [begin, end] = piece.range;

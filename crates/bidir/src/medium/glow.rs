@@ -1,28 +1,28 @@
-//! Media that glow: each unit of length adds σ_a L_e to the light along it \[Chandrasekhar60\].
+//! Media that emit light: each unit of length adds σ_a L_e to the light along it \[Chandrasekhar60\].
 //!
-//! Within a thick medium in which L_e is even, radiance is L_e, as in a furnace.
+//! Within a thick medium of constant L_e, the radiance is L_e, as in a furnace.
 
 use super::{Coefficients, Field, Grid, Medium, largest};
 use crate::math::{Affine3A, Vec3};
 use crate::spectrum::{Rgb, luminance};
 use accel::Aabb;
 
-/// L_e of a medium: the radiance within, were it thick.
+/// L_e of a medium: the radiance within it if it were thick.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Glow {
-    /// The same everywhere.
+    /// The same radiance everywhere.
     Even(Rgb),
-    /// In the cells of the medium's own grid.
+    /// The radiance in the cells of the medium's own grid.
     Grid(Grid<3>),
 }
 
-/// The light of the equal cells of a box.
+/// The emission of a box, in equal cells.
 #[derive(Clone, Debug)]
 pub(crate) struct GlowCells {
     pub(crate) world_from_cube: Affine3A,
     pub(crate) size: [usize; 3],
-    /// The mean of σ_a L_e in each cell, about, x fastest; positive wherever some of the cell glows. Unit:
-    /// W/(m³ sr), luminance.
+    /// The approximate mean of σ_a L_e in each cell, x fastest; positive if any part of the cell emits. Unit: W/(m³
+    /// sr), luminance.
     pub(crate) emission: Vec<f32>,
 }
 
@@ -42,7 +42,7 @@ impl Glow {
         }
     }
 
-    /// Returns the cells of a grid in which σ_a is given by the number of a cell.
+    /// Returns the cells of `grid`; `absorption` returns σ_a by the number of a cell.
     fn cells<const N: usize>(
         &self,
         grid: &Grid<N>,
@@ -52,7 +52,7 @@ impl Glow {
             Self::Even(radiance) => *radiance,
             Self::Grid(grid) => grid.values()[i],
         };
-        // A product of means is not the mean of the product, but it is positive wherever that is.
+        // The product of means is not the mean of the product, but it is positive if that is.
         let products: [Vec<f32>; 3] = std::array::from_fn(|channel| {
             let mut product = grid.cell_means(|i| absorption(i)[channel]);
             let radiance = grid.cell_means(|i| radiance(i)[channel]);
@@ -75,7 +75,7 @@ impl Medium {
     pub const BRIGHTEST: f32 = 1e18;
 
     /// Makes the medium emit light. None: L_e is negative or not finite, σ_t L_e may be above
-    /// [`BRIGHTEST`](Self::BRIGHTEST), or the grid of L_e has not the cells of the medium's.
+    /// [`BRIGHTEST`](Self::BRIGHTEST), or the grid of L_e has other cells than the grid of the medium.
     pub fn glowing(self, glow: Glow) -> Option<Self> {
         let most = glow.most();
         let is_along = match (&glow, &self.field) {
@@ -88,7 +88,7 @@ impl Medium {
         };
         let is_light = match &glow {
             Glow::Even(radiance) => radiance.iter().all(|l| (0.0..=f32::MAX).contains(l)),
-            // Grids have no other numbers.
+            // The values of grids are finite and not negative.
             Glow::Grid(_) => true,
         };
         let is_valid = is_along && is_light && most * self.most() <= Self::BRIGHTEST;
@@ -110,7 +110,7 @@ impl Medium {
         }
     }
 
-    /// Returns true where light begins.
+    /// Returns true if the medium emits light.
     #[inline]
     pub const fn glows(&self) -> bool {
         self.glow.is_some()
@@ -126,8 +126,8 @@ impl Medium {
         std::array::from_fn(|i| absorption[i] * radiance[i])
     }
 
-    /// Returns the cells that glow. A medium without an end is asked for between the corners of `bounds`. None: there
-    /// is no such box, or it is flat.
+    /// Returns the cells of emission; the box of a homogeneous medium is `bounds`. None: the medium emits nothing, or
+    /// it has no box, or a flat one.
     pub(crate) fn glow_cells(&self, bounds: Option<Aabb>) -> Option<GlowCells> {
         let glow = self.glow.as_ref()?;
         match &self.field {

@@ -1,18 +1,18 @@
 //! Grids of numbers over a box, and exact integrals along lines through them.
 //!
 //! Between the centres of its cells a grid is trilinear, so that along a line each cell holds a polynomial of degree
-//! three. Two points of Gauss integrate it exactly:
+//! three. Gaussian quadrature with two points integrates it exactly:
 //!
 //! ∫ f dt = (b - a) (f(m - h) + f(m + h)) / 2, m = (a + b) / 2, h = (b - a) / (2 √3)
 //!
-//! \[Press07, §4.6\]. So T is no estimate, and the density of a walk is known, as in a homogeneous medium.
+//! \[Press07, §4.6\]. So T is not an estimate, and the density of a walk is known, as in a homogeneous medium.
 
 use super::cells::{CubeBox, Line, Range};
 use crate::math::{Affine3A, Vec3};
 use accel::{Aabb, Ray};
 use std::ops::ControlFlow;
 
-/// The side of a block, in cells. One that is constant is passed in a single step.
+/// The side of a block, in cells. A line passes a constant block in a single step.
 const BLOCK: usize = 8;
 
 /// Numbers of `N` channels at the centres of equal cells of a box: linear between them, constant from the outermost
@@ -20,16 +20,16 @@ const BLOCK: usize = 8;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Grid<const N: usize> {
     size: [usize; 3],
-    /// The centre of the first cell is at 1 along each axis, and cells have the side 1.
+    /// The transform to the lattice: the centre of the first cell is at 1 along each axis, and cells have the side 1.
     lattice_from_world: Affine3A,
     bounds: Aabb,
     values: Vec<[f32; N]>,
     blocks: Vec<Block<N>>,
-    /// Along each axis.
+    /// The number of blocks along each axis.
     block_counts: [usize; 3],
 }
 
-/// Some cells of a grid.
+/// A block of cells.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Block<const N: usize> {
     mean: [f32; N],
@@ -55,13 +55,13 @@ pub(super) struct Piece<const N: usize> {
 #[derive(Clone, Copy, Debug)]
 enum Field<const N: usize> {
     Constant([f32; N]),
-    /// The values at the corners of a cell, x fastest, and the line relative to the first.
+    /// The values at the corners of a cell, x fastest, and the line relative to the first corner.
     Cell([[f32; N]; 8], Line),
 }
 
 impl<const N: usize> Grid<N> {
-    /// Makes a grid of `size` cells, x fastest, over the unit cube that `world_from_cube` places. None: `values` are
-    /// not as many, there are none, one is negative or not finite, or the box is flat.
+    /// Makes a grid of `size` cells, x fastest, over the unit cube that `world_from_cube` places. None: the number of
+    /// `values` is not that of cells, or is 0; a value is negative or not finite; or the box is flat.
     pub fn new(size: [usize; 3], values: Vec<[f32; N]>, world_from_cube: Affine3A) -> Option<Self> {
         let count = size.iter().try_fold(1_usize, |n, &k| n.checked_mul(k))?;
         let is_valid = |value: &f32| (0.0..=f32::MAX).contains(value);
@@ -102,7 +102,7 @@ impl<const N: usize> Grid<N> {
         &self.values
     }
 
-    /// Returns the place of its box, as a unit cube, in the world.
+    /// Returns the transform from the unit cube to its box in the world.
     pub(super) fn world_from_cube(&self) -> Affine3A {
         self.lattice_from_world.inverse() * lattice_from_cube(self.size)
     }
@@ -112,8 +112,8 @@ impl<const N: usize> Grid<N> {
         self.size == other.size && self.lattice_from_world == other.lattice_from_world
     }
 
-    /// Returns the means over each cell of values that are given by the number of a cell, and linear between centres:
-    /// along an axis, (f(i - 1) + 6 f(i) + f(i + 1)) / 8.
+    /// Returns the mean over each cell of a function that is `value` of the cell's number at its centre, and linear
+    /// between centres: along an axis, (f(i - 1) + 6 f(i) + f(i + 1)) / 8.
     pub(super) fn cell_means(&self, value: impl Fn(usize) -> f32) -> Vec<f32> {
         let mut means: Vec<f32> = (0..self.values.len()).map(value).collect();
         let mut stride = 1;
@@ -130,7 +130,7 @@ impl<const N: usize> Grid<N> {
         means
     }
 
-    /// Returns the largest number.
+    /// Returns the largest value.
     pub(super) fn most(&self) -> f32 {
         self.values
             .as_flattened()
@@ -212,7 +212,7 @@ impl<const N: usize> Grid<N> {
         }
     }
 
-    /// Returns the values at the corners of a cell, of which there is one more than centres along each axis.
+    /// Returns the values at the corners of a cell. There is one more cell than centres along each axis.
     #[inline]
     fn corners(&self, cell: [usize; 3]) -> [[f32; N]; 8] {
         let ends: [[usize; 2]; 3] = std::array::from_fn(|axis| {
@@ -288,7 +288,7 @@ impl<const N: usize> Piece<N> {
         })
     }
 
-    /// Returns the means from the beginning to `end`.
+    /// Returns the mean of each channel along the line, from where the piece begins to `end`.
     #[inline]
     pub(super) fn mean(&self, end: f32) -> [f32; N] {
         /// 1 / (2 √3)
@@ -300,13 +300,13 @@ impl<const N: usize> Piece<N> {
     }
 }
 
-/// Returns the map from the box as a unit cube.
+/// Returns the transform from the box as a unit cube to the lattice.
 fn lattice_from_cube(size: [usize; 3]) -> Affine3A {
     let cells = Vec3::from_array(size.map(|n| n as f32));
     Affine3A::from_translation(Vec3::splat(0.5)) * Affine3A::from_scale(cells)
 }
 
-/// Returns the number of a cell, x fastest, in an array of so many.
+/// Returns the index of a cell, x fastest, in an array of `[nx, ny, nz]` cells.
 #[inline]
 fn index([x, y, z]: [usize; 3], [nx, ny, _]: [usize; 3]) -> usize {
     (z * ny + y) * nx + x

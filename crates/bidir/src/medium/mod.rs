@@ -11,11 +11,11 @@
 //!
 //! p_ω |cosθ_b| / d² · mean(T) on a surface, p_ω / d² · mean(σ_t T) in a medium,
 //!
-//! with T of the media that scatter or glow alone, and means over lanes: it draws its distance by one lane, each as likely as
-//! others, so that the density is one function of the path, from whichever end it is walked
+//! with T only of the media that scatter or emit, and with means over lanes. A walk draws its distance by one lane,
+//! all equally likely, so that the density is the same function of the path from whichever end it is walked
 //! (docs/derivations/media.md).
 //!
-//! Places name media: every [`Locus`](crate::locus::Locus) has one on each side.
+//! Every [`Locus`](crate::locus::Locus) names a medium on each of its sides.
 
 mod cells;
 mod flight;
@@ -50,14 +50,14 @@ impl MediumId {
         u8::try_from(index + 1).ok().map(Self)
     }
 
-    /// Returns the number among the media of a scene. None: the vacuum.
+    /// Returns the index among the media of a scene. None: the vacuum.
     #[inline]
     pub(crate) fn index(self) -> Option<usize> {
         usize::from(self.0).checked_sub(1)
     }
 }
 
-/// The media on both sides of a place; the same where no boundary is.
+/// The media on both sides of a point. They are equal if there is no boundary.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct MediumSides {
     /// On the side of the geometric normal.

@@ -1,4 +1,5 @@
-//! Groups of samples: a thread takes one at a time. Its samples may share light subpaths, which are walked before them.
+//! Groups of samples, each rendered by one thread. The samples of a group may share light subpaths, which are walked
+//! first.
 
 use super::Session;
 use crate::integrator::{Batch, Entry, begin_group, end_group, group_size, walk_group};
@@ -7,7 +8,7 @@ use crate::spectrum::Lanes;
 use crate::stats::{Stage, Stats};
 use std::ops::Range;
 
-/// The samples of a group that shares no light subpaths.
+/// The size of a group that shares no light subpaths. Unit: samples.
 const UNSHARED: u64 = 256;
 
 impl Session<'_> {
@@ -20,13 +21,13 @@ impl Session<'_> {
         }
     }
 
-    /// Finds the meaning of lanes in the group of `place`.
+    /// Returns the meaning of lanes in the group of `place`.
     pub(super) fn lanes(&self, place: u64) -> Lanes {
         let group = place / self.group_size();
         self.lanes[(group % self.lanes.len() as u64) as usize]
     }
 
-    /// Returns how many samples there are for one light subpath.
+    /// Returns the number of samples for each light subpath.
     pub(super) fn samples_per_subpath(&self) -> u64 {
         if self.method.shares_light() {
             u64::from(self.settings.lvc.samples_per_subpath.get())
@@ -35,20 +36,19 @@ impl Session<'_> {
         }
     }
 
-    /// Finds the places of the group of `place`.
+    /// Returns the range of places of the group of `place`.
     pub(super) fn group(&self, place: u64) -> Range<u64> {
         let size = self.group_size();
         let begin = place / size * size;
         begin..(begin + size).min(self.view.film().crop.area())
     }
 
-    /// Returns every k-th of `places`, the range of a group: the samples that own one of its light subpaths.
+    /// Returns every k-th of `places`, the range of a group: the places whose samples own a light subpath.
     fn subpath_owners(&self, places: Range<u64>) -> impl Iterator<Item = u64> {
         places.step_by(usize::from(self.settings.lvc.samples_per_subpath.get()))
     }
 
-    /// Walks the light subpaths of the group at `places`, `size` at a time, and calls `on_batch` after each batch of
-    /// them.
+    /// Walks the light subpaths of the group at `places`, `size` at a time, and calls `on_batch` after each batch.
     pub(super) fn walk_light(
         &self,
         job: &Job<'_>,
@@ -71,14 +71,15 @@ impl Session<'_> {
         end_group(job, batch);
     }
 
-    /// Returns how many light subpaths a pass has.
+    /// Returns the number of light subpaths in a pass.
     pub fn light_subpaths(&self) -> u64 {
         let pixels = self.view.film().light_paths();
         pixels.div_ceil(self.samples_per_subpath())
     }
 
-    /// Walks the light subpaths of the group of `place` again; returns the one that `place` brings, of which alone
-    /// anything is counted, by its number and its splats. None: another sample brings it.
+    /// Walks the light subpaths of the group of `place` again. Returns the number and the splats of the one that the
+    /// sample at `place` owns; the counters are those of this subpath only. None: another sample owns the subpath
+    /// that this one uses.
     pub(super) fn replay_light(
         &self,
         job: &Job<'_>,

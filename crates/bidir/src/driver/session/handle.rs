@@ -1,15 +1,15 @@
-//! The owner of the scene that a session renders.
+//! A handle to the scene that a session renders.
 
 use crate::scene::Scene;
 use std::ops::Deref;
 use std::sync::Arc;
 
-/// The scene of a session: borrowed, or kept alive by it, for hosts whose objects borrow nothing.
+/// The scene of a session: borrowed, or shared with it, for hosts that cannot hold a borrow.
 #[derive(Clone)]
 pub enum SceneHandle<'a> {
-    /// Somebody else keeps it.
+    /// The caller keeps the scene alive.
     Borrowed(&'a Scene),
-    /// The session has a share in it.
+    /// The session keeps the scene alive.
     Shared(Arc<Scene>),
 }
 

@@ -4,20 +4,19 @@ use super::super::spread;
 use crate::film::PixelRect;
 use crate::integrator::Method;
 
-/// Which pixel the sample at each place of a pass belongs to.
+/// The pixel of each place, where places number the samples of a pass in the order of rendering.
 ///
-/// Samples at places that follow each other share light subpaths where a method shares any, and so
-/// part of their error. Neighbours with a common error would be seen as streaks: such places are spread over
-/// the film.
+/// Samples at neighbouring places share light subpaths if the method shares any, and so part of their error. If they
+/// were neighbours on the film, too, their common error would show as streaks: their pixels are spread over the film.
 pub(super) enum Order {
     /// Row order of the crop.
     Rows,
-    /// For each place the position of its pixel in row order.
+    /// The index of each place's pixel in row order.
     Spread(Vec<u32>),
 }
 
 impl Order {
-    /// Returns the order of a crop for a method. Crops of 2³² pixels or more keep the order of rows.
+    /// Returns the order of a crop for a method. Crops of 2³² pixels or more have row order.
     pub(super) fn new(crop: PixelRect, method: &Method) -> Self {
         let fits = u32::try_from(crop.area()).is_ok();
         if fits && method.shares_light() {
@@ -27,7 +26,7 @@ impl Order {
         }
     }
 
-    /// Returns the position in row order of the pixel at `place`.
+    /// Returns the index in row order of the pixel at `place`.
     #[inline]
     pub(super) fn pixel(&self, place: u64) -> usize {
         match self {
@@ -36,7 +35,7 @@ impl Order {
         }
     }
 
-    /// Returns the place of the pixel at a position in row order. It is searched for.
+    /// Returns the place of a pixel by its index in row order. Takes a linear search.
     pub(super) fn place(&self, pixel: usize) -> u64 {
         let place = match self {
             Self::Rows => Some(pixel),

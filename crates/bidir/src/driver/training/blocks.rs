@@ -5,14 +5,15 @@ use super::constants::BLOCKS_PER_SIDE as SIDE;
 use super::survey::QUAD;
 use crate::film::PixelRect;
 
-/// The blocks.
+/// The number of blocks.
 pub(super) const BLOCKS: usize = SIDE * SIDE;
 
-/// The division of a crop into 16 × 16 blocks as equal as pixels allow; of a small one some have none.
+/// The division of a crop into 16 × 16 blocks, as equal as whole pixels allow. In a small crop some blocks have no
+/// pixels.
 #[derive(Clone, Debug)]
 pub(super) struct Blocks {
     crop: PixelRect,
-    /// The pixels of each.
+    /// The number of pixels of each block.
     sizes: Vec<f64>,
 }
 
@@ -34,12 +35,12 @@ impl Blocks {
         part(index / width, height) * SIDE + part(index % width, width)
     }
 
-    /// Returns the pixels of block number `i`; of none it counts as one.
+    /// Returns the number of pixels of block number `i`, at least 1.
     pub(super) fn size(&self, i: usize) -> f64 {
         self.sizes[i].max(1.0)
     }
 
-    /// Returns the number of samples of each, of the first `count` of the survey.
+    /// Returns the number of samples in each block, of the first `count` samples of the survey.
     pub(super) fn samples(&self, count: u64) -> Vec<f64> {
         let mut samples = vec![0.0; BLOCKS];
         for quad in 0..count / QUAD {
@@ -52,12 +53,12 @@ impl Blocks {
     }
 }
 
-/// Returns the part of a side of `size` pixels that pixel number `i` is in.
+/// Returns the part, of [`SIDE`] equal parts of a side of `size` pixels, that pixel number `i` is in.
 fn part(i: usize, size: usize) -> usize {
     i * SIDE / size
 }
 
-/// Returns the numbers of pixels of the parts of a side.
+/// Returns the number of pixels in each part of a side of `size` pixels.
 fn sizes(size: u32) -> [f64; SIDE] {
     let begin = |i: usize| (i * size as usize).div_ceil(SIDE);
     std::array::from_fn(|i| (begin(i + 1) - begin(i)) as f64)

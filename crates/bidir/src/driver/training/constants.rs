@@ -1,63 +1,63 @@
-//! The numbers of training and of `auto`. Their sources are measurements (docs/performance.md) where no other
+//! The constants of training and of `auto`. They come from measurements (docs/performance.md) unless another source
 //! is given.
 
-/// The most samples of the survey: the mean luminance is then within a few percent in most scenes, and four
-/// times as many change variances by 3 % at most. Unit: samples, a power of two.
+/// The most samples of the survey: they give the mean luminance within a few percent in most scenes, and four times
+/// as many change variances by 3 % at most. Unit: samples, a power of two.
 pub(super) const MOST_SAMPLES: u64 = 1 << 14;
-/// The most samples for each pixel, where that gives at least [`ENOUGH_SAMPLES`] in all. Unit: samples.
+/// The most samples for each pixel, unless that leaves less than [`ENOUGH_SAMPLES`] in all. Unit: samples.
 pub(super) const MOST_OF_PIXEL: u64 = 16;
-/// Small films have at least as many, if work allows it. Unit: samples, a power of two.
+/// The least samples of a small film, if their work allows it. Unit: samples, a power of two.
 pub(super) const ENOUGH_SAMPLES: u64 = 1 << 10;
-/// Nothing is learned about connections from fewer. Unit: samples, a power of two.
+/// The least samples from which training learns about connections. Unit: samples, a power of two.
 pub(super) const LEARNING_SAMPLES: u64 = 1 << 6;
-/// The first samples, whose work decides how many follow. Unit: samples, a power of two.
+/// The number of first samples, whose work decides how many follow. Unit: samples, a power of two.
 pub(super) const FIRST_SAMPLES: u64 = 1 << 4;
-/// Groups of samples for the threads to share. Unit: groups in a round of the survey.
+/// The number of groups that the threads share in a round of the survey.
 pub(super) const GROUPS: u64 = 64;
-/// The work of a sample beyond which there are fewer: samples of most scenes stay below. Unit: rays and
+/// The mean work of a sample beyond which training takes fewer samples: in most scenes it is less. Unit: rays and
 /// connections.
 pub(super) const USUAL_WORK: f64 = 256.0;
 
-/// A path of more possible connections than these adds only the one that made it, if one did: this bounds memory
-/// where subpaths are long.
+/// The most possible connections of a path that the log keeps. Of a path with more it keeps only the connection that
+/// made the path, if one did: this bounds memory where subpaths are long.
 pub(super) const MOST_PARTS: usize = 8;
 
-/// Blocks along each side of the film, of each of which variances are relative to the mean.
+/// The number of blocks along each side of the film. Variances are relative to the mean of their block.
 pub(super) const BLOCKS_PER_SIDE: usize = 16;
-/// The pixels of a block whose mean is judged beside pixels: 16 x 16, as eyes and denoisers see.
+/// The number of pixels of a block whose mean is judged beside single pixels: 16 x 16, as eyes and denoisers see.
 pub(super) const BLOCK_PIXELS: f64 = 256.0;
-/// ε relative to the square of the image's mean: bounds what dark blocks count.
+/// ε relative to the square of the image's mean: bounds the weight of dark blocks.
 pub(super) const DARK: f64 = 0.01;
 
-/// The least variance of a plan, as estimates may be negative: where nothing varies, cost decides. Unit: its second
-/// moment.
+/// The least variance of a plan: estimates may be negative, and where nothing varies, cost decides. Unit: the plan's
+/// second moment.
 pub(super) const LEAST_VARIANCE: f64 = 1e-6;
-/// The least albedo that a second moment is divided by: bounds rare dark paths.
+/// The least albedo by which a second moment is divided: bounds rare dark paths.
 pub(super) const LEAST_ALBEDO: f32 = 1e-3;
-/// The least share of a path that a second moment is divided by: a missed path makes a plan very bad, not
-/// infinitely so.
+/// The least share of a path by which a second moment is divided: a plan that misses a path is very bad, not
+/// infinitely bad.
 pub(super) const LEAST_SHARE: f64 = 1e-9;
 
-/// The cost of a ray of a camera walk whose vertices are connected with shared light subpaths. Unit of this
-/// and the next six, which fit the times of 15 scenes at 192 x 108 to 6 %: a ray of path tracing's walk.
+/// The cost of a ray of a camera walk whose vertices are connected with shared light subpaths. Unit of this and the
+/// next six costs: a ray of path tracing's walk. They fit the times of 15 scenes at 192 x 108 to 6 %.
 pub(super) const CONNECTED_CAMERA_RAY: f64 = 1.8;
-/// The cost of a ray of a light walk, with the light that it begins on.
+/// The cost of a ray of a light walk, including the choice of the light that it begins on.
 pub(super) const LIGHT_RAY: f64 = 1.6;
 /// The cost of a connection ray.
 pub(super) const CONNECTION_RAY: f64 = 0.7;
-/// The cost of a light point as a candidate, with the choice of its light.
+/// The cost of a light point as a candidate, including the choice of its light.
 pub(super) const LIGHT_POINT: f64 = 1.2;
 /// The cost of a candidate that is a connection with a light walk.
 pub(super) const CANDIDATE: f64 = 0.7;
-/// The cost of a candidate of diffuse vertices, four of which are evaluated at a time.
+/// The cost of a candidate between diffuse vertices, which are evaluated four at a time.
 pub(super) const DIFFUSE_CANDIDATE: f64 = 0.12;
-/// The cost of a light image, with its ray.
+/// The cost of a splat of the light image, including its ray.
 pub(super) const LIGHT_IMAGE: f64 = 1.0;
 
-/// The vertices of a light cache, of which each thread has one: 30 MB. Unit: vertices.
+/// The most vertices of a light cache: 30 MB in each thread. Unit: vertices.
 pub(super) const MOST_CACHED: f64 = 131_072.0;
-/// The fraction of light subpaths that begin on a light by power: light that training missed costs at most ten
-/// times as much.
+/// The fraction of light subpaths that choose their light by power: variance of light that training missed grows at
+/// most tenfold.
 pub(super) const POWER_FRACTION: f64 = 0.1;
-/// The strength of what is known of all lights beside what is learned of one. Unit: subpaths.
+/// The weight of what training learned of all lights, beside what it learned of one. Unit: subpaths.
 pub(super) const LIGHT_PRIOR: f64 = 16.0;

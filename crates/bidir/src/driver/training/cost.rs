@@ -1,4 +1,4 @@
-//! The cost of a plan, by what the survey counted: with constant weights, the same on every machine.
+//! The cost of a plan, from the counts of the survey. Its weights are constants: it is the same on every machine.
 
 use super::Settings;
 use super::constants::{
@@ -12,7 +12,8 @@ use crate::path::MisHeuristic;
 use crate::select::ShadowRays;
 
 impl Survey {
-    /// Returns the cost of a sample by `settings`, with `counts` of these. Unit: rays of path tracing's walks.
+    /// Returns the mean cost of a sample with `settings`, which take `counts` samples of each kind of strategy. Unit:
+    /// rays of path tracing's walks.
     pub(super) fn cost(&self, settings: &Settings, counts: &Counts) -> f64 {
         let work = &self.work;
         let light_points = dot(work.next_events[counts.start], counts.next_events);
@@ -21,7 +22,7 @@ impl Survey {
             MisHeuristic::Balance => dot(work.diffuse, counts.connections),
             _ => 0.0,
         };
-        // The other rules may trace every candidate.
+        // `ray-roulette` and `all` may trace every candidate.
         let most = match settings.shadow_rays {
             _ if !settings.integrator.has_candidates() => f64::INFINITY,
             ShadowRays::Budget(rays) => f64::from(rays) * work.connected,

@@ -1,4 +1,4 @@
-//! The numbers of samples of strategies in a plan, and what of a path they make.
+//! The numbers of samples of strategies in a plan, and the densities of paths that they give.
 
 use super::Settings;
 use super::constants::{BLOCK_PIXELS, LEAST_ALBEDO, LEAST_SHARE};
@@ -6,24 +6,24 @@ use crate::integrator::{CandidateCount, IntegratorKind, LvcSettings, group_size}
 use crate::path::{PathRoulette, Shares};
 use crate::strategy::Strategy;
 
-/// The first surfaces at which the roulette of a plan may differ from that of the survey.
+/// The number of surfaces at which the roulette of a plan may begin: 0, 1 and 2.
 pub(super) const STARTS: usize = 3;
 
-/// The numbers of samples of each kind of strategy, relative to those of the survey. Pairs are of t = 2 and of
-/// t > 2.
+/// The number of samples of each kind of strategy, relative to the survey. The elements of pairs are for t = 2 and
+/// for t > 2.
 pub(super) struct Counts {
     pub(super) next_events: [f64; 2],
     pub(super) connections: [f64; 2],
     pub(super) light_images: f64,
-    /// How connections with light walks are drawn. None: those of one light walk are all made.
+    /// The draws of connections with light walks. None: every connection with one light walk is made.
     pub(super) draws: Option<Draws>,
-    /// The first surface that may end walks.
+    /// The first surface at which roulette may end a walk.
     pub(super) start: usize,
 }
 
 impl Counts {
-    /// Returns the counts of the estimator of `settings`, if a light subpath has `light_vertices` vertices that can be
-    /// connected on average, and walks of the survey had the roulette `surveyed`.
+    /// Returns the counts of the estimator of `settings`, if a light subpath has `light_vertices` connectable
+    /// vertices on average. `surveyed` is the roulette of the survey's walks.
     pub(super) fn new(
         settings: &Settings,
         surveyed: PathRoulette,
@@ -60,13 +60,14 @@ impl Counts {
         self.connections[usize::from(strategy.t > 2)]
     }
 
-    /// Returns ρ_j: how much more often than in the survey walks reach the last camera vertex of strategy j.
+    /// Returns ρ_j, the factor by which walks of the plan reach the last camera vertex of strategy j more often than
+    /// walks of the survey.
     pub(super) fn longer(&self, shares: &Shares, j: usize) -> f64 {
         longer(shares.albedos)[self.surfaces(shares, j)]
     }
 
-    /// Returns the surfaces that may end the walk of strategy j in the survey alone: of those that it goes on at, which
-    /// are number 0 to n - 3 - j.
+    /// Returns the number of surfaces that may end the walk of strategy j in the survey, but not in the plan: of the
+    /// surfaces 0 to n - 3 - j, at which the walk continues.
     pub(super) fn surfaces(&self, shares: &Shares, j: usize) -> usize {
         let surfaces = (usize::from(shares.vertices) - j).saturating_sub(2);
         self.start.min(surfaces)
@@ -86,18 +87,18 @@ impl Counts {
     }
 }
 
-/// How connections are drawn from the light subpaths of a group.
+/// The draws of connections from the light subpaths of a group.
 pub(super) struct Draws {
-    /// The candidates of each camera vertex, for t = 2 and for t > 2.
+    /// The number of candidates of each camera vertex, for t = 2 and for t > 2.
     pub(super) candidates: [f64; 2],
-    /// The light subpaths of a group.
+    /// The number of light subpaths of a group.
     pub(super) subpaths: f64,
-    /// The other samples of a group in a block of 16 x 16 pixels.
+    /// The mean number of other samples of a group in a block of 16 x 16 pixels.
     pub(super) neighbours: f64,
 }
 
 impl Draws {
-    /// Returns the counts of `settings` in a film of this number of `pixels`.
+    /// Returns the draws of `settings` in a film of `pixels` pixels.
     fn new(settings: &LvcSettings, pixels: u64) -> Self {
         let group = group_size(pixels);
         let of_block = BLOCK_PIXELS * group.min(pixels) as f64 / pixels as f64;
@@ -116,8 +117,8 @@ pub(super) struct DensityRatio {
     pub(super) light_images: f64,
 }
 
-/// Returns the numbers of samples of a connection with a light walk, M / κ, for t = 2 and t > 2. Where no light vertex
-/// can be connected they do not matter.
+/// Returns M / κ, the number of samples of a connection with a light walk, for t = 2 and t > 2. Without connectable
+/// light vertices it does not matter, and is 1.
 pub(super) fn of_connections(candidates: CandidateCount, light_vertices: f64) -> [f64; 2] {
     candidates.get().map(|count| match light_vertices {
         0.0 => 1.0,
@@ -125,8 +126,8 @@ pub(super) fn of_connections(candidates: CandidateCount, light_vertices: f64) ->
     })
 }
 
-/// Returns the factors by which walks go on more often whose roulette begins at surface 0, 1 and 2, where the first two
-/// have these albedos.
+/// Returns the factors by which walks go on more often if their roulette begins at surface 0, 1 or 2, given the
+/// albedos of surfaces 0 and 1.
 pub(super) fn longer(albedos: [f32; 2]) -> [f64; STARTS] {
     let [a, b] = albedos.map(|albedo| f64::from(albedo.clamp(LEAST_ALBEDO, 1.0)));
     [1.0, 1.0 / a, 1.0 / (a * b)]

@@ -2,26 +2,26 @@
 
 use accel::Stop;
 
-/// The limits of training. A host that has little time for it renders with the results of fewer samples: with
-/// more noise, but of the same image.
+/// The limits of training. A host with little time for training renders with what fewer samples give: the image is
+/// the same, with more noise.
 #[derive(Clone, Copy)]
 pub struct Effort<'a> {
-    /// The most samples. The first 16 are always taken, and the others in rounds that double their number:
-    /// training with as many as another one took is the same.
+    /// The most samples. Training takes the first 16 always, and more in rounds that double their number. Training to
+    /// the same number gives the same results, whichever limit ended it.
     pub samples: u64,
-    /// Training ends when it returns true, with the samples of the complete rounds. All threads call it.
+    /// Ends training if it returns true, with the samples of the complete rounds. All threads call it.
     pub is_late: IsLate<'a>,
-    /// Asks to give up training, and the session with it.
+    /// The flag by which the host gives up training, and the session with it.
     pub stop: Stop<'a>,
 }
 
-/// True where training is to end.
+/// Returns true when training is to end.
 pub(super) type IsLate<'a> = &'a (dyn Fn() -> bool + Sync);
 
 impl Effort<'_> {
-    /// Hosts give training at most one part in so many of the time of a render.
+    /// The inverse of the fraction of a render's time that hosts allow for training.
     pub const PART: u32 = 10;
-    /// The number of samples that training needs.
+    /// No limit: training takes the samples that it needs.
     pub const WHOLE: Effort<'static> = Effort::at_most(u64::MAX);
 
     /// Limits the number of samples.

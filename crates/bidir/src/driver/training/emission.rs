@@ -1,10 +1,9 @@
-//! q_l, how often light subpaths begin on light l: less often where what they bring to the picture is
-//! in other rooms.
+//! q_l, the probability that a light subpath begins on light l. It is lower for lights whose subpaths contribute
+//! little to the picture, such as lights of other rooms.
 //!
-//! With probabilities p_l the connections of the subpaths that begin on l have a second moment of p_l m_l,
-//! and with q_l of (p_l² / q_l) m_l, which is least in all where q_l ∝ p_l √m_l. m_l is relative to the
-//! second moment of all connections of the same cell of camera vertices: a dark corner counts as much as
-//! what is bright.
+//! With probabilities p_l, connections of the subpaths that begin on l have the second moment p_l m_l; with q_l it is
+//! (p_l² / q_l) m_l, and the sum over lights is least for q_l ∝ p_l √m_l. m_l is relative to the second moment of all
+//! connections in the same cell of camera vertices: a dark corner counts as much as a bright one.
 
 use super::constants::{LIGHT_PRIOR, POWER_FRACTION};
 use crate::guide::{Cell, Cells};
@@ -13,7 +12,7 @@ use crate::light::LightChoice;
 /// A connection of two cells.
 #[derive(Clone, Copy)]
 pub(super) struct Connection {
-    /// The light that its light subpath begins on. None: it is with a light point of next-event estimation.
+    /// The light that its light subpath begins on. None: its light vertex is a light point of next-event estimation.
     pub(super) light: Option<u32>,
     /// The cells of its light vertex and of its camera vertex.
     pub(super) cells: [Cell; 2],
@@ -23,14 +22,14 @@ pub(super) struct Connection {
 /// Knowledge of a connection.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Evidence {
-    /// It was traced, and arrived or not.
+    /// It was traced; true if it is visible.
     Traced(bool),
-    /// It could have made a path, of whose square this is its part.
+    /// It could have made a path; holds its part of the path's squared value.
     Square(f64),
 }
 
-/// Returns the choice that suits what `found` connections contribute, whose `subpaths` chose by `power`. None: it is
-/// that one.
+/// Returns the choice of lights learned from the connections `found`, of `subpaths` light subpaths that began on
+/// lights by `power`. None: nothing is learned, and `power` remains.
 pub(super) fn learned(
     power: &LightChoice,
     found: &[Connection],
@@ -65,8 +64,8 @@ pub(super) fn gain(power: &LightChoice, learned: Option<&LightChoice>, light: u3
     })
 }
 
-/// Returns for each light the sum of the squares of its connections, each divided by the mean square of its cell
-/// of camera vertices.
+/// Returns, for each light, the sum of the squares of its connections, each divided by the mean square in its cell of
+/// camera vertices.
 fn relative_moments(lights: usize, found: &[Connection]) -> Vec<f64> {
     let walked = || (found.iter()).filter_map(|found| Some((found, found.light? as usize)));
     let mut of_cells = vec![[0.0, 0.0]; Cells::COUNT];

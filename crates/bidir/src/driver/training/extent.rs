@@ -1,21 +1,20 @@
-//! The number of samples of training: 2¹⁴ where a sample costs no more than it usually does, and
-//! fewer where subpaths are long. With w the mean work of a sample and w₀ the usual one, it is the
-//! largest power of two that is at most
+//! The number of samples of training: 2¹⁴ if the mean work w of a sample is at most the usual work w₀, and fewer
+//! where subpaths are long: the largest power of two that is at most
 //!
 //! 2¹⁴ (w₀ / w)²,
 //!
-//! and at least the first samples, which measure that work. So training takes less time where subpaths are longer.
-//! Films of fewer than 2¹⁰ pixels get no more than 16 samples for each pixel, but no fewer than 2¹⁰ for that
-//! reason: training does not take much longer than their render, and a crop of four pixels is spread evenly.
+//! and at least the number of the first samples, which measure w. So training takes less time where subpaths are
+//! longer. Films of fewer than 2¹⁰ pixels get at most 16 samples for each pixel, or 2¹⁰ if that is more: training
+//! does not take much longer than their render, and the samples of a crop of four pixels are spread evenly.
 //!
-//! Training only estimates what estimators choose by, so fewer samples add no bias. Work is counted and
-//! not timed: a scene is trained alike on every machine.
+//! Training only guides estimators, so fewer samples add no bias. Work is counted, not timed: training is the same on
+//! every machine.
 
 use super::constants::{ENOUGH_SAMPLES, FIRST_SAMPLES, MOST_OF_PIXEL, MOST_SAMPLES, USUAL_WORK};
 use crate::stats::Stats;
 
-/// Returns the number of samples by the pixels and the work of a sample: a power of two. Unit of work: as
-/// [`work`].
+/// Returns the number of samples, a power of two, for a film of `pixels` pixels and samples of mean work `work`. Unit
+/// of work: as [`work`].
 pub(super) fn samples(pixels: u64, work: f64) -> u64 {
     let ratio = USUAL_WORK / work.max(USUAL_WORK);
     let affordable = MOST_SAMPLES as f64 * ratio * ratio;
@@ -23,7 +22,7 @@ pub(super) fn samples(pixels: u64, work: f64) -> u64 {
     1 << (affordable as u64).min(most).max(FIRST_SAMPLES).ilog2()
 }
 
-/// Returns the mean cost of a sample. Unit: rays and connections.
+/// Returns the mean work of a sample. Unit: rays and connections.
 pub(super) fn work(stats: &Stats) -> f64 {
     (stats.rays.total() + stats.candidates) as f64 / stats.samples as f64
 }

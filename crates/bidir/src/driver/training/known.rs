@@ -1,6 +1,6 @@
-//! Learned proposals change how many samples a connection has, and which connections are traced. The survey judges a term
-//! by what the other terms teach: samples of the film do not know the term's own square and visibility, so the sums leave
-//! them out.
+//! Learned proposals change the number of samples of a connection, and the choice of the connections that are traced.
+//! The survey judges a term by what the other terms teach: samples of the film do not know the term's own square and
+//! visibility, so the sums leave them out.
 
 use super::counts::Counts;
 use super::learning::Lessons;
@@ -11,19 +11,19 @@ use super::{Settings, TrainingInput};
 use crate::film::FilmSettings;
 use crate::guide::Cells;
 
-/// Judges plans for a survey.
+/// Estimates the variance of plans from a survey.
 pub(super) struct Judge<'a> {
     input: TrainingInput<'a>,
     survey: &'a Survey,
     nothing: Vec<Known>,
-    /// The knowledge that `lvc` learns. None: nothing.
+    /// The knowledge of each term that `lvc` learns. None: it learns nothing.
     learned: Option<Vec<Known>>,
     /// κ.
     light_vertices: f64,
 }
 
 impl<'a> Judge<'a> {
-    /// Learns for all plans by one of `typical` settings.
+    /// Learns from `survey` for all plans, by one plan's settings, `typical`.
     pub(super) fn new(
         input: TrainingInput<'a>,
         typical: &Settings,
@@ -62,7 +62,7 @@ impl<'a> Judge<'a> {
 }
 
 impl Survey {
-    /// Returns what `lessons` say of each term, where the numbers of samples are `counts`.
+    /// Returns what `lessons` teach of each term, if the numbers of samples are `counts`.
     pub(super) fn known(
         &self,
         film: &FilmSettings,
@@ -70,9 +70,11 @@ impl Survey {
         counts: &Counts,
     ) -> Vec<Known> {
         let mut known: Vec<_> = self.terms.iter().map(Known::nothing).collect();
-        // For each term the parts of its connections, times powers of what is learned, of t = 2 and of t > 2.
+        // For each term, the sums over its connections of their parts times powers of the learned factor, for t = 2
+        // and for t > 2.
         let mut parts = vec![[[0.0; 4]; 2]; self.terms.len()];
-        // A light vertex is drawn beside those of the other light subpaths: one more than all have on average.
+        // A drawn light vertex is one more than the mean number of all light subpaths in its cell: this much for each
+        // subpath.
         let one = counts
             .draws
             .as_ref()

@@ -13,8 +13,8 @@ use crate::integrator::{LightStart, ProposalKind};
 use crate::light::LightChoice;
 
 impl Survey {
-    /// Returns the knowledge of connections, first of those that were traced, then of those that could have made paths;
-    /// squares are those where the numbers of samples are `counts`.
+    /// Returns the connections of the survey: first those that were traced, then those that could have made paths.
+    /// Squares are of values with `counts` samples.
     pub(super) fn connections(
         &self,
         film: &FilmSettings,
@@ -37,8 +37,8 @@ impl Survey {
         traced.chain(possible).collect()
     }
 
-    /// Returns sums without connections: the light vertices of each cell if a light begins `gain` times as many
-    /// subpaths as here.
+    /// Returns sums that hold no connections, only the number of light vertices in each cell per light subpath, if
+    /// each light begins `gain` times as many subpaths as in the survey.
     fn pair_sums(&self, cells: &Cells, gain: impl Fn(u32) -> f64) -> PairSums {
         let mut light_vertices = vec![0.0; Cells::COUNT];
         for (cell, light) in self.log.light_vertices(cells) {
@@ -48,7 +48,7 @@ impl Survey {
     }
 }
 
-/// The knowledge of connections that a survey has.
+/// The knowledge of connections that a survey gives.
 pub(super) struct Lessons {
     pub(super) cells: Cells,
     pub(super) sums: PairSums,
@@ -61,7 +61,7 @@ pub(super) struct Lessons {
 }
 
 impl Lessons {
-    /// Learns for the estimator of `settings`, where that learns and `survey` has enough samples.
+    /// Learns for the estimator of `settings`. None: it does not learn, or `survey` has too few samples.
     pub(super) fn of(
         input: TrainingInput<'_>,
         settings: &Settings,
@@ -92,7 +92,7 @@ impl Lessons {
                 let pair = Cells::pair(connection.cells[0], connection.cells[1]);
                 match connection.evidence {
                     Evidence::Traced(has_arrived) => sums.see(pair, has_arrived),
-                    // Of a light that begins g times as many subpaths each contributes 1/g.
+                    // If a light begins g times as many subpaths, each of them contributes 1/g.
                     Evidence::Square(square) => {
                         sums.add(pair, square / connection.light.map_or(1.0, gain));
                     }
@@ -111,23 +111,23 @@ impl Lessons {
         })
     }
 
-    /// Returns κ where light subpaths begin as is learned.
+    /// Returns κ for light subpaths that begin by the learned choice.
     pub(super) fn light_vertices(&self) -> f64 {
         self.light_vertices
     }
 
-    /// Returns the factor by which more light subpaths begin on a light.
+    /// Returns the factor by which more light subpaths begin on `light` than by power.
     pub(super) fn gain(&self, light: u32) -> f64 {
         emission::gain(&self.power, self.light_start.as_ref(), light)
     }
 
-    /// Returns n κ / M of a connection of these cells.
+    /// Returns n κ / M of a connection between these cells.
     pub(super) fn factor(&self, cells: [Cell; 2]) -> f64 {
         self.factor_with(cells, [0.0; 2])
     }
 
-    /// Returns the factor without what a connection taught, as if `more` light vertices of each light subpath were in
-    /// its cell.
+    /// Returns the [`factor`](Self::factor) without what `connection` itself taught, as if each light subpath had
+    /// `more` light vertices in its cell.
     pub(super) fn factor_without(&self, connection: &Connection, more: f64) -> f64 {
         let Evidence::Square(square) = connection.evidence else {
             return self.factor(connection.cells);
@@ -141,7 +141,8 @@ impl Lessons {
         self.sums.count_factor(others, [light, camera], changes)
     }
 
-    /// Returns √V̂ of its cells without what a connection taught.
+    /// Returns √V̂ of the cells of `connection`, without what it taught itself. It is 1 if the connection was not
+    /// traced.
     pub(super) fn root_visibility_without(&self, connection: &Connection) -> f32 {
         let Evidence::Traced(has_arrived) = connection.evidence else {
             return 1.0;

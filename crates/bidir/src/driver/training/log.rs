@@ -1,4 +1,4 @@
-//! The record of the survey's vertices and connections, from which estimators learn.
+//! The log of the survey's vertices and connections, from which estimators learn.
 
 use super::constants::MOST_PARTS;
 use crate::contribution::Term;
@@ -14,7 +14,7 @@ use crate::strategy::Strategy;
 pub(super) struct Ends {
     /// The numbers of its light vertex and of its camera vertex.
     vertices: [u32; 2],
-    /// The light that its light subpath begins on. None: it is with a light point of next-event estimation.
+    /// The light that its light subpath begins on. None: its light vertex is a light point of next-event estimation.
     pub(super) light: Option<u32>,
 }
 
@@ -33,16 +33,16 @@ pub(super) struct Possible {
 /// Vertices and connections of samples.
 #[derive(Default)]
 pub(super) struct ConnectionLog {
-    /// Points and normals of vertices.
+    /// The point and the normal of each vertex.
     vertices: Vec<[Vec3; 2]>,
     /// The numbers of the light vertices that can be connected, each with the light that its subpath begins on.
     light: Vec<(u32, u32)>,
     /// The numbers of the camera vertices that can be connected.
     camera: Vec<u32>,
-    /// The connections that were traced, and if they arrived.
+    /// The connections that were traced, each with true if it is visible.
     traced: Vec<(Ends, bool)>,
     possible: Vec<Possible>,
-    /// The vertices of the sample that was begun last.
+    /// The first vertices of the sample that was begun last.
     sample: FirstVertices,
 }
 
@@ -54,13 +54,13 @@ struct FirstVertices {
 }
 
 impl FirstVertices {
-    /// Returns the numbers of light vertex `z` and of camera vertex `y` of the sample.
+    /// Returns the numbers in the log of the sample's light vertex `z` and camera vertex `y`.
     fn of(self, [z, y]: [u32; 2]) -> [u32; 2] {
         [self.light + z, self.camera + y]
     }
 
-    /// Returns the numbers of the vertices x_{j-1} and x_j of a path of `strategy`, whose light vertices end before
-    /// vertex `end`.
+    /// Returns the numbers in the log of the vertices x_{j-1} and x_j of a path of `strategy`, whose last light
+    /// vertex is number `end - 1` of the sample.
     fn of_edge(self, strategy: Strategy, end: u32, j: u16) -> [u32; 2] {
         let (s, t) = (u32::from(strategy.s), u32::from(strategy.t));
         [j - 1, j].map(u32::from).map(|i| {
@@ -74,7 +74,7 @@ impl FirstVertices {
 }
 
 impl ConnectionLog {
-    /// Adds the log of other samples, whose terms have numbers from `terms` on.
+    /// Adds the log of other samples, whose term number 0 becomes number `terms`.
     pub(super) fn add(&mut self, more: Self, terms: u32) {
         let known = self.vertices.len() as u32;
         let moved = |ends: Ends| Ends {
@@ -98,7 +98,7 @@ impl ConnectionLog {
         }));
     }
 
-    /// Adds the vertices of the one sample of `batch`. The connections that follow are of this sample.
+    /// Adds the vertices of the one sample of `batch`. The connections that are added next belong to this sample.
     pub(super) fn begin(&mut self, job: &Job<'_>, batch: &Batch) {
         let [walk, camera] =
             [&batch.walked.light, &batch.walked.camera].map(|walks| walks.get(0).vertices);
@@ -118,7 +118,7 @@ impl ConnectionLog {
         self.camera.extend(ends.map(|i| y + i as u32));
     }
 
-    /// Adds a connection that was traced, and returns its number. None: its light vertex is at infinity.
+    /// Adds a traced connection, and returns its number. None: its light vertex is at infinity.
     pub(super) fn trace(
         &mut self,
         batch: &Batch,
@@ -138,8 +138,8 @@ impl ConnectionLog {
         Some(self.traced.len() as u32 - 1)
     }
 
-    /// Adds the connections, by their `parts`, that could have made the path of `made`, the term with number
-    /// `term`; `candidate` is the candidate that it was, if it was one.
+    /// Adds the connections that could have made the path of the term `made`, which has number `term`; `parts` are
+    /// their parts of D. `candidate` is the connection that made the path, if one did.
     pub(super) fn path(
         &mut self,
         made: &Term,
@@ -162,14 +162,14 @@ impl ConnectionLog {
             term,
             part: if is_long { 1.0 } else { part },
         });
-        // A walk that escaped to the light has no vertex there, and a light of no power begins no subpath.
+        // If a walk escaped to the light, no vertex lies there; a light without power begins no subpath.
         let exists = |possible: &Possible| {
             possible.ends.vertices[0] < count && possible.part > 0.0 && possible.part.is_finite()
         };
         self.possible.extend(possible.filter(exists));
     }
 
-    /// Returns the connections that were traced, and if they arrived.
+    /// Returns the connections that were traced, each with true if it is visible.
     pub(super) fn traced(&self) -> &[(Ends, bool)] {
         &self.traced
     }
@@ -193,7 +193,7 @@ impl ConnectionLog {
         light.map(|&(vertex, light)| (self.cell(cells, vertex), light))
     }
 
-    /// Returns cells that suit the vertices.
+    /// Makes cells that divide the vertices evenly.
     pub(super) fn cells(&self) -> Cells {
         let light = self.light.iter().map(|&(vertex, _)| vertex);
         let all = light.chain(self.camera.iter().copied());

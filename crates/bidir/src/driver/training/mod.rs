@@ -1,6 +1,6 @@
-//! The render before the first pass: the mean luminance of the image, by which shadow-ray roulette
-//! sets its threshold, what is learned about connections, and what `auto` renders with. All of it follows from
-//! the samples of one [`Survey`].
+//! A short render before the first pass. It estimates the mean luminance of the image, from which shadow-ray roulette
+//! sets its threshold; it learns about connections; and it chooses the plan of `auto`. All of it follows from the
+//! samples of one [`Survey`].
 
 mod blocks;
 mod constants;
@@ -39,25 +39,25 @@ use counts::of_connections;
 use learning::Lessons;
 use survey::Survey;
 
-/// The results of a short render before the first pass: a pure function of scene, settings and its number of
-/// samples. These have random numbers of their own and never enter the film.
+/// The results of training: a pure function of scene, settings and the number of training samples. These have random
+/// numbers of their own and never enter the film.
 #[derive(Clone, Debug)]
 pub struct Training {
     /// The mean luminance of the image, before sensor and exposure. Unit: W/(m² sr) of scene units.
     pub mean_luminance: f32,
     /// The mean number of vertices of a light subpath that camera vertices can be connected with.
     pub light_vertices: f64,
-    /// The choice of light vertices, where that is learned.
+    /// The proposals of light vertices. None: they are not learned.
     pub proposals: Option<LightProposals>,
-    /// The choice of the light of light subpaths, where that is learned.
+    /// The choice of the light that a light subpath begins on. None: it is not learned.
     pub light_start: Option<LightChoice>,
-    /// The plan of `auto`.
+    /// The plan of `auto`. None: the integrator is another.
     pub plan: Option<Plan>,
-    /// The samples it took.
+    /// The number of samples of training.
     pub samples: u64,
-    /// The rays it cost.
+    /// The rays of training.
     pub rays: RayCounts,
-    /// True where its [`Effort`] allowed fewer samples than it wanted.
+    /// True if its [`Effort`] allowed fewer samples than training needs.
     pub is_short: bool,
     /// The mean number of rays of a light subpath.
     subpath_rays: f64,
@@ -71,8 +71,8 @@ struct TrainingInput<'a> {
     settings: &'a Settings,
 }
 
-/// Returns the settings with everything decided that they leave open, and what was learned, where anything had
-/// to be. None: it was asked to stop.
+/// Returns the settings with everything decided that they leave open, and the training, if the estimator needs it.
+/// None: the host asked to stop.
 pub(super) fn prepare(
     scene: &Scene,
     view: &View,
@@ -103,7 +103,7 @@ pub(super) fn prepare(
 }
 
 impl Settings {
-    /// Returns true where the estimator needs to know something of the scene.
+    /// Returns true if the estimator needs training.
     fn needs_training(&self) -> bool {
         let needs_mean = self.integrator.has_candidates() && self.shadow_rays.needs_mean();
         needs_mean || self.integrator == IntegratorKind::Lvc
@@ -126,7 +126,7 @@ impl Training {
         }
     }
 
-    /// Learns for the estimator of `settings`, where that learns and `survey` has enough samples.
+    /// Learns for the estimator of `settings`, if it learns and `survey` has enough samples.
     fn learn(
         &mut self,
         input: TrainingInput<'_>,
@@ -144,8 +144,8 @@ impl Training {
         self.light_start = lessons.light_start;
     }
 
-    /// Raises the number of samples per subpath until the cache of a group has no more than [`MOST_CACHED`]
-    /// vertices on average, but leaves each group a subpath.
+    /// Raises the number of samples per light subpath until the cache of a group has at most [`MOST_CACHED`] vertices
+    /// on average. Each group keeps at least one subpath.
     fn bound_cache(&self, film: &FilmSettings, settings: &mut Settings) {
         if settings.integrator == IntegratorKind::Lvc {
             let pixels = film.crop.area();
@@ -156,7 +156,7 @@ impl Training {
         }
     }
 
-    /// Returns the counts of the strategies of `lvc`, with `light_subpaths` subpaths in a pass.
+    /// Returns the sample counts of the strategies of `lvc`, with `light_subpaths` subpaths in a pass.
     pub(super) fn counts(&self, settings: LvcSettings, light_subpaths: u64) -> SampleCounts {
         SampleCounts {
             connections: of_connections(settings.candidates, self.light_vertices),

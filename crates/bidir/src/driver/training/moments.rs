@@ -1,12 +1,12 @@
-//! The variance of a plan, by what the survey found.
+//! The variance of a plan, from the terms of the survey.
 //!
-//! A term of the survey has the value v = f / D, with D = Σ_j n_j p_j by the balance heuristic. A plan takes
-//! D_k of the same path, with its own numbers of samples and roulette, so that
+//! A term of the survey has the value v = f / D, with D = Σ_j n_j p_j by the balance heuristic. A plan has the
+//! density D_k for the same path, by its own numbers of samples and roulette, so that
 //!
 //! M_k = Σ v² D / D_k / (m² + ε) estimates Σ_blocks ∫ f² / D_k / (m² + ε) \[Grittmann22\],
 //!
-//! with m the mean of a pixel of the block and ε a part of the square of the image's. That is the variance of terms
-//! which vary alone; what those of one sample have in common is in [`quads`](super::quads).
+//! with m the mean of a pixel of the block, and ε a constant times the square of the image's mean. This is the
+//! variance of independent terms; [`quads`](super::quads) adds the covariance of terms of one sample.
 
 use super::blocks::{BLOCKS, Blocks};
 use super::constants::{DARK, LEAST_VARIANCE};
@@ -19,7 +19,7 @@ use crate::film::FilmSettings;
 use crate::select::ShadowRays;
 
 impl SurveyTerm {
-    /// Returns its kind, and how many terms of a plan it stands for, where the walk gets that far.
+    /// Returns its kind, and the number of terms of a plan that it stands for if the walk reaches its vertex.
     fn rate(&self, known: &Known, counts: &Counts) -> (Part, f64) {
         let deeper = usize::from(self.strategy.t > 2);
         match self.strategy.s {
@@ -32,7 +32,7 @@ impl SurveyTerm {
         }
     }
 
-    /// Returns how far its walk goes.
+    /// Returns the reach of its walk.
     fn reach(&self, known: &Known, counts: &Counts) -> Reach {
         let (s, t) = (usize::from(self.strategy.s), usize::from(self.strategy.t));
         Reach {
@@ -43,13 +43,13 @@ impl SurveyTerm {
     }
 }
 
-/// A term of the survey, in units of the root of m² + ε of its block.
+/// A term of the survey. Unit: the root of m² + ε of its block.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct RelativeTerm {
     block: usize,
     value: f64,
     score: f64,
-    /// s: what a square counts in the sum over blocks.
+    /// The weight of its square in the sum over blocks.
     scale: f64,
     /// Its part of the second moment of the survey.
     square: f64,
@@ -60,20 +60,21 @@ pub(super) struct RelativeTerm {
 pub(super) struct Variance {
     /// The variance of pixels.
     pub(super) pixels: f64,
-    /// The variance of the means of blocks of 16 x 16 pixels, times their pixels: more where neighbours share light subpaths.
+    /// The variance of the mean of a block of 16 x 16 pixels, times their number. It is larger than that of pixels if
+    /// neighbours share light subpaths.
     pub(super) blocks: f64,
 }
 
 impl Variance {
-    /// Returns the geometric mean of both, by which plans are compared: errors are measured by the noise of pixels, and a
-    /// viewer from afar, or a denoiser, leaves the noise of blocks.
+    /// Returns the geometric mean of both, by which plans are compared: measures of error see the noise of pixels,
+    /// and a distant viewer or a denoiser sees the noise of blocks.
     pub(super) fn mean(self) -> f64 {
         (self.pixels * self.blocks).sqrt()
     }
 }
 
 impl Survey {
-    /// Returns the terms relative to the means of their blocks. None: nothing was found.
+    /// Returns the terms relative to the means of their blocks. None: the survey found no light.
     pub(super) fn relative_terms(&self, film: &FilmSettings) -> Option<Vec<RelativeTerm>> {
         let places = self.places(film);
         let mut means = [0.0; BLOCKS];
@@ -100,7 +101,7 @@ impl Survey {
         (mean > 0.0).then(|| self.terms.iter().zip(places).map(relative).collect())
     }
 
-    /// Returns the block of each term, and the factor of its value in the mean of the block.
+    /// Returns the block of each term, and the factor by which the term's value enters the mean of the block.
     fn places(&self, film: &FilmSettings) -> Vec<(usize, f64)> {
         let blocks = Blocks::new(film.crop);
         let samples = blocks.samples(self.stats.samples);
@@ -116,8 +117,8 @@ impl Survey {
         self.terms.iter().map(place).collect()
     }
 
-    /// Returns the variance of a plan with `counts`, by [`relative_terms`](Self::relative_terms) and what is `known` of
-    /// them.
+    /// Returns the variance of a plan with `counts`, from the [`relative_terms`](Self::relative_terms) and what is
+    /// `known` of each.
     pub(super) fn judge(
         &self,
         relative: &[RelativeTerm],
@@ -143,14 +144,14 @@ impl Survey {
         sums.judgement(counts)
     }
 
-    /// Returns the four samples that sample number `number` is one of, without terms.
+    /// Returns the four samples that include sample `number`, without terms.
     fn quad(&self, number: u32) -> Quad {
         let first = number as usize / QUAD as usize * QUAD as usize;
         Quad::new(std::array::from_fn(|i| self.light_numbers[first + i]))
     }
 }
 
-/// The variance of plans that differ in their shadow rays alone.
+/// The variance of plans that differ only in their shadow rays.
 pub(super) struct Judgement {
     /// M_k.
     moment: f64,
@@ -158,12 +159,12 @@ pub(super) struct Judgement {
     all: f64,
     /// The variance that the other pixels of a block add, because they share light subpaths.
     common: f64,
-    /// The connections of the survey.
+    /// The connections of the survey, as candidates of the plan.
     candidates: Vec<Expected>,
 }
 
 impl Judgement {
-    /// Returns the variance with this rule.
+    /// Returns the variance if `rule` chooses the shadow rays.
     pub(super) fn variance(&self, rule: ShadowRays) -> Variance {
         let selection = match rule {
             ShadowRays::Budget(rays) => selection::variance(&self.candidates, f64::from(rays)),
@@ -182,7 +183,7 @@ impl Judgement {
 #[derive(Default)]
 struct Sums {
     moment: f64,
-    /// Σ T², by single connections.
+    /// The sum of T² that products of a connection with itself contribute.
     of_light: f64,
     quads: QuadVariance,
     candidates: Vec<Expected>,

@@ -1,5 +1,5 @@
-//! The plans of `auto`, and the choice among them: the least product of variance and cost, both by what the
-//! survey found (docs/derivations/choosing-a-plan.md).
+//! The plans of `auto`, and the choice among them: the plan with the least product of variance and cost, both
+//! estimated from the survey (docs/derivations/choosing-a-plan.md).
 
 use super::known::Judge;
 use super::moments::Judgement;
@@ -22,17 +22,17 @@ pub struct Plan {
     pub integrator: IntegratorKind,
     /// The roulette of walks.
     pub roulette: PathRoulette,
-    /// The number of samples for a light subpath, where these are shared.
+    /// The number of samples for each light subpath, if the estimator is `lvc`.
     pub samples_per_subpath: SamplesPerSubpath,
-    /// The candidates of camera vertices there.
+    /// The number of candidates of each camera vertex, likewise.
     pub candidates: CandidateCount,
-    /// The light points of camera vertices there.
+    /// The number of light points of each camera vertex, likewise.
     pub next_events: CandidateCount,
-    /// Which connections are traced.
+    /// The rule that chooses the connections to trace.
     pub shadow_rays: ShadowRays,
 }
 
-/// Path tracing, where the roulette begins at the third surface.
+/// Path tracing whose roulette begins at the third surface.
 pub(super) const PATH: Plan = Plan {
     integrator: IntegratorKind::Path,
     roulette: PathRoulette::Albedo { start: 2 },
@@ -42,7 +42,7 @@ pub(super) const PATH: Plan = Plan {
     shadow_rays: ShadowRays::All,
 };
 
-/// Path tracing, where the roulette begins at the second surface: among bright surfaces its walks are shorter.
+/// Path tracing whose roulette begins at the second surface: between bright surfaces its walks are shorter.
 pub(super) const SHORT_PATH: Plan = Plan {
     roulette: PathRoulette::Albedo { start: 1 },
     ..PATH
@@ -61,7 +61,7 @@ pub(super) const LVC: Plan = Plan {
     ..BDPT
 };
 
-/// Returns `lvc` with these numbers of candidates and light points of the first vertex, and of rays.
+/// Returns `lvc` with these numbers of candidates and light points at the first vertex, and of shadow rays.
 pub(super) const fn lvc_of(candidates: u16, light_points: u16, rays: u32) -> Plan {
     Plan {
         candidates: CandidateCount::new(candidates, 1),
@@ -71,12 +71,12 @@ pub(super) const fn lvc_of(candidates: u16, light_points: u16, rays: u32) -> Pla
     }
 }
 
-/// Returns `settings` by a plan that learns much the same as others of its kind.
+/// Returns `settings` with a typical plan of `lvc`: the others learn much the same.
 pub(super) fn typical(settings: &Settings) -> Settings {
     lvc_of(24, 2, 6).keeping(settings).apply(settings)
 }
 
-/// The plans.
+/// The plans that `auto` compares. Plans that differ only in their shadow rays follow each other.
 const PLANS: [Plan; 15] = [
     PATH,
     SHORT_PATH,
@@ -96,8 +96,8 @@ const PLANS: [Plan; 15] = [
 ];
 
 impl Plan {
-    /// Returns the plan with the least product of variance and cost. If the survey found no light: `lvc`, which
-    /// makes most paths, or `path` if there are no lights.
+    /// Returns the plan with the least product of variance and cost. If the survey found no light, it is `lvc`, which
+    /// makes the most paths, or `path` if the scene has no lights.
     pub(super) fn best(input: TrainingInput<'_>, survey: &Survey, cells: &Cells) -> Self {
         let settings = input.settings;
         let Some(terms) = survey.relative_terms(input.view.film()) else {
@@ -109,7 +109,7 @@ impl Plan {
         let mut judged: Option<(Self, Judgement)> = None;
         for plan in PLANS.map(|plan| plan.keeping(settings)) {
             let applied = plan.apply(settings);
-            // Plans that differ in their shadow rays alone follow each other.
+            // A judgement serves all plans that differ only in their shadow rays, which follow each other.
             let draws = Self {
                 shadow_rays: ShadowRays::All,
                 ..plan
@@ -127,7 +127,7 @@ impl Plan {
         best
     }
 
-    /// Returns the plan with the settings that are not left open.
+    /// Returns the plan with the values of all settings that are not left open.
     pub(super) fn keeping(mut self, settings: &Settings) -> Self {
         if !settings.open.roulette {
             self.roulette = settings.path.roulette;
@@ -156,8 +156,7 @@ impl Plan {
         settings
     }
 
-    /// Returns true where it makes all light paths that the settings ask for, and misses none that another
-    /// plan finds.
+    /// Returns true if the plan makes all light paths that the settings ask for, and misses none that `lvc` finds.
     fn is_possible(&self, input: TrainingInput<'_>) -> bool {
         let path = &input.settings.path;
         let missing = |integrator| {

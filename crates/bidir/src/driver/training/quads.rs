@@ -1,29 +1,30 @@
-//! Terms of one sample vary together: with the camera subpath W that they share, and with the light subpath. The survey
-//! takes four samples of a pixel, of two camera subpaths W and W', each with two light subpaths A and B and with its own
-//! light points, so that products of samples estimate products of expectations. With S the sum of the values that plan k
-//! adds on average where the survey finds a term,
+//! The covariance of terms of one sample, which share a camera subpath W and a light subpath. The survey takes four
+//! samples of a pixel: of two camera subpaths W and W', each with two light subpaths A and B and with its own light
+//! points, so that products of samples estimate products of expectations. With S the sum of the values that plan k
+//! adds on average for each term of the survey,
 //!
 //! Var_W E[S | W] = E[½ (S_WA - S_W'A) (S_WB - S_W'B)].
 //!
-//! Where the plan's walks go on ρ times as often, S counts each term ρ times, and a product of two terms of one walk counts
-//! as often as that walk reaches both: as the larger ρ.
+//! If the plan's walks go on ρ times as often, S counts each term ρ times. A product of two terms of one walk counts
+//! as often as the walk reaches both: the larger ρ times.
 //!
-//! Given W, draws are independent: a kind of term that the plan draws N times at a camera vertex has 1/N of the square
-//! of E[S_kind | W] less than its second moment, and the square is that of S_kind,WA S_kind,WB. Light points of the first
-//! camera vertex are drawn from N equal parts of the lights, one from each: they have 1/N of the variance between the
-//! means of parts less.
-//! Connections T with one of N light subpaths that G samples share vary with it, by Var_A E[T | W] / N in a pixel, and
-//! neighbours have in common ½ (T_WA - T_WB) (T_W'A - T_W'B) / N.
+//! Given W, draws are independent. If the plan draws a kind of term N times at a camera vertex, its second moment is
+//! less by 1/N of the square of E[S_kind | W], which S_kind,WA S_kind,WB estimates. Light points of the first camera
+//! vertex are drawn from N equal parts of the lights, one from each: their second moment is less by 1/N of the
+//! variance between the means of parts.
+//!
+//! The connections T with one of N light subpaths, which G samples share, vary with this subpath: by Var_A E[T | W] /
+//! N in a pixel. Neighbours have ½ (T_WA - T_WB) (T_W'A - T_W'B) / N of it in common.
 
 use super::counts::{Counts, STARTS};
 
-/// Camera vertices behind this many others are one. Unit: vertices.
+/// The number of depths that are told apart: the last stands for all deeper camera vertices.
 const DEPTHS: usize = 8;
 
 /// A kind of term.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Part {
-    /// s = 0; of a light that the camera sees directly or not.
+    /// s = 0; `is_seen` if the camera sees the light directly.
     Hit { is_seen: bool },
     /// s = 1.
     LightPoint,
@@ -31,18 +32,19 @@ pub(super) enum Part {
     Connection,
 }
 
-/// How far a walk goes.
+/// The length of a walk, and its probability relative to the survey.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Reach {
-    /// The camera vertices.
+    /// The number of camera vertices.
     pub(super) t: usize,
-    /// The surfaces that may end it in the survey alone.
+    /// The number of surfaces that may end the walk in the survey, but not in the plan.
     pub(super) surfaces: usize,
     /// ρ.
     pub(super) longer: f64,
 }
 
-/// Returns the products by depth, over the numbers of draws at the first depth and at later ones.
+/// Returns the sum over depths of the products of `a` and `b`, each divided by the number of draws at the first depth
+/// or at later ones.
 fn products(a: &[f64; DEPTHS], b: &[f64; DEPTHS], counts: [f64; 2]) -> f64 {
     let pairs = a.iter().zip(b).enumerate();
     pairs
@@ -50,18 +52,18 @@ fn products(a: &[f64; DEPTHS], b: &[f64; DEPTHS], counts: [f64; 2]) -> f64 {
         .sum()
 }
 
-/// The values of a sample.
+/// The sums of the values of a sample's terms.
 #[derive(Clone, Copy, Debug, Default)]
 struct Sums {
-    /// Values by the number of surfaces that may end the walk in the survey alone.
+    /// Values, by the number of surfaces that may end the walk in the survey, but not in the plan.
     reached: [f64; STARTS],
-    /// ρ, likewise; 0 if no term has this number.
+    /// ρ, by the same number; 0 if no term has it.
     longer: [f64; STARTS],
     light_points: [f64; DEPTHS],
-    /// The random number that chose the light of the first of them.
+    /// The random number that chose the light of the first light point.
     light_number: f32,
     connections: [f64; DEPTHS],
-    /// Σ of the squares of hits of lights that are not seen directly.
+    /// The sum of the squares of hits of lights that the camera does not see directly.
     hit_squares: f64,
     connection_squares: f64,
 }
@@ -73,7 +75,7 @@ impl Sums {
             .fold(0.0, |sum, (value, longer)| sum + value * longer)
     }
 
-    /// Returns the products of terms of this sample with terms of another one of the same walk.
+    /// Returns the sum of the products of terms of this sample with terms of another sample of the same walk.
     fn of_walk(&self, other: &Self) -> f64 {
         let longer = |i: usize| self.longer[i].max(other.longer[i]);
         let pairs = (0..STARTS).flat_map(|i| (0..STARTS).map(move |j| (i, j)));
@@ -82,9 +84,9 @@ impl Sums {
             .sum()
     }
 
-    /// Returns the variance between the means of `count` parts of the lights, Σ m² / N - m̄², of the first light point:
-    /// the products of points in one part, which a Nth of all pairs are. Subtracting a value near both, that of another
-    /// walk, changes its noise alone.
+    /// Returns an estimate of the variance Σ m² / N - m̄² between the means of N = `count` parts of the lights, for
+    /// the first light point. Σ m² comes from pairs of points in one part, which are 1/N of all pairs. Subtracting a
+    /// value near both, the mean of the other walk, changes only the noise of the estimate.
     fn of_parts(&self, other: &Self, near: [&Self; 2], count: f64) -> f64 {
         let part = |sums: &Self| (f64::from(sums.light_number) * count) as u32;
         let near = (near[0].light_points[0] + near[1].light_points[0]) / 2.0;
@@ -101,7 +103,7 @@ impl Sums {
         self.connections.iter().sum()
     }
 
-    /// Returns the products of different connections.
+    /// Returns the sum of the products of different connections.
     fn pairs(&self) -> f64 {
         self.connected() * self.connected() - self.connection_squares
     }
@@ -120,7 +122,7 @@ impl Quad {
         }))
     }
 
-    /// Adds what a term of sample number `i` of the four is on average, where the walk gets that far.
+    /// Adds the mean value of a plan's term to sample number `i` of the four, if the walk reaches it.
     pub(super) fn add(&mut self, i: usize, part: Part, reach: Reach, value: f64) {
         let (sums, depth) = (&mut self.0[i], (reach.t - 2).min(DEPTHS - 1));
         sums.reached[reach.surfaces] += value;
@@ -136,8 +138,8 @@ impl Quad {
         }
     }
 
-    /// Returns the variance of the camera subpath, less the squares of what draws have on average, and less the second
-    /// moments of hits, which are among those of all terms.
+    /// Returns the variance of the camera subpath, minus the squares of the means of draws, minus the second moments
+    /// of hits, which the second moment of all terms includes.
     fn alone(&self, counts: &Counts) -> f64 {
         let [wa, wb, va, vb] = &self.0;
         let walks = wa.of_walk(wb) + va.of_walk(vb) - wa.all() * vb.all() - wb.all() * va.all();
@@ -146,7 +148,7 @@ impl Quad {
             let light_points = products(&a.light_points, &b.light_points, counts.next_events);
             let connections = match &counts.draws {
                 Some(draws) => products(&a.connections, &b.connections, draws.candidates),
-                // Those of one light subpath vary together.
+                // Connections of one light subpath vary together.
                 None => a.connected() * b.connected() - (a.pairs() + b.pairs()) / 2.0,
             };
             2.0 * (light_points + connections)
@@ -154,7 +156,7 @@ impl Quad {
         2.0 * walks - hits - drawn[0] - drawn[1]
     }
 
-    /// Returns by how much drawing the first light points from parts of the lights lowers the variance.
+    /// Returns the reduction of variance by drawing the first light points from parts of the lights.
     fn parts(&self, counts: &Counts) -> f64 {
         let [wa, wb, va, vb] = &self.0;
         let [count, _] = counts.next_events;
@@ -163,7 +165,7 @@ impl Quad {
     }
 }
 
-/// Sums over pixels.
+/// The sums of quads over pixels.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct QuadVariance {
     /// The sum of `Quad::alone`.
@@ -172,7 +174,7 @@ pub(super) struct QuadVariance {
     parts: f64,
     /// The sum of the squares of `Quad::parts`.
     parts_squares: f64,
-    /// Σ over pairs of connections of one light subpath.
+    /// The sum of the products of different connections of one light subpath.
     pub(super) pairs: f64,
     /// Σ E[T | W]².
     pub(super) mean_squares: f64,
@@ -183,7 +185,7 @@ pub(super) struct QuadVariance {
 }
 
 impl QuadVariance {
-    /// Adds four samples, of which the square of each counts `scale`.
+    /// Adds four samples, with the weight `scale` of each square.
     pub(super) fn add(&mut self, quad: &Quad, counts: &Counts, scale: f64) {
         self.alone += quad.alone(counts) * scale;
         let parts = quad.parts(counts) * scale;
@@ -197,12 +199,12 @@ impl QuadVariance {
         self.common += 2.0 * w * v * scale;
     }
 
-    /// Returns the sum of `Quad::alone`, lowered by that of `Quad::parts` as far as the latter exceeds its standard error.
+    /// Returns the sum of `Quad::alone`, minus the sum of `Quad::parts` as far as that exceeds its standard error.
     pub(super) fn alone(&self) -> f64 {
         self.alone - (self.parts - self.parts_squares.sqrt()).max(0.0)
     }
 
-    /// Returns the part of the variance of T that two camera subpaths of a pixel have in common.
+    /// Returns the fraction of the variance of T that two camera subpaths of a pixel have in common.
     pub(super) fn correlation(&self) -> f64 {
         if self.spread > 0.0 {
             (self.common / self.spread).clamp(0.0, 1.0)

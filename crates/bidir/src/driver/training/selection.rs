@@ -1,28 +1,29 @@
-//! The variance that the selection of shadow rays adds, by the connections of a few samples of the survey, each of which
-//! stands for `count` candidates of the plan:
+//! The variance that the selection of shadow rays adds. It is estimated from the connections of a few samples of the
+//! survey, each of which stands for `count` candidates of the plan:
 //!
 //! Σ C² v (1 - π) / π - (Σ C v (1 - π))² / Σ π (1 - π),    π = min(1, C √V̂ / δ),    Σ π = K,
 //!
-//! which is that of a draw of a fixed number of rays \[Hajek64\].
+//! which is the variance of a draw of a fixed number of rays \[Hajek64\].
 
-/// Candidates of a plan, as one of the survey has them.
+/// The candidates of a plan that a connection of the survey stands for.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Expected {
-    /// The numbers of the block and of the sample that have it.
+    /// The number of its block.
     pub(super) block: u32,
+    /// The number of its sample.
     pub(super) sample: u32,
-    /// How many there are in a sample of the plan.
+    /// The number of such candidates in a sample of the plan.
     pub(super) count: f64,
     /// C √V̂.
     pub(super) score: f64,
     /// C v.
     pub(super) value: f64,
-    /// The factor of squares of the block.
+    /// The weight of squares in the block.
     pub(super) scale: f64,
 }
 
-/// Returns the variance of the selection of `rays` rays for each sample that has any of these candidates, which are in
-/// the order of their blocks.
+/// Returns the variance of selecting `rays` rays for each sample that has candidates. `candidates` is sorted by
+/// block.
 pub(super) fn variance(candidates: &[Expected], rays: f64) -> f64 {
     let blocks = candidates.chunk_by(|a, b| a.block == b.block);
     blocks
@@ -30,7 +31,7 @@ pub(super) fn variance(candidates: &[Expected], rays: f64) -> f64 {
         .sum()
 }
 
-/// Returns the variance of the selection from the candidates of a block, in all its samples.
+/// Returns the variance of the selection from the candidates of one block, summed over its samples.
 fn of_block(candidates: &[Expected], rays: f64) -> f64 {
     let samples = candidates.chunk_by(|a, b| a.sample == b.sample).count();
     let Some(threshold) = threshold(candidates, rays * samples as f64) else {

@@ -1,5 +1,5 @@
-//! The samples of training: of `bdpt`, with a light subpath each, and every connection traced. They have random
-//! numbers of their own and are spread evenly over the film.
+//! The samples of training: they are samples of `bdpt`, with a light subpath each, and every connection is traced.
+//! They have random numbers of their own and are spread evenly over the film.
 
 use super::super::spread;
 use super::constants::{FIRST_SAMPLES, GROUPS};
@@ -18,28 +18,28 @@ use accel::Stop;
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// The samples of a pixel: of two camera subpaths with two light subpaths each.
+/// The number of samples of a pixel: two camera subpaths, each with two light subpaths.
 pub(super) const QUAD: u64 = 4;
 
-/// The results of the samples.
+/// The results of the samples of training.
 #[derive(Default)]
 pub(super) struct Survey {
-    /// The sum of luminances that samples add to the mean pixel.
+    /// The sum over samples of the luminance that each adds to the mean pixel.
     pub(super) luminance: f64,
-    /// The contributions to the image.
+    /// The terms of the image, and connections that are not visible.
     pub(super) terms: Vec<SurveyTerm>,
     pub(super) work: WorkCounts,
-    /// For each sample, the random number that chooses the light of its first light point.
+    /// The random number of each sample that chooses the light of its first light point.
     pub(super) light_numbers: Vec<f32>,
-    /// Vertices and connections, to learn from.
+    /// The vertices and connections to learn from.
     pub(super) log: ConnectionLog,
     pub(super) stats: Stats,
-    /// True where there was no time for all samples.
+    /// True if the effort allowed fewer samples than training needs.
     pub(super) is_short: bool,
 }
 
 impl Survey {
-    /// Returns the samples of training. None: it was asked to stop.
+    /// Takes the samples of training. None: the host asked to stop.
     pub(super) fn run(input: TrainingInput<'_>, effort: Effort<'_>) -> Option<Self> {
         let surveyor = Surveyor::new(input, effort.stop);
         let mut survey = surveyor.round(0..FIRST_SAMPLES, &|| false)?;
@@ -63,7 +63,7 @@ impl Survey {
         self.stats.samples as f64
     }
 
-    /// Returns κ: the mean number of vertices of a light subpath that can be connected.
+    /// Returns κ, the mean number of connectable vertices of a light subpath.
     pub(super) fn light_vertices(&self) -> f64 {
         self.log.light_vertex_count() as f64 / self.samples()
     }
@@ -82,7 +82,7 @@ impl Survey {
         self.stats += &more.stats;
     }
 
-    /// Records what was made of sample number `number`, the one of `batch`.
+    /// Records the results of sample number `number`, the only one of `batch`.
     fn record(&mut self, job: &Job<'_>, number: u64, batch: &Batch) {
         let sample = &batch.walked.samples[0];
         let film = job.view.film();
@@ -138,7 +138,7 @@ struct Surveyor<'a> {
 impl<'a> Surveyor<'a> {
     fn new(input: TrainingInput<'a>, stop: Stop<'a>) -> Self {
         let mut settings = input.settings.clone();
-        // Shares of paths are those of these weights.
+        // The shares of paths are by these weights.
         settings.path.mis = MisHeuristic::Balance;
         let all = ShadowRays::All.selector(0.0);
         Self {
@@ -149,8 +149,8 @@ impl<'a> Surveyor<'a> {
         }
     }
 
-    /// Takes samples in groups, whose results are in order whichever threads had them. None: it became late, or was
-    /// asked to stop.
+    /// Takes samples in groups. Their results are in the order of groups, whichever threads took them. None:
+    /// `is_late` returned true, or the host asked to stop.
     fn round(&self, numbers: Range<u64>, is_late: IsLate<'_>) -> Option<Survey> {
         let count = numbers.end - numbers.start;
         let size = (count / GROUPS).max(QUAD);
@@ -178,7 +178,7 @@ impl<'a> Surveyor<'a> {
         Some(all)
     }
 
-    /// Takes one of the four samples of a pixel.
+    /// Takes sample number `number`, one of the four of its pixel.
     fn sample(&self, number: u64, batch: &mut Batch, survey: &mut Survey) {
         let TrainingInput { scene, view, .. } = self.input;
         let quad = number / QUAD;

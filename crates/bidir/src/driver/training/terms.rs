@@ -1,4 +1,4 @@
-//! The terms of the survey, and what estimators know of them.
+//! The terms of the survey, and the knowledge of them that estimators learn.
 
 use super::counts::Counts;
 use crate::contribution::Contribution;
@@ -6,7 +6,7 @@ use crate::film::FilmSettings;
 use crate::path::{Job, Shares};
 use crate::strategy::Strategy;
 
-/// A contribution to the image of the survey, or a connection that did not arrive.
+/// A contribution to the image of the survey, or a connection that is not visible.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SurveyTerm {
     /// The number of its sample.
@@ -16,19 +16,20 @@ pub(super) struct SurveyTerm {
     pub(super) strategy: Strategy,
     /// The light that its path begins on.
     pub(super) light: u32,
-    /// v; 0 where it did not arrive. Unit: luminance.
+    /// v; 0 if it is not visible. Unit: luminance.
     pub(super) value: f32,
-    /// The score of a candidate, where nothing is learned.
+    /// The score of a candidate without learned visibility; 0 for other terms.
     pub(super) score: f32,
-    /// True of s = 1 where it draws a light point of its own.
+    /// True for next-event estimation, s = 1 with a light point of its own.
     pub(super) is_next_event: bool,
-    /// The number of its connection among those traced, if it is one that has places.
+    /// The number of its connection among those traced. None: it has none, or its light vertex is at infinity.
     pub(super) edge: Option<u32>,
     pub(super) shares: Shares,
 }
 
 impl SurveyTerm {
-    /// Makes the term of a contribution of sample number `sample`, of which the filter takes `part` into `pixel`.
+    /// Makes the term of a contribution of sample number `sample`; the filter adds the fraction `part` of it to
+    /// `pixel`.
     pub(super) fn new(
         job: &Job<'_>,
         sample: u64,
@@ -55,7 +56,8 @@ impl SurveyTerm {
         self.strategy.t == 1
     }
 
-    /// Returns its part of the mean of `film`: there is a sample for each pixel, and a light image for the film.
+    /// Returns the value that it adds to the mean pixel of `film`: a pixel has its own sample, and the whole film
+    /// shares a splat.
     pub(super) fn of_mean_pixel(&self, film: &FilmSettings) -> f64 {
         if self.is_light_image() {
             f64::from(self.value) / film.light_paths() as f64
@@ -64,29 +66,30 @@ impl SurveyTerm {
         }
     }
 
-    /// Returns f / D_k: what it is of the value of a pixel of `film` where the numbers of samples are `counts`.
+    /// Returns f / D_k, its value in a pixel of `film` if the numbers of samples are `counts`.
     pub(super) fn value_by(&self, film: &FilmSettings, counts: &Counts) -> f64 {
         self.of_mean_pixel(film) / counts.density_ratio(&self.shares).all
     }
 }
 
-/// The learned numbers of samples of a term's connections, and their visibility.
+/// The learned numbers of samples of the connections of a term's path, and the learned visibility of its own
+/// connection.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Known {
-    /// The shares of its path, with the numbers of samples that are learned.
+    /// The shares of its path, by the learned numbers of samples.
     pub(super) shares: Shares,
-    /// Σ n_j² p_j / D of connections with light walks, of t = 2 and of t > 2, where n_j has what is learned alone.
+    /// Σ n_j² p_j / D over connections with light walks, for t = 2 and for t > 2. n_j has only its learned factor.
     pub(super) squares: [f64; 2],
-    /// Σ n_j p_j (e - 1) / D, where a connection has e times the second moment, as light vertices of its cell are few.
+    /// Σ n_j p_j (e - 1) / D, if a connection has e times the second moment because its cell has few light vertices.
     pub(super) excess: [f64; 2],
-    /// The factor by which its own connection has more samples.
+    /// The factor by which learning changes the number of samples of its own connection.
     pub(super) rate: f64,
     /// √V̂.
     pub(super) root_visibility: f32,
 }
 
 impl Known {
-    /// Returns the knowledge where nothing is learned.
+    /// Returns the knowledge if nothing is learned.
     pub(super) fn nothing(term: &SurveyTerm) -> Self {
         Self {
             shares: term.shares,

@@ -1,4 +1,4 @@
-//! The counts of the survey that the cost of a plan follows from.
+//! The counts of the survey that determine the cost of a plan.
 
 use super::counts::{STARTS, longer};
 use crate::integrator::Batch;
@@ -6,8 +6,8 @@ use crate::path::Job;
 use crate::strategy::Strategy;
 use std::ops::AddAssign;
 
-/// Counts of the survey's samples. Walks have a roulette that begins at surface 0, 1 or 2; pairs are of t = 2 and of
-/// t > 2.
+/// Sums over the survey's samples. Arrays of [`STARTS`] are for a roulette of camera walks that begins at surface 0,
+/// 1 or 2; the elements of pairs are for t = 2 and for t > 2.
 #[derive(Clone, Copy, Default)]
 pub(super) struct WorkCounts {
     /// Rays of camera walks, by the start of the roulette.
@@ -16,9 +16,9 @@ pub(super) struct WorkCounts {
     pub(super) next_events: [[f64; 2]; STARTS],
     /// Connections with light walks.
     pub(super) connections: [f64; 2],
-    /// Connections with light walks whose two vertices are diffuse, by the balance heuristic.
+    /// Connections with light walks between two diffuse vertices, by the balance heuristic.
     pub(super) diffuse: [f64; 2],
-    /// Samples that have any connection.
+    /// The number of samples that have a connection.
     pub(super) connected: f64,
 }
 

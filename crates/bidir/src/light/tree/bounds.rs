@@ -15,7 +15,7 @@ pub(in crate::light) struct Cone {
     pub(in crate::light) spread: f32,
     /// θ_e. Range: `[0, π]`, rad.
     pub(in crate::light) opening: f32,
-    /// True where the cone at the other side of the surface gets the same.
+    /// True if the other side of the surface emits the mirrored cone as well.
     pub(in crate::light) is_mirrored: bool,
 }
 
@@ -28,7 +28,7 @@ impl Cone {
         is_mirrored: false,
     };
 
-    /// Makes a flat surface with the normal `n`.
+    /// Makes the cone of a flat surface with the normal `n`.
     pub(in crate::light) fn flat(n: Vec3, is_mirrored: bool) -> Self {
         Self {
             axis: n,
@@ -57,7 +57,7 @@ impl Cone {
         }
         let spread = 0.5 * (wide.spread + reach);
         let across = narrow.axis - wide.axis * wide.axis.dot(narrow.axis);
-        // Of axes that are nearly one line the plane is unknown: the wider cone's axis stays.
+        // Axes that are nearly on one line span no plane: the wider cone keeps its axis.
         if spread >= PI || across.length() < 1e-3 {
             let spread = reach.min(PI);
             return Self { spread, ..both };
@@ -93,12 +93,12 @@ pub(in crate::light) struct EmitterBounds {
     pub(in crate::light) bounds: Aabb,
     /// A cone around the directions of their light.
     pub(in crate::light) cone: Cone,
-    /// The sum of their intensities, each where it is greatest. Unit: W/sr, luminance.
+    /// The sum of their peak intensities. Unit: W/sr, luminance.
     pub(in crate::light) intensity: f32,
 }
 
 impl EmitterBounds {
-    /// Bounds of nothing that emits.
+    /// The bounds of no emitter.
     pub(in crate::light) const NOTHING: Self = Self {
         bounds: Aabb::EMPTY,
         cone: Cone::EVERYWHERE,

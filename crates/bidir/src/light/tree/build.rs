@@ -1,42 +1,42 @@
-//! Building from the root: emitters are divided where Σ Φ r² m is least, over both sides, r² that of
-//! the ball around a side and m from 1 to 4 by how unlike its directions are: the surface-area
-//! orientation heuristic of \[Conty18\] with the ball that the importance knows in place of the
-//! box, and without cones, which would have to be united for every place where one could divide.
+//! Builds the tree from the root: divides emitters where the sum of Φ r² m over both sides is least. r is the radius
+//! of the ball around a side, and m, from 1 to 4, grows with the spread of its directions. This is the surface-area
+//! orientation heuristic of \[Conty18\], with the ball of the importance in place of the box, and without cones,
+//! which would need a union for each possible division.
 //!
-//! With c the length of the mean of the axes, weighted by Φ, m = 4 - 3 c³ is within 5 % of
-//! 1/π times the measure that \[Conty18\] takes, of a cone evenly filled with flat emitters' normals.
+//! With c the length of the mean of the axes, weighted by Φ, m = 4 - 3 c³ is within 5 % of 1/π times the measure of
+//! \[Conty18\], for a cone that normals of flat emitters fill evenly.
 
 use super::bounds::EmitterBounds;
 use super::node::{Child, Node, WIDTH, is_narrow, radius2};
 use crate::math::{PI, Vec3};
 use accel::Aabb;
 
-/// Bins along each axis, between which it is divided.
+/// The number of bins along each axis: planes of division lie between bins.
 const BINS: usize = 16;
-/// From this level on emitters are divided in halves by number: 20 levels of quarters suffice, and a path holds 32.
+/// The level from which emitters are divided into halves by number: 20 levels of quarters suffice for all, and a path
+/// has room for 32.
 const HEURISTIC_LEVELS: u32 = 12;
 
-/// An emitter by its number.
+/// An emitter, with its number and its bounds.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Item {
     pub(super) emitter: u32,
     pub(super) around: EmitterBounds,
 }
 
-/// A tree, the root first.
+/// A tree, whose root is the first node.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Built {
     pub(super) nodes: Vec<Node>,
-    /// The emitters below each child of a node, as a range of `order`, which begins here and ends
-    /// where the next begins.
+    /// For each node, where the range of each child begins in `order`; it ends where the next one begins.
     pub(super) begins: Vec<[u32; WIDTH + 1]>,
-    /// The emitters, those below a node beside each other, with their intensities.
+    /// The emitters with their intensities; those below a node are neighbours.
     pub(super) order: Vec<(u32, f32)>,
-    /// The path to each emitter: two bits for each level, the root's lowest.
+    /// The path to each emitter: two bits for each level, those of the root lowest.
     pub(super) paths: Vec<u64>,
 }
 
-/// Returns the tree over `items`, of which there is one at least; `paths` has room for every emitter.
+/// Builds the tree over `items`, of which there is at least one; `paths` has an element for each emitter.
 pub(super) fn build(items: &mut [Item], paths: Vec<u64>) -> Built {
     let mut built = Built {
         paths,
@@ -47,7 +47,7 @@ pub(super) fn build(items: &mut [Item], paths: Vec<u64>) -> Built {
 }
 
 impl Built {
-    /// Adds the node of `items` and all below it: its index and its bounds.
+    /// Adds the node of `items` and all nodes below it. Returns its index and its bounds.
     fn node(&mut self, items: &mut [Item], path: u64, level: u32) -> (u32, EmitterBounds) {
         let index = self.nodes.len();
         self.nodes.push(Node::EMPTY);
@@ -81,19 +81,19 @@ impl Built {
     }
 }
 
-/// Returns true where all shine in all directions.
+/// Returns true if all emit in all directions.
 fn are_even(items: &[Item]) -> bool {
     items.iter().all(|item| item.around.cone.spread >= PI)
 }
 
-/// Returns the emitters of the children of a node; children of one half are neighbours.
+/// Divides emitters among the children of a node; children of one half are neighbours.
 fn quarters(items: &mut [Item], level: u32) -> [&mut [Item]; WIDTH] {
     let [a, b] = halves(items, level);
     let [[a, b], [c, d]] = [halves(a, level), halves(b, level)];
     [a, b, c, d]
 }
 
-/// Divides `items`; neither part is empty where there are two or more.
+/// Divides `items` in two. Neither part is empty if there are two items or more.
 fn halves(items: &mut [Item], level: u32) -> [&mut [Item]; 2] {
     let plane = if level < HEURISTIC_LEVELS && items.len() > 1 {
         best_plane(items)
@@ -108,7 +108,7 @@ fn halves(items: &mut [Item], level: u32) -> [&mut [Item]; 2] {
     [a, b]
 }
 
-/// Brings the items that `is_before` to the front. Returns how many there are.
+/// Moves the items that satisfy `is_before` to the front, and returns their number.
 fn partition(items: &mut [Item], is_before: impl Fn(&Item) -> bool) -> usize {
     let mut count = 0;
     for i in 0..items.len() {
@@ -137,7 +137,7 @@ impl Axis {
     }
 }
 
-/// A plane that divides items: before a bin.
+/// A plane of division: it lies before bin number `bin` of `axis`.
 struct Plane {
     axis: Axis,
     bin: usize,
@@ -172,7 +172,7 @@ fn best_plane(items: &[Item]) -> Option<Plane> {
         .map(|(_, plane)| plane)
 }
 
-/// Returns the bin of an axis before which dividing costs least, with the cost.
+/// Returns the least cost of a division along an axis, and the bin before which the plane lies.
 fn best_bin(items: &[Item], axis: &Axis) -> Option<(f32, usize)> {
     let mut bins = [Sum::EMPTY; BINS];
     for item in items {
@@ -196,7 +196,7 @@ fn best_bin(items: &[Item], axis: &Axis) -> Option<(f32, usize)> {
     best
 }
 
-/// Emitters together.
+/// The sum of some emitters.
 #[derive(Clone, Copy)]
 struct Sum {
     bounds: Aabb,
@@ -226,7 +226,7 @@ impl Sum {
         self.directions += other.directions;
     }
 
-    /// Returns Φ r² m. Infinite where there is nothing, so that no part is empty.
+    /// Returns Φ r² m. It is infinite without emitters, so that no side of a plane is empty.
     fn cost(&self) -> f32 {
         if self.intensity <= 0.0 {
             return f32::INFINITY;

@@ -1,4 +1,4 @@
-//! Down the tree: drawing an emitter for a receiver, and the probability of one that is known.
+//! Walks down the tree: draws an emitter for a receiver, or finds the probability of a given emitter.
 
 use super::Receiver;
 use super::build::{Built, Item, build};
@@ -9,18 +9,18 @@ use std::ops::Range;
 /// The path of an emitter that is not in the tree: no path is that long.
 const NOWHERE: u64 = u64::MAX;
 
-/// A tree over emitters that have numbers.
+/// A tree over numbered emitters.
 #[derive(Clone, Debug)]
 pub(super) struct Hierarchy {
     built: Built,
-    /// Sums of the intensities of the first emitters in the tree's order, from 0.
+    /// The sum of the intensities of the first n emitters in the tree's order, from n = 0 on.
     sums: Vec<f64>,
-    /// The place of each emitter in that order.
+    /// The index of each emitter in that order.
     places: Vec<u32>,
 }
 
 impl Hierarchy {
-    /// Returns the tree over `items`, which are some of `count` emitters.
+    /// Makes the tree over `items`, which are some of `count` emitters.
     pub(super) fn new(items: &mut [Item], count: usize) -> Self {
         let mut built = Built {
             paths: vec![NOWHERE; count],
@@ -44,7 +44,7 @@ impl Hierarchy {
         }
     }
 
-    /// Draws an emitter with its probability. There has to be one.
+    /// Draws an emitter, and returns its probability with it. There has to be an emitter.
     #[inline]
     pub(super) fn sample(&self, receiver: &Receiver, u: f32) -> (usize, f32) {
         let (mut u, mut prob, mut node) = (u, 1.0, 0);
@@ -66,8 +66,8 @@ impl Hierarchy {
         }
     }
 
-    /// Returns the probability that [`sample`](Self::sample) draws `emitter` with: the same products, so the
-    /// same number.
+    /// Returns the probability with which [`sample`](Self::sample) draws `emitter`: the products are the same, hence
+    /// the number is.
     #[inline]
     pub(super) fn prob(&self, receiver: &Receiver, emitter: usize) -> f32 {
         let mut path = self.built.paths[emitter];
@@ -91,14 +91,14 @@ impl Hierarchy {
         }
     }
 
-    /// Returns the places of the emitters below child number `i` of a node.
+    /// Returns the range, in the tree's order, of the emitters below child number `i` of a node.
     #[inline]
     fn below(&self, node: usize, i: usize) -> Range<usize> {
         let begins = &self.built.begins[node];
         begins[i] as usize..begins[i + 1] as usize
     }
 
-    /// Draws one of the places of a range by intensity.
+    /// Draws an index in a range by intensity.
     #[inline]
     fn choose_alike(&self, range: &Range<usize>, u: f32) -> usize {
         let (from, to) = (self.sums[range.start], self.sums[range.end]);
@@ -115,13 +115,13 @@ impl Hierarchy {
     }
 }
 
-/// Chooses one of the shares, which sum to 1, and stretches what is left of `u` to `[0, 1)`.
+/// Chooses one of the shares, which sum to 1, and rescales the rest of `u` to `[0, 1)`.
 #[inline]
 fn choose(u: &mut f32, shares: [f32; WIDTH]) -> (usize, f32) {
     let mut before = 0.0;
     let mut chosen = (0, 0.0, 0.0);
     for (i, &share) in shares.iter().enumerate() {
-        // The last that begins at or before u; rounding may leave a little after the last one.
+        // The last share that begins at or before u; by rounding, u may be behind the end of all.
         if share > 0.0 && (before <= *u || chosen.1 <= 0.0) {
             chosen = (i, share, before);
         }

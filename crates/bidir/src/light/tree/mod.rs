@@ -1,33 +1,32 @@
-//! P(emitter | receiver) = a P(power) + (1 - a) Π I_child / Σ I: a choice for next-event estimation
-//! that knows where its receiver is, by a tree over the emitters \[Conty18\] with four children to a
-//! node.
+//! The choice of an emitter for next-event estimation that depends on the receiver: P(emitter | receiver) = a
+//! P(power) + (1 - a) Π I_child / Σ I, by a tree over the emitters \[Conty18\] whose nodes have four children.
 //!
-//! An emitter is a light, or a triangle of a mesh that emits from more than two. From the root down,
-//! a child is chosen by its importance I, about the irradiance that it gives, Φ cosθ / d² for one
-//! emitter of intensity Φ [PBRT4, §12.6.3]. For a child that is a ball of radius r at distance d, with normals within
-//! θ_o of an axis and emission within θ_e of those, each factor takes its greatest value:
+//! An emitter is a light, or a triangle of an emitting mesh of more than two. From the root down, a child is chosen
+//! by its importance I, an estimate of the irradiance that it causes: Φ cosθ / d² for one emitter of intensity Φ
+//! [PBRT4, §12.6.3]. The bounds of a child are a ball of radius r at distance d, normals within θ_o of an axis, and
+//! emission within θ_e of a normal. Each factor takes its largest value within these bounds:
 //!
-//! - d² is that of the centre, and r² at the least, so that what is within does not depend on where;
-//! - θ' = max(0, θ - θ_o - θ_u), with θ from the axis to the receiver, and sinθ_u = r/d the cone in
-//!   which the ball is seen: no normal is nearer to the receiver's direction. Beyond θ_e none emits;
-//! - θ_r' = max(0, θ_r - θ_u), from the receiver's shading normal to the centre, on the side that
-//!   the path goes on at. If the surface transmits, it is |cosθ_r|.
+//! - d is the distance of the centre, and at least r, so that I does not depend on the position within the ball;
+//! - θ' = max(0, θ - θ_o - θ_u) is the least angle between a normal and the direction to the receiver, with θ the
+//!   angle between the axis and the direction from the centre to the receiver, and θ_u that in which the ball is
+//!   seen, sinθ_u = r/d. Beyond θ_e nothing is emitted;
+//! - θ_r' = max(0, θ_r - θ_u), with θ_r the angle between the direction to the centre and the receiver's shading
+//!   normal, on the side at which the path goes on. If the surface transmits, |cosθ_r| replaces cosθ_r.
 //!
-//! Inside of the ball all cosines are 1. If bounds exclude all light, a thousandth is
-//! left, as they are rounded, and as a choice has to be made; within the horizon the receiver's
-//! cosine is taken for a tenth at least, as much that shines does so at grazing angles.
+//! Inside the ball all cosines are 1. If the bounds exclude all light, a thousandth of it is left, because bounds are
+//! rounded, and because a choice is needed. Above the horizon the receiver's cosine counts as at least a tenth,
+//! because glossy surfaces reflect much at grazing angles.
 //!
-//! I knows nothing of what is in the way, nor of lights at infinity. For both there is the part a, in
-//! which emitters are chosen by power alone. It bounds what ignorance costs: next-event estimation
-//! has at most 1/a times the second moment that choosing by power has. Without lights at infinity a
-//! is 1/16, so a sixteenth of the samples ignores the tree; with them it is 1/2, so that neither the sky nor the
-//! lamps can cost more than twice what they must.
+//! I ignores occlusion and lights at infinity. For both, a fraction a of the choices is only by power. It bounds the
+//! cost of what I ignores: the second moment of next-event estimation is at most 1/a times that of a choice by power.
+//! Without lights at infinity a is 1/16; with them it is 1/2, so that neither the sky nor the lamps cost more than
+//! twice what they must.
 //!
-//! Below a child that is at least eight radii away, and whose emitters send their light in much the
-//! same directions, or evenly, the choice is by intensity alone: more nodes would add little.
+//! Below a child that is at least eight radii away, and whose emitters emit evenly or in similar directions, the
+//! choice is only by intensity: more nodes would add little.
 //!
-//! One number is used at every level, so that its stratification is kept. The probability of an
-//! emitter for a receiver can be found again: each knows its path from the root, as bits.
+//! All levels use one random number, so that its stratification is kept. The probability of a given emitter can be
+//! computed, because its path from the root is stored, as bits.
 
 mod bounds;
 mod build;
@@ -41,9 +40,9 @@ use crate::math::{Distribution1d, ONE_MINUS_EPSILON, Vec3};
 use build::Item;
 use hierarchy::Hierarchy;
 
-/// The part of choices by power where there is light at infinity.
+/// The fraction of choices by power if there is light at infinity.
 const POWER_BESIDE_INFINITY: f32 = 0.5;
-/// The same elsewhere.
+/// The fraction of choices by power if there is no light at infinity.
 const POWER: f32 = 1.0 / 16.0;
 
 /// The sides whose light a surface scatters.
@@ -91,7 +90,7 @@ pub struct ChosenEmitter {
 #[derive(Clone, Debug)]
 pub struct LightTree {
     emitters: Vec<(u32, Part)>,
-    /// The first emitter of each light; the others of a mesh follow, by primitive.
+    /// The index of the first emitter of each light; the other primitives of a mesh follow.
     first: Vec<u32>,
     by_power: Distribution1d,
     /// a. Range: `[0, 1]`.
@@ -102,7 +101,7 @@ pub struct LightTree {
 /// Returns a, for this number of emitters in the tree.
 fn power_part(in_tree: usize, beside_infinity: bool) -> f32 {
     match (in_tree, beside_infinity) {
-        // There is nothing to choose among.
+        // There is no choice.
         (0, _) | (1, false) => 1.0,
         (_, true) => POWER_BESIDE_INFINITY,
         (_, false) => POWER,
@@ -110,7 +109,7 @@ fn power_part(in_tree: usize, beside_infinity: bool) -> f32 {
 }
 
 impl LightTree {
-    /// Returns the choice among `lights`.
+    /// Makes the choice among `lights`.
     pub fn new(lights: &[Light], context: &LightContext<'_>) -> Self {
         let mut first = Vec::with_capacity(lights.len());
         let mut emitters = Vec::new();
@@ -137,8 +136,7 @@ impl LightTree {
         }
     }
 
-    /// Draws an emitter. None: there is no light. The receiver and the number `u` are
-    /// asked for only if there is a choice.
+    /// Draws an emitter. Calls `receiver` and `u` only if there is a choice. None: there is no light.
     #[inline]
     pub fn sample(
         &self,
@@ -167,8 +165,8 @@ impl LightTree {
         self.chosen(emitter, in_tree)
     }
 
-    /// Returns the emitter that primitive number `primitive` of a light is, or is a part of, with the
-    /// probability that [`sample`](Self::sample) draws it with.
+    /// Returns the emitter that primitive number `primitive` of a light is, or belongs to, with the probability that
+    /// [`sample`](Self::sample) draws it.
     #[inline]
     pub fn find(
         &self,
@@ -193,7 +191,7 @@ impl LightTree {
         self.chosen(emitter, self.tree.prob(receiver, emitter))
     }
 
-    /// Returns the emitter with its probability, of which `in_tree` is the tree's.
+    /// Returns an emitter with its probability; `in_tree` is its probability by the tree only.
     #[inline]
     fn chosen(&self, emitter: usize, in_tree: f32) -> ChosenEmitter {
         let ((light, part), a) = (self.emitters[emitter], self.power_part);

@@ -1,5 +1,5 @@
-//! I = Φ max(cosθ' cosθ_r', ε) / d², about the irradiance (W/m², luminance) of a receiver by all
-//! emitters of a child, for the four children of a node at once.
+//! The importance I = Φ max(cosθ' cosθ_r', ε) / d² of the four children of a node at once: an estimate of the
+//! irradiance at a receiver by all emitters of a child. Unit: W/m², luminance.
 
 #[cfg(test)]
 mod tests;
@@ -9,19 +9,19 @@ use crate::math::lanes::{Vec3x4, dot, offset};
 use accel::Aabb;
 use glam::Vec4;
 
-/// The children of a node.
+/// The number of children of a node.
 pub(super) const WIDTH: usize = 4;
 
-/// The factor left of the importance where bounds exclude all light: they are rounded, and a
-/// receiver whose emitters all turn away still needs a choice.
+/// The factor of the importance if bounds exclude all light: they are rounded, and a choice is needed even if all
+/// emitters turn away from the receiver.
 const LEAST: f32 = 1e-3;
-/// The least cosine of a receiver within its horizon: glossy surfaces shine at grazing angles too.
+/// The least cosine of a receiver above its horizon: glossy surfaces reflect at grazing angles, too.
 const GRAZING: f32 = 0.1;
 
-/// The kinds of a child.
+/// A child of a node.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Child {
-    /// Nothing: a place that is left.
+    /// No child.
     None,
     /// An emitter, by number.
     Leaf(u32),
@@ -29,11 +29,11 @@ pub(super) enum Child {
     Inner(u32),
 }
 
-/// From how many radii away emitters are alike: their distances differ by an eighth at the most.
+/// The distance, in radii, from which emitters are alike: their distances differ by an eighth at most.
 const FAR: f32 = 8.0;
-/// The most that directions of emitters differ which are alike. Unit: rad.
+/// The largest spread of normals of emitters that are alike. Unit: rad.
 const NARROW: f32 = 0.35;
-/// The narrowest emission of emitters that are alike: of smaller cones a receiver may be in some.
+/// The narrowest emission of emitters that are alike: of narrower cones a receiver may be in some, but not in others.
 /// Unit: rad.
 const OPEN: f32 = 1.0;
 
@@ -47,11 +47,11 @@ pub(super) struct Node {
     spread: Angle,
     /// cosθ_e.
     cos_opening: Vec4,
-    /// 1 where emission is mirrored, else 0.
+    /// 1 if emission is mirrored, else 0.
     mirrored: Vec4,
-    /// Φ; 0 where there is no child. Unit: W/sr, luminance.
+    /// Φ; 0 if there is no child. Unit: W/sr, luminance.
     intensity: Vec4,
-    /// The square of the distance beyond which emitters below are alike. Unit: m².
+    /// The square of the distance beyond which the emitters of a child are alike. Unit: m².
     far2: Vec4,
     pub(super) children: [Child; WIDTH],
 }
@@ -59,14 +59,14 @@ pub(super) struct Node {
 /// The shares of the children for a receiver.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Shares {
-    /// I / Σ I of each.
+    /// I / Σ I of each child.
     pub(super) of: [f32; WIDTH],
-    /// A bit for each whose emitters are alike.
+    /// A bit for each child, 1 if its emitters are alike.
     alike: u32,
 }
 
 impl Shares {
-    /// Returns true where the emitters of child number `i` differ in intensity alone.
+    /// Returns true if the emitters of child number `i` differ only in intensity.
     #[inline]
     pub(super) fn are_alike(&self, i: usize) -> bool {
         self.alike >> i & 1 == 1
@@ -87,7 +87,7 @@ impl Angle {
         Self { cos, sin }
     }
 
-    /// Subtracts `other`; 0 where nothing is left.
+    /// Subtracts `other`; the result is at least 0.
     #[inline]
     fn less(&self, other: &Self) -> Self {
         let is_within = self.cos.cmpgt(other.cos);
@@ -117,7 +117,7 @@ impl Node {
         children: [Child::None; WIDTH],
     };
 
-    /// Puts in child number `i`.
+    /// Sets child number `i`.
     pub(super) fn set(&mut self, i: usize, child: Child, around: &EmitterBounds) {
         let (bounds, cone) = (&around.bounds, &around.cone);
         let centre = bounds.center();
@@ -134,7 +134,7 @@ impl Node {
         self.children[i] = child;
     }
 
-    /// Marks child number `i` as one of emitters that shine evenly, or in much the same directions.
+    /// Marks the emitters of child number `i` as emitting evenly, or in similar directions.
     pub(super) fn set_uniform(&mut self, i: usize) {
         self.far2[i] = FAR * FAR * self.radius2[i];
     }
@@ -151,7 +151,7 @@ impl Node {
         }
     }
 
-    /// Returns I of each child; 0 where there is none, positive elsewhere. Unit: W/m², luminance.
+    /// Returns I of each child: positive, or 0 if there is no child. Unit: W/m², luminance.
     #[inline]
     fn importances(&self, receiver: &Receiver, across: &Vec3x4) -> Vec4 {
         let distance2 = dot(across, across);
@@ -197,7 +197,7 @@ fn reception(facing: Facing, cos: Vec4, seen: &Angle) -> Vec4 {
     Vec4::select(least.cmpgt(Vec4::ZERO), lit, Vec4::ZERO)
 }
 
-/// Returns true where `cone` is so narrow that its emitters' directions hardly matter from far away.
+/// Returns true if `cone` is so narrow that its emitters' directions hardly matter from far away.
 pub(super) fn is_narrow(cone: &Cone) -> bool {
     cone.spread <= NARROW && cone.opening >= OPEN
 }

@@ -15,7 +15,7 @@ use std::sync::Arc;
 /// A texture that turns the shading frame of a surface.
 #[derive(Clone, Debug)]
 pub enum Relief {
-    /// The normals of the surface pushed out along its normal by a height. Unit: m.
+    /// The normals of the surface displaced along its normal by a height. Unit: m.
     Displacement(FloatTexture),
     /// The normals of an image.
     NormalMap(NormalMap),
@@ -36,14 +36,15 @@ pub struct NormalMap {
 /// normal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Bitangent {
-    /// So that the frame is right-handed, as in pbrt-v4.
+    /// The y that makes the frame right-handed, as in pbrt-v4.
     RightHanded,
-    /// To the left of x, or to the right where the parameters are mirrored: to the side of ∂p/∂v
-    /// where x is that of ∂p/∂u. Mirrored parameters mirror the relief.
+    /// To the side of ∂p/∂v if x is along ∂p/∂u: to the left of x, or to the right if the parameters are mirrored.
+    /// Mirrored parameters mirror the relief.
     AlongV,
 }
 
-/// Returns the frame of `surface` with the z nearest to `normal` on the front, or as it is where that is undefined.
+/// Returns a frame whose z is `normal`, on the side of the geometric normal; if `normal` has no direction, the
+/// shading frame of `surface`.
 fn fronted(surface: &SurfacePoint, normal: Vec3, tangent: Vec3) -> Frame {
     let Some(normal) = normal.try_normalize() else {
         return surface.shading;
@@ -64,7 +65,7 @@ pub struct Perturbed {
 }
 
 impl Material {
-    /// Makes a principled material thin-walled; other materials as they are.
+    /// Returns the material; a principled one is made thin-walled.
     #[must_use]
     pub fn into_thin(self) -> Self {
         match self {
@@ -80,7 +81,8 @@ impl Material {
         }
     }
 
-    /// Returns the material under `relief`; of a mixture every part that has none of its own.
+    /// Returns the material under `relief`. A material with a relief of its own keeps it; a mixture gives `relief` to
+    /// its parts.
     #[must_use]
     pub fn with_relief(self, relief: Relief) -> Self {
         match self {
@@ -132,11 +134,11 @@ impl NormalMap {
     }
 }
 
-/// Returns the normal of p + h n_s, not normalised, and its tangent along u:
-/// ∂p/∂u + ∂h/∂u n_s + h ∂n_s/∂u, crossed with the same along v [PBRT4, §10.5.4].
+/// Returns the normal of p + h n_s, not normalised, and its tangent along u, ∂p/∂u + ∂h/∂u n_s + h ∂n_s/∂u. The
+/// normal is the cross product of this tangent and the one along v [PBRT4, §10.5.4].
 ///
-/// Tangents are those of the surface that the shading normal is the normal of, so that a constant
-/// height changes nothing on a flat surface. Derivatives of h are differences over a step.
+/// ∂p/∂u and ∂p/∂v are projected to the plane of the shading normal, so that a constant height changes nothing on a
+/// flat surface. Derivatives of h are differences over a step.
 fn displaced(
     height: &FloatTexture,
     surface: &SurfacePoint,
@@ -162,8 +164,8 @@ fn displaced(
     (along_u.cross(along_v), along_u)
 }
 
-/// Returns how far apart the heights are that are compared, in units of a parameter: as a pixel is wide, but
-/// no less than what rounding leaves of differences.
+/// Returns the distance between compared heights, in units of a parameter: the width of a pixel, but at least what
+/// keeps their difference above rounding.
 #[inline]
 fn step(at: &TexturePoint, gradient: Vec3) -> f32 {
     let wide = at.footprint.width * gradient.length();
