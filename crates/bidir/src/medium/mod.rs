@@ -100,7 +100,7 @@ pub struct Medium {
     glow: Option<Glow>,
 }
 
-/// The coefficients at a place. Unit: 1/m.
+/// The coefficients at a point. Unit: 1/m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Coefficients {
     /// σ_t.
@@ -109,7 +109,7 @@ pub struct Coefficients {
     scattering: Rgb,
 }
 
-/// The coefficients everywhere.
+/// The coefficients at all points.
 #[derive(Clone, Debug, PartialEq)]
 enum Field {
     Homogeneous(Coefficients),
@@ -123,7 +123,7 @@ enum Field {
 }
 
 impl Coefficients {
-    /// Returns σ_a + σ_s and σ_s. None: a coefficient is negative, or the sum is not finite.
+    /// Makes σ_t = σ_a + σ_s and σ_s. None: a coefficient is negative, or the sum is not finite.
     pub fn new(absorption: Rgb, scattering: Rgb) -> Option<Self> {
         let valid = 0.0..=f32::MAX;
         let mut pairs = absorption.iter().zip(&scattering);
@@ -136,7 +136,7 @@ impl Coefficients {
         })
     }
 
-    /// Returns true where σ_s is not 0.
+    /// Returns true if σ_s is not 0.
     const fn scatter(&self) -> bool {
         let [r, g, b] = self.scattering;
         r > 0.0 || g > 0.0 || b > 0.0
@@ -176,8 +176,8 @@ impl Medium {
         }
     }
 
-    /// Makes a medium with the coefficients times the density of a grid, and outside of its box nothing. None: σ_t is
-    /// above [`DENSEST`](Self::DENSEST) somewhere.
+    /// Makes a medium whose coefficients are multiplied by the density of a grid, and are 0 outside its box. None:
+    /// σ_t is above [`DENSEST`](Self::DENSEST) somewhere.
     pub fn of_density(
         coefficients: Coefficients,
         density: Grid<1>,
@@ -192,8 +192,8 @@ impl Medium {
         })
     }
 
-    /// Makes a medium with the coefficients of two grids, 1/m, and outside of their box nothing. None: the grids have
-    /// not the same box and size, σ_s is above σ_t somewhere, or that above [`DENSEST`](Self::DENSEST).
+    /// Makes a medium with the coefficients of two grids, which are 0 outside their box. Unit: 1/m. None: the grids
+    /// differ in box or size, or somewhere σ_s is above σ_t, or σ_t above [`DENSEST`](Self::DENSEST).
     pub fn chromatic(
         extinction: Grid<3>,
         scattering: Grid<3>,
@@ -221,7 +221,7 @@ impl Medium {
         }
     }
 
-    /// Returns the box that the medium fills. None: it has no end.
+    /// Returns the box that the medium fills. None: it is endless.
     pub fn bounds(&self) -> Option<Aabb> {
         match &self.field {
             Field::Homogeneous(_) => None,
@@ -230,13 +230,13 @@ impl Medium {
         }
     }
 
-    /// Returns true where it is the same everywhere.
+    /// Returns true if it is the same everywhere.
     pub fn is_even(&self) -> bool {
         self.bounds().is_none()
     }
 
-    /// Returns true where paths have vertices: where light scatters or begins. A medium that only absorbs stops no
-    /// walk: its light is weighted by T.
+    /// Returns true if paths have vertices in the medium: if it scatters or emits. A medium that only absorbs stops
+    /// no walk: T weights the light through it.
     #[inline]
     pub const fn stops_walks(&self) -> bool {
         self.scatters || self.glow.is_some()

@@ -10,13 +10,13 @@ pub struct HenyeyGreenstein {
 }
 
 impl HenyeyGreenstein {
-    /// Even in all directions.
+    /// Scatters uniformly in all directions.
     pub const ISOTROPIC: Self = Self { g: 0.0 };
-    /// The largest |g|: beyond, rounding decides.
+    /// The largest |g|: beyond it, rounding dominates.
     pub const MOST: f32 = 0.999;
 
-    /// Returns the function whose mean cosine is `g`. None: `g` is no number between -1 and 1; nearer to these than
-    /// [`MOST`](Self::MOST) it is brought back.
+    /// Makes the function whose mean cosine is `g`, clamped to ±[`MOST`](Self::MOST). None: `g` is not between -1 and
+    /// 1.
     pub fn new(g: f32) -> Option<Self> {
         let is_valid = -1.0 < g && g < 1.0;
         is_valid.then_some(Self {
@@ -34,7 +34,7 @@ impl HenyeyGreenstein {
     #[inline(never)] // Out of line, so that code for surfaces stays small.
     pub fn eval(self, wo: Vec3, wi: Vec3) -> f32 {
         let g = self.g;
-        // (1 - g)² + 2 g (1 - cosθ), in which nothing cancels where both are small.
+        // (1 - g)² + 2 g (1 - cosθ): no cancellation if both terms are small.
         let base = sqr(1.0 - g.abs()) + 2.0 * g.abs() * (1.0 - self.alignment(wo, wi));
         (1.0 - g * g) / (4.0 * PI * base * base.sqrt())
     }

@@ -1,4 +1,4 @@
-//! Rays of walks: the surface or the point in a medium that each comes to, and the light that is left there.
+//! Rays of walks: the surface, or the point in a medium, that each reaches, and the light that is left there.
 
 use super::edge::{Depth, Transmittance};
 use super::nesting::Interface;
@@ -10,12 +10,12 @@ use crate::spectrum::Lanes;
 use accel::{Hit, Ray};
 use std::cell::RefCell;
 
-/// The place that a ray of a walk comes to.
+/// The end of a ray of a walk.
 #[derive(Clone, Copy, Debug)]
 pub enum Interaction {
     /// A point of a surface, and the media on its sides.
     Surface(SurfaceHit, MediumSides),
-    /// A point where a medium scatters or glows.
+    /// A point at which a medium scatters or emits.
     Medium(Locus, MediumScattering),
     /// Infinity.
     Escape,
@@ -26,7 +26,7 @@ pub enum Interaction {
 pub struct Advance {
     /// Its end.
     pub interaction: Interaction,
-    /// T on the way there.
+    /// T from its origin to its end.
     pub transmittance: Transmittance,
 }
 
@@ -40,7 +40,8 @@ fn draw(chances: RayDraws<'_>, lanes: Lanes) -> Drawn {
 }
 
 impl Scene {
-    /// Follows a ray of a walk from `medium`, past some surfaces and through media by `chances`.
+    /// Follows a ray of a walk that starts in `medium`. `chances` decide which surfaces it passes, and how far it
+    /// gets in media.
     #[inline(never)]
     pub(crate) fn advance(
         &self,
@@ -89,8 +90,8 @@ impl Scene {
         }
     }
 
-    /// Returns the nearest surface that a ray of a walk does not pass; of a volume among others, what is around it.
-    /// Adds the boundaries on the way, some behind it perhaps among them.
+    /// Returns the nearest surface that a ray of a walk does not pass, and its interface if it belongs to nested
+    /// volumes. Adds the boundaries on the way to `crossings`; some may be behind the surface.
     fn first(
         &self,
         ray: &Ray,

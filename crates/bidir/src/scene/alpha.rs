@@ -1,14 +1,14 @@
-//! α: how much of a surface is there. Rays pass it with 1 - α, as if it were not; a surface they pass is
-//! no vertex and in no density.
+//! α, the coverage of a surface. Rays pass it with probability 1 - α, as if it did not exist; a surface that a ray
+//! passes is not a vertex, and is in no density.
 //!
-//! A walk decides by chance whether it meets a surface, for each one by a number of its own, so that
-//! the order in which the intersector asks does not matter. Its throughput needs no factor: the
-//! probability α of a vertex, or 1 - α of passing, is what the integrand has there. A shadow ray
-//! does not decide: it returns the transmittance Π (1 - α), exactly.
+//! A walk decides at random whether it hits a surface. Each surface has a random number of its own, so that the order
+//! in which the intersector finds surfaces does not matter. The throughput needs no factor: the probability α of a
+//! vertex, or 1 - α of passing, is the factor of the integrand. A shadow ray does not decide: it returns the
+//! transmittance Π (1 - α) exactly.
 //!
-//! Light that a light sample draws on such a surface carries α as a factor
-//! ([`LightSample::alpha`](crate::light::LightSample::alpha)); where a walk hits the light, it
-//! has decided by then. Textures of α are never averaged over pixels: they are the same for all rays.
+//! The light of a point that a light draws on such a surface has the factor α
+//! ([`LightSample::alpha`](crate::light::LightSample::alpha)); a walk that hits the light has decided before.
+//! Textures of α are not filtered: they are the same for all rays.
 
 use super::{Opacity, Scene};
 use crate::math::Vec2;
@@ -18,7 +18,7 @@ use accel::{Hit, Stop};
 use smallvec::SmallVec;
 use std::ops::ControlFlow;
 
-/// The random numbers by which a ray of a walk passes surfaces that are not all there.
+/// The random numbers that decide which surfaces a ray of a walk passes, and how far it gets in media.
 #[derive(Clone, Copy)]
 pub struct RayDraws<'a> {
     stream: &'a SampleStream,
@@ -27,7 +27,7 @@ pub struct RayDraws<'a> {
 }
 
 impl<'a> RayDraws<'a> {
-    /// Returns the draws of the ray that looks for vertex number `vertex` of a subpath.
+    /// Makes the draws of the ray that finds vertex number `vertex` of a subpath.
     #[inline]
     pub fn new(stream: &'a SampleStream, vertex: usize) -> Self {
         Self {
@@ -37,31 +37,32 @@ impl<'a> RayDraws<'a> {
         }
     }
 
-    /// Lets the ray end anywhere, at once, when `stop` is asked for.
+    /// Lets the ray end anywhere as soon as `stop` is asked for.
     #[inline]
     pub(crate) fn until(self, stop: Stop<'a>) -> Self {
         Self { stop, ..self }
     }
 
-    /// Returns the numbers that decide by which lane of light, and how far, the ray goes through media.
+    /// Returns the random numbers of the lane and of the optical depth by which a ray stops in media.
     #[inline]
     pub(super) fn flight(&self) -> [f32; 2] {
         let dimension = self.dimension.with_purpose(Purpose::Flight);
         self.stream.get_2d(dimension).to_array()
     }
 
-    /// Returns the number that decides about `hit`. A ray may meet a primitive twice, and decides twice.
+    /// Returns the random number that decides whether the ray passes `hit`. A ray that hits a primitive twice decides
+    /// twice.
     #[inline]
     fn draw(&self, hit: &Hit) -> f32 {
         let surface = u64::from(hit.instance) << 32 | u64::from(hit.primitive);
-        // An odd factor: different distances remain different keys of one surface.
+        // The factor is odd, so that different distances remain different keys of one surface.
         let distance = u64::from(hit.t.to_bits()).wrapping_mul(0x9e37_79b9_7f4a_7c15);
         self.stream.get_for(self.dimension, surface ^ distance)
     }
 }
 
 impl Scene {
-    /// Returns α where a surface is hit: 1 where it is opaque, or where a texture is no number.
+    /// Returns α at a hit: 1 if the surface is opaque, or if its texture is NaN.
     #[inline]
     pub(super) fn alpha(&self, ray: &accel::Ray, hit: &Hit) -> f32 {
         let (_, primitive) = self.resolve(hit);
@@ -72,7 +73,7 @@ impl Scene {
             Opacity::Boundary | Opacity::Invisible => return 0.0,
         };
         let (shape, uv) = (&self.shapes[number], Vec2::new(hit.u, hit.v));
-        // Almost always the parameters are enough, and nothing else has to be known of the surface.
+        // Most textures need only the parameters, not the rest of the surface.
         let at = if texture.needs().surface {
             TexturePoint::new(&self.surface_at(ray, hit))
         } else {
@@ -81,8 +82,8 @@ impl Scene {
         clamped_alpha(texture.eval(&at))
     }
 
-    /// Returns the nearest surface that a ray of a walk does not pass. Calls `cross` for those that it passes, some
-    /// behind that surface perhaps among them.
+    /// Returns the nearest surface that a ray of a walk does not pass. Calls `cross` for surfaces that it passes;
+    /// some may be behind that surface.
     #[inline]
     pub(super) fn closest(
         &self,
@@ -106,16 +107,16 @@ impl Scene {
         })
     }
 
-    /// Returns true where a surface is there for a ray of a walk.
+    /// Returns true if a surface stops a ray of a walk.
     #[inline]
     pub(super) fn stops(&self, ray: &accel::Ray, hit: &Hit, draws: RayDraws<'_>) -> bool {
         let alpha = self.alpha(ray, hit);
         alpha >= 1.0 || alpha > 0.0 && draws.draw(hit) < alpha
     }
 
-    /// Returns Π (1 - α) over everything that a shadow ray meets, but for volumes within each other. Calls `cross` for
-    /// surfaces that it passes, all of them where anything arrives. Any number where nobody waits for it, because
-    /// `stop` was asked for.
+    /// Returns Π (1 - α) over the surfaces that a shadow ray hits, except those of nested volumes. Calls `cross` for
+    /// surfaces that it passes: for all of them, if the product is not 0. The result is arbitrary once `stop` is
+    /// asked for.
     #[inline]
     pub(super) fn visible_part(
         &self,
@@ -148,7 +149,7 @@ impl Scene {
     }
 }
 
-/// Factors that come in any order, whose product does not depend on it.
+/// Factors that are added in any order, with a product that does not depend on it.
 #[derive(Default)]
 struct Factors(SmallVec<[f32; 32]>);
 

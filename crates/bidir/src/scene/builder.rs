@@ -1,5 +1,5 @@
-//! From parts to a [`Scene`]: the checks, the acceleration structure, and the sphere around
-//! everything (metres) that lights at infinity shine through. All errors of a scene are found here.
+//! Builds a [`Scene`] from its parts: checks them, builds the acceleration structure, and finds the sphere around
+//! everything that lights at infinity shine through. All errors of a scene are found here.
 
 use super::check::check_shape;
 use super::error::SceneError;
@@ -25,15 +25,15 @@ pub struct MaterialId(u32);
 pub struct Emission {
     /// Emitted radiance.
     pub radiance: Rgb,
-    /// The factor on it at each point. None: it is even.
+    /// The factor of the radiance at each point. None: it is 1.
     pub pattern: Option<ColorTexture>,
-    /// Which sides emit.
+    /// The sides that emit.
     pub sides: EmissionSides,
 }
 
-/// The group of lights at infinity that are in no other.
+/// The name of the group of lights at infinity that are in no other group.
 pub const ENVIRONMENT_GROUP: &str = "environment";
-/// The group of other lights that are in no other.
+/// The name of the group of all other lights that are in no other group.
 pub const DEFAULT_GROUP: &str = "default";
 
 /// Collects the parts of a scene and checks them.
@@ -46,16 +46,16 @@ pub struct SceneBuilder {
     alphas: Vec<FloatTexture>,
     media: Vec<Medium>,
     volumes: Vec<Volume>,
-    /// A point, and the medium there.
+    /// A point, usually a camera's, and the medium there.
     around: Option<(Vec3, MediumId)>,
     materials: Vec<Material>,
     lights: Vec<Light>,
-    /// The group of each light, by index into the names.
+    /// The group of each light, as an index into `group_names`.
     light_groups: Vec<u32>,
     group_names: Vec<String>,
-    /// The name of the group that lights are added to. None: that of their kind.
+    /// The name of the group that lights are added to. None: the default group of their kind.
     group: Option<String>,
-    /// None: the best that the machine has.
+    /// The instruction set of the intersector. None: the best that the machine has.
     isa: Option<accel::Isa>,
 }
 
@@ -65,7 +65,7 @@ impl SceneBuilder {
         Self::default()
     }
 
-    /// Says in which space the shapes, the lights and the camera of every view are given; by default the world.
+    /// Sets the space of the shapes, the lights and the camera of every view; by default the world.
     pub fn space(&mut self, space: RenderSpace) -> &mut Self {
         self.space = space;
         self
@@ -83,7 +83,7 @@ impl SceneBuilder {
         MaterialId(self.materials.len() as u32 - 1)
     }
 
-    /// Adds a shape of `material`, which emits where there is `emission`. Returns its number.
+    /// Adds a shape of `material`, which emits light if `emission` is given. Returns its number.
     pub fn shape(
         &mut self,
         shape: Shape,
@@ -91,8 +91,8 @@ impl SceneBuilder {
         emission: Option<Emission>,
     ) -> usize {
         let index = self.shapes.len();
-        // A broken mesh is found when the scene is built; until then it must not be measured. One without triangles
-        // has no point that could emit.
+        // The light of a broken mesh is not made, because its area cannot be computed; the error is found when the
+        // scene is built. A mesh without triangles has no point that could emit.
         let emits = shape.primitive_count() > 0 && check_shape(index, &shape).is_ok();
         let light = emission.filter(|_| emits).map(|emission| {
             let mut light = AreaLight::new(index, &shape, emission.radiance, emission.sides);
@@ -117,12 +117,12 @@ impl SceneBuilder {
         self.shapes.push(shape);
     }
 
-    /// Adds a medium, and a light of the [`DEFAULT_GROUP`] if it glows. Equal media share a number. The medium fills the
-    /// places that the [sides](Self::sides) of shapes name, or lies [around a point](Self::medium_at).
+    /// Adds a medium, and a light of the [`DEFAULT_GROUP`] if it emits. Equal media share a number. The medium fills
+    /// the space that the [sides](Self::sides) of shapes give it, or surrounds [a point](Self::medium_at).
     pub fn medium(&mut self, medium: Medium) -> MediumId {
         let known = self.media.iter().position(|known| *known == medium);
         let index = known.unwrap_or_else(|| {
-            // Too many are found when the scene is built.
+            // An excess of media is found when the scene is built.
             self.media.truncate(MediumId::MOST);
             self.media.push(medium);
             self.media.len() - 1
@@ -137,16 +137,16 @@ impl SceneBuilder {
         id
     }
 
-    /// Puts `medium` at a point, that of a camera: a ray that leaves it comes, across all boundaries, to the medium that
-    /// is around everything. Without this, that is the vacuum. Light from infinity does not get through media without an
-    /// end.
+    /// Sets the medium at a point, usually a camera's. A ray that leaves the point and crosses all boundaries reaches
+    /// the medium around everything; without this call, that is the vacuum. Light from infinity does not arrive
+    /// through an endless medium.
     pub fn medium_at(&mut self, point: Vec3, medium: MediumId) -> &mut Self {
         self.around = Some((point, medium));
         self
     }
 
-    /// Sets the media on both sides of shape number `shape`. Without them, or where they are the same, the medium of
-    /// its surroundings is on both.
+    /// Sets the media on both sides of shape number `shape`. Without them, or if they are equal, both sides have the
+    /// medium around the shape.
     pub fn sides(&mut self, shape: usize, media: MediumSides) -> &mut Self {
         self.surfaces[shape].sides = media.is_boundary().then_some(media);
         self
@@ -157,12 +157,12 @@ impl SceneBuilder {
         &self.shapes[shape]
     }
 
-    /// Returns shape number `shape`, to be turned.
+    /// Returns shape number `shape` for changes.
     pub fn shape_mut(&mut self, shape: usize) -> &mut Shape {
         &mut self.shapes[shape]
     }
 
-    /// Gives shape number `shape` another material.
+    /// Sets the material of shape number `shape`.
     pub fn dress(&mut self, shape: usize, material: MaterialId) -> &mut Self {
         let needs = self.materials[material.0 as usize].needs();
         let surface = &mut self.surfaces[shape];
@@ -170,7 +170,7 @@ impl SceneBuilder {
         self
     }
 
-    /// Makes shapes, all in the world or all of one object, the closed surface of a volume.
+    /// Makes some shapes, all in the world or all in one object, the closed surface of a volume.
     pub fn enclose(&mut self, shapes: &[usize], volume: Volume) -> &mut Self {
         let number = self.volumes.len() as u32;
         self.volumes.push(volume);
@@ -180,7 +180,7 @@ impl SceneBuilder {
         self
     }
 
-    /// Adds a boundary of media that is no surface: rays pass it. Returns the number of the shape.
+    /// Adds a boundary between media without a surface: rays pass it. Returns the number of the shape.
     pub fn boundary(&mut self, shape: Shape, media: MediumSides) -> usize {
         let index = self.shapes.len();
         self.surfaces.push(Surface::boundary(media));
@@ -195,11 +195,10 @@ impl SceneBuilder {
         index
     }
 
-    /// Lets only the part `alpha` of shape number `shape` be there, in `[0, 1]` over its parameters:
-    /// rays pass it with 1 - `alpha`, and what it emits is less by `alpha`.
+    /// Sets the coverage `alpha` of shape number `shape` over its parameters. Rays pass the shape with probability 1
+    /// - `alpha`, and its emission is multiplied by `alpha`. Range: `[0, 1]`.
     ///
-    /// If `alpha` is 0 all over, no ray meets the shape, but it emits all the same: an invisible
-    /// light, as in pbrt-v4.
+    /// If `alpha` is the constant 0, no ray hits the shape, but it still emits: an invisible light, as in pbrt-v4.
     pub fn alpha(&mut self, shape: usize, alpha: FloatTexture) -> &mut Self {
         let surface = &mut self.surfaces[shape];
         let light = (surface.light).and_then(|light| match &mut self.lights[light as usize] {
@@ -225,7 +224,7 @@ impl SceneBuilder {
         self
     }
 
-    /// Adds an object without shapes. It is in the scene where it has [instances](Self::instance).
+    /// Adds an object without shapes. It is in the scene wherever it has [instances](Self::instance).
     pub fn object(&mut self) -> ObjectId {
         self.objects.shapes.push(Vec::new());
         ObjectId(self.objects.shapes.len() as u32 - 1)
@@ -233,7 +232,7 @@ impl SceneBuilder {
 
     /// Adds a shape of `material` to an object, in the object's space. Returns its number.
     ///
-    /// It does not emit: a shape that does has to be added to the world, once for each place.
+    /// Shapes of objects do not emit: add an emitting shape to the world, once for each position.
     pub fn object_shape(&mut self, object: ObjectId, shape: Shape, material: MaterialId) -> usize {
         let index = self.shapes.len();
         self.objects.shapes[object.0 as usize].push(index);
@@ -249,9 +248,8 @@ impl SceneBuilder {
         self.objects.instances.len() - 1
     }
 
-    /// Names the group of the lights that are added from here on, shapes that emit included. None,
-    /// as at first: lights at infinity are in [`ENVIRONMENT_GROUP`], all others in
-    /// [`DEFAULT_GROUP`].
+    /// Sets the group of the lights that are added from now on, including emitting shapes. None, the initial value:
+    /// lights at infinity are in [`ENVIRONMENT_GROUP`], all others in [`DEFAULT_GROUP`].
     pub fn light_group(&mut self, name: Option<&str>) -> &mut Self {
         self.group = name.map(str::to_owned);
         self
@@ -272,7 +270,7 @@ impl SceneBuilder {
         index as u32
     }
 
-    /// Adds a light that is no shape. Returns its number.
+    /// Adds a light that is not a shape. Returns its number.
     pub fn light(&mut self, light: Light) -> u32 {
         let group = self.group_of(&light);
         self.light_groups.push(group);
@@ -359,7 +357,8 @@ impl SceneBuilder {
 }
 
 impl SceneBuilder {
-    /// Returns the volumes with what they enclose, if any touches another. Forgets them where none does.
+    /// Returns the volumes and what they enclose, if any touches another. If none does, volumes have no effect and
+    /// are removed.
     fn nested_volumes(&mut self) -> Vec<Enclosed> {
         let boxes = nesting::boxes(&self.shapes, &self.surfaces, &self.objects);
         if !nesting::keep_touching(&mut self.surfaces, boxes.clone()) {
@@ -384,7 +383,7 @@ impl SceneBuilder {
     }
 }
 
-/// Returns the media on the sides of a light: those of its shape, or the one that some point of it lies in.
+/// Returns the media on the sides of a light: the sides of its shape, or the medium at a point of the light.
 fn media_of(scene: &Scene, light: &Light) -> MediumSides {
     match light {
         Light::Area(light) => {

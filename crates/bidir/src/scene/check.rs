@@ -1,4 +1,4 @@
-//! The conditions on the parts of a scene before rays are traced in it.
+//! The checks of the parts of a scene, before rays are traced in it.
 
 use super::{Opacity, PrimitiveRef, SceneError, Surface};
 use crate::shape::{Mesh, Shape};

@@ -1,5 +1,5 @@
-//! T = exp(-τ) of media along segments, and the factor of media in densities of their ends: where a ray was traced, or as
-//! a guess before.
+//! T = exp(-τ) of media along segments, and the factor of media in the densities of their ends: traced along a ray,
+//! or guessed before.
 
 use super::Scene;
 use super::passage::{Crossings, Passage};
@@ -9,7 +9,7 @@ use crate::medium::{Detail, Medium, MediumId, MediumSides, Stretch};
 use crate::spectrum::{Lanes, Spectrum};
 use accel::{Ray, Stop};
 
-/// The least transmittance that is guessed: an unknown boundary may lie between.
+/// The least guessed transmittance: an unknown boundary may lie between the ends.
 const LEAST_GUESS: f32 = 1e-3;
 
 /// T = exp(-τ) of the media along a segment, or along a part of it.
@@ -17,12 +17,12 @@ const LEAST_GUESS: f32 = 1e-3;
 pub struct Transmittance {
     /// T of all media.
     pub all: Spectrum,
-    /// T of the media with vertices. Walks draw their distances by it.
+    /// T of the media with vertices only: walks draw their distances by it.
     pub drawn: Spectrum,
 }
 
 impl Transmittance {
-    /// Returns true where no lane is so small that a guess raises it.
+    /// Returns true if no lane is so small that a guess would raise it.
     #[inline]
     fn is_guessable(&self) -> bool {
         self.drawn.min_lane().min(self.all.min_lane()) >= LEAST_GUESS
@@ -39,20 +39,20 @@ pub(super) struct Depth {
 /// The media between two ends of a segment, a and b.
 #[derive(Clone, Copy, Debug)]
 pub struct Edge {
-    /// The part of light that arrives, in `[0, 1]`: T, times the part of surfaces that is not there.
+    /// The fraction of light that arrives: T, times 1 - α of the surfaces passed. Range: `[0, 1]`.
     pub transmittance: Spectrum,
-    /// The factor of media in the density of b drawn from a, with T of those that have vertices: mean(T) on a surface;
-    /// mean(σ_t T) in a medium, 1/m.
+    /// The factor of media in the density of b drawn from a, with T only of media with vertices: mean(T) on a
+    /// surface; mean(σ_t T) in a medium, 1/m.
     pub to_b: f32,
-    /// The same for a drawn from b.
+    /// The factor of media in the density of a drawn from b.
     pub to_a: f32,
-    /// True where a guess before the ray is traced finds the same.
+    /// True if a guess before the ray is traced gives the same edge.
     pub is_guessed: bool,
 }
 
 impl Edge {
     /// Returns T / p, with p the factor of media in the density of b: the factor in the throughput of a walk from a
-    /// that drew the distance, and that met no surface on its way. Zero where it cannot come there.
+    /// that drew its distance. Zero if a walk cannot reach b.
     #[inline]
     pub(crate) fn walked(&self) -> Spectrum {
         if self.to_b > 0.0 {
@@ -69,7 +69,7 @@ impl Depth {
         drawn: Spectrum::ZERO,
     };
 
-    /// Returns that of a part in `medium`.
+    /// Returns the depth of a part in `medium`, given its τ.
     #[inline]
     pub(super) fn of(medium: &Medium, depth: Spectrum) -> Self {
         let drawn = if medium.stops_walks() {
@@ -80,7 +80,7 @@ impl Depth {
         Self { all: depth, drawn }
     }
 
-    /// Returns that of both, one behind the other.
+    /// Returns the depth of two parts together.
     pub(super) fn and(self, other: Self) -> Self {
         Self {
             all: self.all + other.all,
@@ -117,28 +117,28 @@ impl Depth {
 }
 
 impl Scene {
-    /// Returns true where no ray from a place goes through a medium before it meets a surface.
+    /// Returns true if no ray from a point passes through a medium before it hits a surface.
     #[inline]
     pub(crate) fn is_clear_around(&self, place: &Locus) -> bool {
         !self.has_media() || self.is_opaque && place.media == MediumSides::VACUUM
     }
 
-    /// Returns true where it is known, before any ray is traced, that no medium lies between two ends that see each
-    /// other.
+    /// Returns true if it is known, before a ray is traced, that there is no medium between two ends if they are
+    /// visible to each other.
     #[inline]
     pub(crate) fn is_clear(&self, a: &Locus, b: &Locus) -> bool {
         let (start, end) = if a.is_infinite() { (b, a) } else { (a, b) };
         self.is_clear_around(start) && end.kind != LocusKind::Medium
     }
 
-    /// Returns true where the media between ends that see each other are known before any ray is traced: no ray passes
-    /// a boundary, and each medium is the same everywhere.
+    /// Returns true if the media between visible ends are known before a ray is traced: no ray passes a boundary, and
+    /// each medium is the same everywhere.
     #[inline]
     pub(crate) fn foresees_media(&self) -> bool {
         self.foresees_media
     }
 
-    /// Returns τ of a stretch in a medium, in the detail asked for.
+    /// Returns τ of a stretch in a medium, in this detail.
     fn depth(
         &self,
         medium: MediumId,
@@ -153,8 +153,8 @@ impl Scene {
         })
     }
 
-    /// Returns the media between two ends, of which at most one is at infinity. None: something opaque is there,
-    /// nothing arrives, or nobody waits for it, because `stop` was asked for.
+    /// Returns the media between two ends, of which at most one is at infinity. None: they are not visible to each
+    /// other, nothing arrives, or `stop` was asked for.
     #[inline(never)]
     pub fn edge(&self, [a, b]: [&Locus; 2], lanes: Lanes, stop: Stop<'_>) -> Option<Edge> {
         let ray = shadow_ray(a, b);
@@ -171,15 +171,15 @@ impl Scene {
         })
     }
 
-    /// Returns the media between two ends if they see each other, where the scene [foresees](Self::foresees_media)
-    /// them. None: nothing arrives.
+    /// Returns the media between two ends, assuming that they are visible to each other, in a scene that
+    /// [foresees](Self::foresees_media) its media. None: nothing arrives.
     pub(crate) fn foreseen_edge(&self, a: &Locus, b: &Locus, lanes: Lanes) -> Option<Edge> {
         let ray = shadow_ray(a, b);
         let edge = self.edge_across(&ray, &mut Crossings::new(), [a, b], lanes);
         (!edge.transmittance.is_black()).then_some(edge)
     }
 
-    /// Returns the media along `ray` from one end to the other, which crosses these boundaries.
+    /// Returns the media along `ray` from one end to the other, given the boundaries that it crosses.
     #[inline]
     fn edge_across(
         &self,
@@ -207,8 +207,8 @@ impl Scene {
         }
     }
 
-    /// Returns a guess at the media between two ends from those next to them: the thinner of both, all the way.
-    /// Something always arrives.
+    /// Returns a guess of the media between two ends from the media at the ends: the thinner of both, all the way.
+    /// The guess is never 0.
     #[inline(never)]
     pub(crate) fn guessed_edge(&self, a: &Locus, b: &Locus, lanes: Lanes) -> Edge {
         let ray = shadow_ray(a, b);
@@ -234,7 +234,7 @@ impl Scene {
         self.edge_of(Transmittance { all, drawn }, [a, b], lanes)
     }
 
-    /// Returns the edge of which T is known. Its densities are 0 where nothing arrives.
+    /// Returns the edge with this T. Its densities are 0 if nothing arrives.
     #[inline(never)]
     pub(crate) fn edge_of(
         &self,

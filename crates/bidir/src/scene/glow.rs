@@ -1,4 +1,4 @@
-//! Media of a scene that are lights.
+//! Media of a scene that emit light.
 
 use super::{Scene, Surface};
 use crate::light::{Light, LightPoint, VolumeLight};
@@ -6,7 +6,7 @@ use crate::medium::{Medium, MediumId};
 use crate::shape::Shape;
 use accel::Aabb;
 
-/// The parts of a scene in the making that say where media are.
+/// The parts of an unfinished scene that determine where media are.
 pub(super) struct Surroundings<'a> {
     pub(super) shapes: &'a [Shape],
     pub(super) surfaces: &'a [Surface],
@@ -17,7 +17,7 @@ pub(super) struct Surroundings<'a> {
 }
 
 impl Surroundings<'_> {
-    /// Prepares the draw of points of all media that are lights.
+    /// Makes the distributions of points of all media that are lights.
     pub(super) fn place_glows(&self, lights: &mut [Light], media: &[Medium]) {
         for light in lights {
             if let Light::Volume(volume) = light {
@@ -30,7 +30,7 @@ impl Surroundings<'_> {
         }
     }
 
-    /// Returns a box around the shapes that the medium ends at. None: there are none.
+    /// Returns a box around the shapes that bound the medium. None: there are none.
     fn bounds_of(&self, id: MediumId) -> Option<Aabb> {
         let ends_at = |&shape: &usize| {
             let sides = self.surfaces[shape].sides;
@@ -48,7 +48,7 @@ impl Surroundings<'_> {
     }
 }
 
-/// Returns the light that each medium is, by index, if it glows.
+/// Returns the index of the light of each medium. None: the medium emits nothing.
 pub(super) fn lights_of(media: &[Medium], lights: &[Light]) -> Vec<Option<u32>> {
     let mut glows = vec![None; media.len()];
     for (number, light) in lights.iter().enumerate() {
@@ -62,7 +62,7 @@ pub(super) fn lights_of(media: &[Medium], lights: &[Light]) -> Vec<Option<u32>> 
 }
 
 impl Scene {
-    /// Tells the light of the medium around everything that it has no end.
+    /// Marks the light of the medium around everything as endless.
     pub(super) fn note_endless_glow(&mut self) {
         let around = self.around;
         let (Some(light), Some(index)) = (self.glow(around), around.index()) else {
@@ -73,13 +73,13 @@ impl Scene {
         }
     }
 
-    /// Returns the light that a medium is, by index, if it glows.
+    /// Returns the index of the light of a medium. None: it emits nothing.
     #[inline]
     pub(crate) fn glow(&self, id: MediumId) -> Option<u32> {
         self.glows[id.index()?]
     }
 
-    /// Returns true where a light is there at one of its points: a medium that glows ends where another begins.
+    /// Returns true if the light exists at its point `at`: an emitting medium ends where another begins.
     #[inline]
     pub(crate) fn is_lit(&self, light: &Light, at: &LightPoint) -> bool {
         match light {

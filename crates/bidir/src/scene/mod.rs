@@ -1,4 +1,4 @@
-//! The scene: everything that can be seen, checked and immutable. A [`View`](crate::view::View) sees it.
+//! The scene: all that can be seen, checked and immutable. A [`View`](crate::view::View) is a camera's view of it.
 //!
 //! A [`Scene`] comes from a [`SceneBuilder`], the only place where errors are possible. All indices
 //! in a built scene are valid.
@@ -46,17 +46,17 @@ struct PrimitiveRef {
     index: u32,
 }
 
-/// A shape with what it is made of.
+/// A shape with its material, light and media.
 #[derive(Clone, Copy, Debug)]
 struct Surface {
     material: u32,
     light: Option<u32>,
     opacity: Opacity,
-    /// The media that it parts. None: the same is on both sides.
+    /// The media on its sides. None: both sides have the same.
     sides: Option<MediumSides>,
-    /// The volume that it bounds, by index, if others touch that.
+    /// The index of the volume that it bounds. None: it bounds none, or one that touches no other.
     volume: Option<u32>,
-    /// True where the material asks how the surface changes along its parameters.
+    /// True if the material needs differentials of the surface.
     is_detailed: bool,
 }
 
@@ -75,16 +75,16 @@ impl Surface {
     }
 }
 
-/// How much of a surface is there.
+/// The coverage of a surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Opacity {
-    /// All of it.
+    /// It is 1.
     Opaque,
-    /// The part given by a texture of the scene, by index.
+    /// A texture, by index in the scene.
     Texture(u32),
-    /// Nothing but a boundary of media.
+    /// It is 0, but the surface is a boundary of media.
     Boundary,
-    /// Nothing: no ray meets it.
+    /// It is 0: no ray hits the surface.
     Invisible,
 }
 
@@ -93,11 +93,11 @@ enum Opacity {
 pub struct SurfaceHit {
     /// Local geometry.
     pub surface: SurfacePoint,
-    /// How it changes along the parameters. None: the material does not ask.
+    /// The differentials of the surface. None: the material does not need them.
     pub differentials: Option<Differentials>,
     /// The material, by index.
     pub material: u32,
-    /// The light that the surface is, by index, with the light point that was hit.
+    /// The index of the surface's light, and the light point that was hit. None: it emits nothing.
     pub light: Option<(u32, LightPoint)>,
     /// The index of refraction around the volume that it bounds; 1 for air.
     pub around: f32,
@@ -114,10 +114,10 @@ pub struct Scene {
     instances: Vec<Placed>,
     /// The textures of alpha.
     alphas: Vec<FloatTexture>,
-    /// True where rays pass no surface, and need not ask.
+    /// True if no ray passes a surface, so that α need not be looked up.
     is_opaque: bool,
     media: Vec<Medium>,
-    /// True where the media of a shadow ray are known if it is not blocked.
+    /// True if the media along an unblocked shadow ray are known before it is traced.
     foresees_media: bool,
     /// The volumes, if any touch each other.
     volumes: Vec<Enclosed>,
@@ -125,13 +125,13 @@ pub struct Scene {
     around: MediumId,
     /// The media on the sides of each light.
     light_media: Vec<MediumSides>,
-    /// The light that each medium is, by index.
+    /// The index of the light of each medium. None: it emits nothing.
     glows: Vec<Option<u32>>,
     materials: Vec<Material>,
     lights: Vec<Light>,
     light_choice: LightChoice,
     light_tree: LightTree,
-    /// The group of each light, by index into the names.
+    /// The group of each light, as an index into `group_names`.
     light_groups: Vec<u32>,
     group_names: Vec<String>,
     /// The lights that escaping rays hit, by index.
@@ -160,8 +160,7 @@ impl Scene {
         &self.lights[i as usize]
     }
 
-    /// Returns the names of the groups of lights, in the order in which lights were added. Every light is
-    /// in one.
+    /// Returns the names of the groups of lights, in the order in which lights were added. Every light is in a group.
     pub fn group_names(&self) -> &[String] {
         &self.group_names
     }
@@ -207,7 +206,7 @@ impl Scene {
         &self.materials
     }
 
-    /// Returns the materials of surfaces that rays can meet, once for each surface.
+    /// Returns the materials of surfaces that rays can hit, once for each surface.
     pub fn materials_of_surfaces(&self) -> impl Iterator<Item = &Material> {
         let met =
             |surface: &&Surface| !matches!(surface.opacity, Opacity::Invisible | Opacity::Boundary);
@@ -221,22 +220,22 @@ impl Scene {
         &self.materials[i as usize]
     }
 
-    /// Returns all shapes, those of objects once, in the object's space.
+    /// Returns all shapes. Shapes of objects occur once, in the object's space.
     pub fn shapes(&self) -> &[Shape] {
         &self.shapes
     }
 
-    /// Returns how many objects stand in the world.
+    /// Returns the number of instances.
     pub fn instance_count(&self) -> usize {
         self.instances.len()
     }
 
-    /// Returns the primitives that are kept: those of an object count once.
+    /// Returns the number of primitives in memory: those of an object count once.
     pub fn unique_primitives(&self) -> u64 {
         self.primitives.len() as u64
     }
 
-    /// Returns the primitives that rays meet: those of an object count at every place.
+    /// Returns the number of primitives that rays can hit: those of an object count for every instance.
     pub fn placed_primitives(&self) -> u64 {
         let of_instance = |i| {
             let (object, _) = self.bvh.instance(i);
@@ -251,7 +250,7 @@ impl Scene {
         &self.bvh
     }
 
-    /// Returns the nearest surface along a ray of a walk, which passes some by `draws`. None: it escapes.
+    /// Returns the nearest surface along a ray of a walk; `draws` decide which surfaces it passes. None: it escapes.
     #[inline]
     pub fn intersect(
         &self,
@@ -295,7 +294,7 @@ impl Scene {
         self.surface_of(ray, hit, placed, primitive)
     }
 
-    /// Returns the surface where the target of the hit is known.
+    /// Returns the point of a surface where a ray hits it, given the target of the hit.
     #[inline]
     fn surface_of(
         &self,
@@ -320,7 +319,7 @@ impl Scene {
         media.copied().unwrap_or_default()
     }
 
-    /// Returns the target of a hit: the instance, if it is of one, and the part of a shape.
+    /// Returns the target of a hit: the instance, if it is in one, and the primitive of a shape.
     #[inline]
     fn resolve(&self, hit: &accel::Hit) -> (Option<&Placed>, PrimitiveRef) {
         let instance = hit.instance.checked_sub(1);

@@ -1,15 +1,15 @@
-//! Volumes within volumes: of all closed surfaces around a point, one fills it \[Schmidt02\].
+//! Nested volumes: of all closed surfaces around a point, one fills it \[Schmidt02\].
 //!
 //! Along a ray, volume v has the winding number
 //!
 //! n_v(t) = Σ ±1 over the crossings of v beyond t, + where the ray leaves v,
 //!
-//! and is around the point at t where n_v(t) > 0. Surfaces of volumes are closed, so this is a function of the point:
-//! no walk carries a list of what it is in, and both ends of a path find the same. Of the volumes around a point the
-//! one of the highest rank fills it, and a surface is there where different substances fill its sides; rays pass the
-//! others. Boundaries within a volume count for nothing.
+//! and v is around the point at t if n_v(t) > 0. Surfaces of volumes are closed, so that this is a function of the
+//! point: walks carry no list of volumes, and both ends of a path find the same one. Of the volumes around a point,
+//! the one of the highest rank fills it. A surface exists if different substances fill its sides; rays pass the
+//! others. Boundaries within a volume are ignored.
 //!
-//! Volumes whose boxes touch no other's need none of this: their surfaces are there, with air around them.
+//! Volumes whose boxes touch no other box need none of this: their surfaces exist, with air around them.
 
 use super::object::{Objects, Placed};
 use super::passage::{Crossing, Crossings};
@@ -22,15 +22,15 @@ use std::cmp::Ordering;
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::ControlFlow;
 
-/// The material within a closed surface. Of the volumes around a point the one of the highest priority fills it, of several the
-/// one that encloses least.
+/// The substance within a closed surface. Of the volumes around a point, the one of the highest priority fills it; of
+/// equal ones, the one that encloses least.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Volume {
     /// The index of refraction, that of air being 1.
     pub index: f32,
     /// The medium.
     pub medium: MediumId,
-    /// Its claim on places that it shares with others.
+    /// Its priority at points that it shares with other volumes.
     pub priority: i32,
 }
 
@@ -40,20 +40,20 @@ pub(super) struct Enclosed {
     pub(super) volume: Volume,
     /// The space that it encloses. Unit: m³, in the space of its shapes.
     pub(super) size: f64,
-    /// The greatest coordinate of its boxes in the world.
+    /// The largest absolute coordinate of its boxes in the world.
     pub(super) reach: f32,
 }
 
-/// The volume of an instance, ordered by priority: of two around a point the greater fills it.
+/// The volume of an instance. Volumes are ordered by priority: of two around a point, the greater fills it.
 #[derive(Clone, Copy, Debug)]
 struct PlacedVolume {
     volume: Volume,
     size: f64,
-    /// The greatest coordinate of its boxes.
+    /// The largest absolute coordinate of its boxes.
     reach: f32,
-    /// The volume and the instance.
+    /// The indices of the volume and of the instance.
     number: (u32, u32),
-    /// Volumes of one material are of one substance.
+    /// The material: a substance includes it.
     material: u32,
 }
 
@@ -61,7 +61,7 @@ struct PlacedVolume {
 #[derive(Debug, Default)]
 struct Around(BTreeMap<PlacedVolume, i32>);
 
-/// A crossing, and the hit and the volume that it is of. None: it is a boundary between media alone.
+/// A crossing, with the hit and the volume of the crossed surface. None: it is only a boundary between media.
 #[derive(Clone, Copy, Debug)]
 struct Event {
     crossing: Crossing,
@@ -101,7 +101,7 @@ impl Ord for PlacedVolume {
 }
 
 impl Around {
-    /// Returns the volumes around the start of a ray with these crossings.
+    /// Returns the volumes around the start of a ray with these events.
     fn start(events: &[Event]) -> Self {
         let mut around = Self::default();
         for event in events {
@@ -127,19 +127,19 @@ impl Around {
     }
 }
 
-/// Returns the change of the winding number where a ray crosses.
+/// Returns the change of the winding number at a crossing.
 fn step(crossing: &Crossing) -> i32 {
     if crossing.leaves { -1 } else { 1 }
 }
 
-/// Returns true where no surface parts what fills two sides.
+/// Returns true if two sides are filled with the same substance, so that no surface is between them.
 fn are_one(a: Option<PlacedVolume>, b: Option<PlacedVolume>) -> bool {
     let substance = |of: PlacedVolume| (of.material, of.volume.medium, of.volume.index.to_bits());
     a == b || a.map(substance) == b.map(substance)
 }
 
 impl Interface {
-    /// Returns the media on the sides of the surface with normal `n_g`, where a ray along `direction` comes to it.
+    /// Returns the media on the sides of the surface with normal `n_g`, hit by a ray along `direction`.
     pub(super) fn sides(&self, n_g: Vec3, direction: Vec3) -> MediumSides {
         let [before, behind] = self.media;
         if n_g.dot(direction) > 0.0 {
@@ -157,8 +157,8 @@ impl Interface {
 }
 
 impl Scene {
-    /// Returns the nearest surface that a ray of a walk does not pass, and the boundaries on the way, in a scene where
-    /// volumes lie within each other.
+    /// Returns the nearest surface that a ray of a walk does not pass, in a scene with nested volumes. Sets
+    /// `crossings` to the boundaries on the way.
     pub(super) fn closest_of_nested(
         &self,
         ray: &Ray,
@@ -188,7 +188,7 @@ impl Scene {
         (interface.map(|interface| interface.hit).or(hit), interface)
     }
 
-    /// Returns Π (1 - α) of the surfaces of volumes that a shadow ray meets. Settles the boundaries on its way.
+    /// Returns Π (1 - α) of the surfaces of nested volumes that a shadow ray hits. Updates the boundaries on its way.
     pub(super) fn visible_past_nested(
         &self,
         ray: &Ray,
@@ -204,8 +204,8 @@ impl Scene {
         if interface.is_some() { 0.0 } else { visible }
     }
 
-    /// Adds the surfaces of volumes that are there to the boundaries that a ray crosses before `end`, and takes away
-    /// those within volumes. Ends at a surface that stops the ray.
+    /// Updates the boundaries that a ray crosses before `end`: adds the surfaces of volumes that exist, and removes
+    /// boundaries within volumes. Returns the surface that stops the ray, and ends there.
     fn settle(
         &self,
         ray: &Ray,
@@ -248,7 +248,7 @@ impl Scene {
         None
     }
 
-    /// Returns these boundaries, and all surfaces of volumes from the start of a ray to infinity, in order.
+    /// Returns `boundaries` and all surfaces of volumes, from the start of a ray to infinity, in order.
     fn events(&self, ray: &Ray, stop: Stop<'_>, boundaries: Crossings) -> Vec<Event> {
         let boundary = |crossing| Event { crossing, of: None };
         let mut events: Vec<_> = boundaries.into_iter().map(boundary).collect();
@@ -264,7 +264,7 @@ impl Scene {
                 ControlFlow::Continue(())
             }
         });
-        // Where two volumes touch, the one is entered before the other is left, so that no gap is between them.
+        // Where two volumes touch, one is entered before the other is left, so that no gap is between them.
         let leaves_late = |event: &Event| event.of.is_some() == event.crossing.leaves;
         let order = |a: &Event, b: &Event| {
             let by_place = a.crossing.t.total_cmp(&b.crossing.t);
@@ -278,7 +278,8 @@ impl Scene {
         events
     }
 
-    /// Returns the crossing of a volume's surface. Its media are those around the volume where nothing else is.
+    /// Returns the crossing of a volume's surface. Its media are those around the volume, if no other volume is
+    /// there.
     fn event(&self, ray: &Ray, hit: &Hit) -> Option<Event> {
         let volume = self.volume_of(hit)?;
         let (placed, primitive) = self.resolve(hit);
@@ -299,7 +300,7 @@ impl Scene {
         })
     }
 
-    /// Returns the normal of the side of a closed surface that is not within. Shading normals have no say.
+    /// Returns the normal of a closed surface that points out of it, whatever the shading normals are.
     fn front(
         &self,
         ray: &Ray,
@@ -316,7 +317,7 @@ impl Scene {
         }
     }
 
-    /// Returns the volume whose surface is hit. None: it is of none, or of one that touches no other.
+    /// Returns the volume whose surface is hit. None: the surface bounds none, or one that touches no other.
     #[inline]
     fn volume_of(&self, hit: &Hit) -> Option<PlacedVolume> {
         let (placed, primitive) = self.resolve(hit);
@@ -337,19 +338,19 @@ impl Scene {
         })
     }
 
-    /// Returns true where the surface of such a volume is hit.
+    /// Returns true if the hit surface bounds a nested volume.
     #[inline]
     pub(super) fn is_of_nested(&self, hit: &Hit) -> bool {
         self.nests() && self.volume_of(hit).is_some()
     }
 
-    /// Returns true where volumes lie within each other, or may.
+    /// Returns true if the scene has volumes that touch each other.
     #[inline]
     pub(super) fn nests(&self) -> bool {
         !self.volumes.is_empty()
     }
 
-    /// Returns the boundaries that a ray crosses, with all surfaces of volumes.
+    /// Returns the boundaries that a ray crosses, including all surfaces of volumes.
     pub(super) fn boundaries(&self, ray: &Ray) -> Crossings {
         let mut crossings = Crossings::new();
         let _ = self.bvh.each_hit(ray, |hit| {
@@ -364,7 +365,7 @@ impl Scene {
         crossings
     }
 
-    /// Returns the media on the sides of a volume's surface at a point of it. None: it is not among others.
+    /// Returns the media on the sides of a volume's surface at a point. None: the volume touches no other.
     pub(super) fn sides_of_nested(&self, volume: Option<u32>, point: Vec3) -> Option<MediumSides> {
         let inside = self.volumes.get(volume? as usize)?.volume.medium;
         let outside = self.medium_at(point);
@@ -372,7 +373,7 @@ impl Scene {
     }
 }
 
-/// Swaps crossings so that a volume is entered before another is left wherever they touch but for rounding.
+/// Swaps crossings so that one volume is entered before another is left if only rounding separates their surfaces.
 fn close_gaps(ray: &Ray, events: &mut [Event]) {
     let unit = ray.direction.length();
     // The rounding of distances grows with the origin.
@@ -390,18 +391,18 @@ fn close_gaps(ray: &Ray, events: &mut [Event]) {
     }
 }
 
-/// Returns the width of gaps, between surfaces with coordinates up to `reach`, that the offset of a ray that starts on the
+/// Returns the largest gap between surfaces, with coordinates up to `reach`, that the offset of a ray's origin from
 /// one surface may cross.
 fn least_gap(reach: f32) -> f32 {
     2.0 * position_error(reach)
 }
 
-/// Returns the greatest coordinate of a box.
+/// Returns the largest absolute coordinate of a box.
 pub(super) fn reach(of: &Aabb) -> f32 {
     of.min.abs().max(of.max.abs()).max_element()
 }
 
-/// Returns the boxes of volumes' shapes in the world, those of objects at each place.
+/// Returns the boxes of the shapes of volumes in the world; shapes of objects have one for each instance.
 pub(super) fn boxes(shapes: &[Shape], surfaces: &[Surface], objects: &Objects) -> Vec<(u32, Aabb)> {
     let bounds_of = |shape: usize| {
         let volume = surfaces[shape].volume?;
@@ -424,10 +425,10 @@ pub(super) fn boxes(shapes: &[Shape], surfaces: &[Surface], objects: &Objects) -
     boxes
 }
 
-/// Forgets the volumes of shapes that touch no other of a volume but for rounding. `boxes` are those of such shapes in
-/// their places.
+/// Removes the volumes that touch no other, up to rounding, from their surfaces. `boxes` are the boxes of their
+/// shapes in the world.
 ///
-/// Returns whether any is left.
+/// Returns true if any volume is left.
 pub(super) fn keep_touching(surfaces: &mut [Surface], mut boxes: Vec<(u32, Aabb)>) -> bool {
     for (_, bounds) in &mut boxes {
         let gap = least_gap(reach(bounds));
@@ -444,7 +445,7 @@ pub(super) fn keep_touching(surfaces: &mut [Surface], mut boxes: Vec<(u32, Aabb)
 
 /// Returns the volumes whose boxes touch another; `boxes` are sorted by their smallest x.
 fn touching(boxes: &[(u32, Aabb)]) -> BTreeSet<u32> {
-    /// The most boxes that each is compared with; where there are more, all count as touching.
+    /// The most boxes that each is compared with; if more are near, all count as touching.
     const MOST: usize = 256;
     let mut touching = BTreeSet::new();
     for (i, (a, of_a)) in boxes.iter().enumerate() {

@@ -1,5 +1,5 @@
-//! Objects: shapes that stand in several places without being copied. The intersector keeps one tree
-//! for each object; a hit is mapped to the world where it is found.
+//! Objects: shapes that are placed several times without copies. The intersector has one tree for each object; a hit
+//! is mapped to the world when it is found.
 //!
 //! Shapes of objects do not emit: a light is one shape in the world.
 
@@ -26,16 +26,16 @@ pub(super) struct Placed {
     pub(super) first_primitive: u32,
 }
 
-/// The objects and instances of a scene in the making.
+/// The objects and instances of an unfinished scene.
 #[derive(Debug, Default)]
 pub(super) struct Objects {
     /// The numbers of the shapes of each object.
     pub(super) shapes: Vec<Vec<usize>>,
-    /// Every instance: which object, and where.
+    /// The object and the transform of each instance.
     pub(super) instances: Vec<(ObjectId, WorldFromObject)>,
 }
 
-/// The tree that the intersector asks, and the primitives and instances that its answers refer to.
+/// The intersector's tree, and the primitives and instances that its hits refer to.
 pub(super) struct Geometry {
     pub(super) bvh: accel::Bvh,
     /// The primitives of the world first, then those of the objects.

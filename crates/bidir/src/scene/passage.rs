@@ -1,7 +1,8 @@
 //! Boundaries of media along rays.
 //!
-//! A ray begins in the medium of its origin, and the last boundary that it crossed decides. Surfaces that are nothing
-//! but boundaries (`Opacity::Boundary`) stop no ray; surfaces with holes let some rays through.
+//! A ray begins in the medium of its origin; after that, the last crossed boundary determines the medium. A surface
+//! that is only a boundary (`Opacity::Boundary`) stops no ray; a surface with coverage below 1 lets some rays
+//! through.
 
 use super::{Opacity, Scene};
 use crate::math::Vec3;
@@ -14,7 +15,7 @@ use smallvec::SmallVec;
 pub(super) struct Crossing {
     /// The distance along the ray.
     pub(super) t: f32,
-    /// True where the ray leaves the inside of the shape.
+    /// True if the ray leaves the inside of the shape.
     pub(super) leaves: bool,
     /// The boundary, by instance and primitive.
     pub(super) surface: (u32, u32),
@@ -41,8 +42,8 @@ pub(super) struct Span {
 }
 
 impl<'a> Passage<'a> {
-    /// Returns the passage of a ray that begins in `start` and ends at `end`. Sorts the crossings, and leaves out those
-    /// behind its end.
+    /// Makes the passage of a ray from the medium `start` to the distance `end`. Sorts the crossings, and removes
+    /// those behind `end`.
     #[inline]
     pub(super) fn new(start: MediumId, crossings: &'a mut Crossings, end: f32) -> Self {
         if !crossings.is_empty() {
@@ -55,7 +56,7 @@ impl<'a> Passage<'a> {
     #[inline(never)]
     fn order(crossings: &mut Crossings, end: f32) {
         crossings.retain(|crossing| crossing.t < end);
-        // Where two shapes touch, the one is left before the other is entered. Hits arrive in any order.
+        // Where two shapes touch, one is left before the other is entered. Hits come in any order.
         let order = |a: &Crossing, b: &Crossing| {
             let by_side = b.leaves.cmp(&a.leaves);
             let by_place = a.t.total_cmp(&b.t).then(by_side);
@@ -64,7 +65,7 @@ impl<'a> Passage<'a> {
         crossings.sort_unstable_by(order);
     }
 
-    /// Returns the parts up to `end`.
+    /// Returns the parts of the ray, up to `end`, each in one medium.
     pub(super) fn spans(&self, end: f32) -> impl Iterator<Item = Span> + '_ {
         let begins = self.crossings.iter().map(|crossing| crossing.t);
         let ends = begins.clone().chain([end]);
@@ -76,7 +77,7 @@ impl<'a> Passage<'a> {
             .map(|((begin, end), medium)| Span { medium, begin, end })
     }
 
-    /// Returns the medium at the start, as the first boundary has it.
+    /// Returns the medium at the start, according to the first boundary.
     pub(super) fn first(&self) -> MediumId {
         self.crossings
             .first()
@@ -98,7 +99,7 @@ impl Span {
 }
 
 impl Scene {
-    /// Returns true where rays may go through media.
+    /// Returns true if rays may pass through media.
     #[inline]
     pub fn has_media(&self) -> bool {
         !self.media.is_empty() || self.nests()
@@ -119,13 +120,13 @@ impl Scene {
         id.index().map(|index| &self.media[index])
     }
 
-    /// Returns true where light from infinity arrives through the medium around everything.
+    /// Returns true if light from infinity arrives through the medium around everything.
     pub fn is_open(&self) -> bool {
         let around = self.medium(self.around);
         around.is_none_or(|medium| medium.bounds().is_some())
     }
 
-    /// Returns Π (1 - α) over everything that a shadow ray meets. Adds the boundaries that it crosses.
+    /// Returns Π (1 - α) over all surfaces that a shadow ray hits. Adds the boundaries that it crosses.
     pub(super) fn visible(&self, ray: &Ray, stop: Stop<'_>, crossings: &mut Crossings) -> f32 {
         let cross = |hit: &Hit| crossings.extend(self.crossing(ray, hit));
         let visible = self.visible_part(ray, stop, cross);
@@ -136,7 +137,7 @@ impl Scene {
         }
     }
 
-    /// Returns the boundary that a ray crosses at `hit`. None: the surface is none.
+    /// Returns the boundary that a ray crosses at `hit`. None: the surface is not a boundary.
     pub(super) fn crossing(&self, ray: &Ray, hit: &Hit) -> Option<Crossing> {
         let sides = self.parted(hit)?;
         let leaves = self.surface_at(ray, hit).n_g.dot(ray.direction) > 0.0;
@@ -149,8 +150,8 @@ impl Scene {
         })
     }
 
-    /// Returns the medium at a point in space: most of some rays say so by the nearest boundary on their way, or else
-    /// it is the one around everything.
+    /// Returns the medium at a point in space, by the majority of three rays: the medium before the first boundary on
+    /// their way, or else the medium around everything.
     pub fn medium_at(&self, point: Vec3) -> MediumId {
         let is_boundary = |hit: &Hit| self.crosses(hit);
         by_most(|direction| {
@@ -165,7 +166,7 @@ impl Scene {
         })
     }
 
-    /// Returns the medium around everything, where most of some rays from `medium` at a point come to.
+    /// Returns the medium around everything, by the majority of three rays that start in `medium` at a point.
     pub(super) fn medium_beyond(&self, point: Vec3, medium: MediumId) -> MediumId {
         by_most(|direction| {
             let ray = Ray::new(point, direction);
@@ -177,7 +178,7 @@ impl Scene {
         self.parted(hit).is_some()
     }
 
-    /// Returns the media that the surface at `hit` parts, wherever some of it is there. None: it parts none.
+    /// Returns the media on the sides of the surface at `hit`. None: they are equal, or the surface is invisible.
     fn parted(&self, hit: &Hit) -> Option<MediumSides> {
         let (_, primitive) = self.resolve(hit);
         let surface = &self.surfaces[primitive.shape as usize];
@@ -186,7 +187,7 @@ impl Scene {
             .filter(|_| surface.opacity != Opacity::Invisible)
     }
 
-    /// Returns a point on shape number `shape`, one of the world, or near it where rays do not meet it.
+    /// Returns a point on shape number `shape` of the world, or near it if rays do not hit it.
     pub(super) fn point_on(&self, shape: usize) -> Vec3 {
         let bounds = self.shapes[shape].primitive(0).bounds();
         let (centre, corner) = (bounds.center(), bounds.max + bounds.max - bounds.min);
@@ -200,9 +201,9 @@ impl Scene {
     }
 }
 
-/// Returns the answer of most of three rays, of the second where they differ.
+/// Returns the majority of the answers of three rays, or the second if all differ.
 fn by_most(answer: impl Fn(Vec3) -> MediumId) -> MediumId {
-    /// Far from axes and diagonals, along which people build.
+    /// Directions far from axes and diagonals, along which people build.
     const RAYS: [Vec3; 3] = [
         Vec3::new(0.36, 0.48, 0.8),
         Vec3::new(-0.6, 0.64, -0.48),

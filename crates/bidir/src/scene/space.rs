@@ -1,10 +1,9 @@
 //! The space of a scene's numbers: world = `origin` + `unit` · p.
 //!
-//! Points are kept in `f32`, whose steps grow with the distance from the origin, and squares of
-//! distances leave its range long before the distances do. A reader therefore places a scene that
-//! is far from the world's origin, or very large or small, in a space where neither happens: with a
-//! translation, so that directions stay as they are, and a scale. Pixels do not depend on it.
-//! Points and lengths for users go through here.
+//! Points are `f32`, whose steps grow with the distance from the origin, and squares of distances overflow long
+//! before the distances do. Hence a reader places a scene that is far from the world's origin, or very large or
+//! small, in a space without these problems: by a translation and a scale, so that directions do not change. Pixels
+//! do not depend on the space. Points and lengths for users are converted here.
 
 use crate::math::{DAffine3, DVec3, Vec3};
 
@@ -13,7 +12,7 @@ use crate::math::{DAffine3, DVec3, Vec3};
 pub struct RenderSpace {
     /// Its origin. Space: world.
     pub origin: DVec3,
-    /// Its unit of length in the world's. Positive; a power of two keeps the digits of coordinates.
+    /// Its unit of length, in units of the world. Positive; a power of two keeps the digits of coordinates.
     pub unit: f64,
 }
 
@@ -48,7 +47,7 @@ impl RenderSpace {
         (self.unit * f64::from(length)) as f32
     }
 
-    /// Returns a radiant intensity of the world in this space: irradiance I / d² stays as it is.
+    /// Returns a radiant intensity of the world in this space: the irradiance I / d² does not change.
     pub fn intensity(&self, intensity: f32) -> f32 {
         (f64::from(intensity) / (self.unit * self.unit)) as f32
     }

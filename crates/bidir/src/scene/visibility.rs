@@ -1,15 +1,15 @@
-//! v(a, b): how much of a shadow ray gets from one end to the other. Surfaces are as opaque to it as
-//! they are there (`alpha`), glass too: light through a smooth interface is found by walks.
+//! v(a, b), the fraction of light that a shadow ray carries from one end to the other. Surfaces have their coverage
+//! α, even glass: walks find light through smooth interfaces.
 //!
-//! Both ends are pushed off their surface by the error of their point, the far one by that of the ray, too, so that none
-//! shadows itself.
+//! Both ends are offset from their surface by the error of their point, the far one also by the error of the ray, so
+//! that they do not shadow themselves.
 
 use super::Scene;
 use super::passage::Crossings;
 use crate::locus::Locus;
 use accel::Stop;
 
-/// Shadow rays that are traced together: memory for the next ones.
+/// Memory for shadow rays that are traced together.
 #[derive(Debug, Default)]
 pub(crate) struct ShadowRays {
     rays: Vec<accel::Ray>,
@@ -18,15 +18,15 @@ pub(crate) struct ShadowRays {
 }
 
 impl Scene {
-    /// Returns how much of the light from one end to the other arrives past surfaces, in `[0, 1]`: 0 where something
-    /// opaque lies between, 1 where nothing does. At most one end is at infinity.
+    /// Returns the fraction of light that surfaces let through from one end to the other: 0 if something opaque is
+    /// between, 1 if nothing is. At most one end is at infinity. Range: `[0, 1]`.
     #[inline]
     pub fn transmittance(&self, a: &Locus, b: &Locus) -> f32 {
         self.visible(&shadow_ray(a, b), Stop::NEVER, &mut Crossings::new())
     }
 
-    /// Returns the [transmittance](Self::transmittance) between each of these pairs of ends, in their order: less work
-    /// for each than for one alone. Any numbers once `stop` is asked for.
+    /// Returns the [transmittance](Self::transmittance) between each pair of ends, in order; this is faster than one
+    /// at a time. The results are arbitrary once `stop` is asked for.
     pub(crate) fn transmittances<'a, 'm>(
         &self,
         ends: impl Iterator<Item = &'a [Locus; 2]>,
