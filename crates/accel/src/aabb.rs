@@ -64,7 +64,8 @@ impl Aabb {
     }
 }
 
-/// Returns half of the surface area of a box with these edge lengths, xy + yz + zx, in which negative ones are 0.
+/// Returns half of the surface area of a box, xy + yz + zx for the edge lengths `extent`; negative lengths count as
+/// 0.
 #[inline]
 pub(crate) fn half_area(extent: Vec3A) -> f32 {
     let extent = extent.max(Vec3A::ZERO);

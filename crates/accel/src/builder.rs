@@ -1,12 +1,12 @@
 //! Builds the tree: top-down, by the surface area heuristic, eight children at a time.
 //!
-//! A [`Group`] of references is split in two until there are eight groups, each time the one
-//! with the largest surface that is no leaf yet; these become the children of a node.
-//! Nothing depends on the number of threads: each group of fewer than [`PARALLEL_MIN`] is built into a tree of
-//! its own, and these are appended in order, which gives the layout that one thread alone would give.
+//! A node's [`Group`] of references is split in two until there are eight groups. Each step splits the group with the
+//! largest surface among those that are not leaves yet. The eight groups become the children of the node. The result
+//! does not depend on the number of threads: each group of fewer than [`PARALLEL_MIN`] is built into a tree of its
+//! own, and these trees are appended in order, which gives the layout that a single thread would give.
 //!
-//! A ray's stack is of fixed size, so depth is limited: a group of `n` that has just
-//! [`balanced_height`] levels left is halved by count instead, which needs no more.
+//! A ray's stack has a fixed size, so depth is limited: a group of `n` with only [`balanced_height`] levels left is
+//! halved by count instead, which needs no more levels.
 
 use rayon::prelude::{IntoParallelIterator, ParallelIterator};
 
@@ -24,20 +24,20 @@ mod group;
 
 use group::{Group, Kind, Reference, Totals};
 
-/// Nodes on the longest way from the root to a leaf.
+/// The largest number of nodes on the path from the root to a leaf.
 pub(crate) const MAX_DEPTH: usize = 32;
 
-/// Primitives and instances of the largest scene: then every index of a leaf fits into a [`Child`], and
-/// the height of a balanced tree leaves the heuristic more than half of [`MAX_DEPTH`].
+/// The largest number of primitives and instances of a scene: every index of a leaf fits into a [`Child`], and the
+/// height of a balanced tree leaves the heuristic more than half of [`MAX_DEPTH`].
 pub(crate) const MAX_PRIMITIVES: usize = Child::MAX_ELEMENTS;
 
 /// Groups smaller than this are built by one thread.
 const PARALLEL_MIN: usize = 4096;
 
-/// Levels of the tree down to the boxes of [`Tree::outline`].
+/// The number of levels from the root to the boxes of [`Tree::outline`].
 const OUTLINE_LEVELS: usize = 3;
 
-/// Why building panics where [`Primitives`] break their promise.
+/// The message of a panic if [`Primitives`] break their promise.
 const CHANGED: &str = "a primitive is the same each time";
 
 /// The arrays that [`Child`] points into.
@@ -47,14 +47,14 @@ pub(crate) struct Tree {
     pub(crate) nodes: Vec<Node>,
     pub(crate) blocks: Vec<TriangleBlock>,
     pub(crate) quadrics: Vec<Quadric>,
-    /// A box around everything; [`Aabb::EMPTY`] if there is nothing.
+    /// A box around everything; [`Aabb::EMPTY`] for an empty tree.
     pub(crate) bounds: Aabb,
-    /// The largest magnitude of a coordinate of a box.
+    /// The largest absolute coordinate of a box.
     pub(crate) reach: f32,
 }
 
 impl Tree {
-    /// Returns the tree over the first `count` primitives, and over instances with these bounds where they are valid.
+    /// Builds the tree over the first `count` primitives, and over instances with these bounds if they are valid.
     pub(crate) fn build<P: Primitives + ?Sized>(
         primitives: &P,
         count: usize,
@@ -77,7 +77,7 @@ impl Tree {
         Ok(Self::over(primitives, references))
     }
 
-    /// Returns the tree over primitives by at least one reference.
+    /// Builds the tree over primitives, given at least one reference.
     fn over<P: Primitives + ?Sized>(primitives: &P, mut references: Vec<Reference>) -> Self {
         let totals = Totals::of(&references);
         let bounds = totals.bounds();
@@ -105,16 +105,16 @@ impl Tree {
         tree
     }
 
-    /// Returns the node of a child that is one.
+    /// Returns the node with this index, which comes from a child.
     #[inline(always)]
     pub(crate) fn node(&self, index: usize) -> &Node {
         debug_assert!(index < self.nodes.len(), "node {index}");
-        // SAFETY: all children are made by the builder, where they and what they point to are appended
-        // together; `validate` checks it.
+        // SAFETY: the builder makes all children, and appends them together with what they point to; `validate`
+        // checks it.
         unsafe { self.nodes.get_unchecked(index) }
     }
 
-    /// Returns boxes that together contain the whole tree: those of its third level.
+    /// Returns boxes that together contain the whole tree: those of the nodes or leaves at its third level.
     pub(crate) fn outline(&self) -> Vec<Aabb> {
         let mut boxes = vec![(self.bounds, Child::node(0))];
         for _ in 0..OUTLINE_LEVELS {
@@ -127,7 +127,7 @@ impl Tree {
         boxes.into_iter().map(|(bounds, _)| bounds).collect()
     }
 
-    /// Begins to load what `child` leads to: it will be visited soon.
+    /// Begins to load the node or the triangles of `child`, which will be visited soon.
     #[inline(always)]
     pub(crate) fn prefetch(&self, child: Child) {
         let blocks: *const u8 = self.blocks.as_ptr().cast();
@@ -140,7 +140,7 @@ impl Tree {
         memory::prefetch::<{ size_of::<Node>() }>(place);
     }
 
-    /// Returns the triangle blocks of a child that is a leaf of them.
+    /// Returns the triangle blocks of a leaf.
     #[inline(always)]
     pub(crate) fn blocks(&self, first: usize, count: usize) -> &[TriangleBlock] {
         debug_assert!(first + count <= self.blocks.len(), "{count} from {first}");
@@ -148,7 +148,7 @@ impl Tree {
         unsafe { self.blocks.get_unchecked(first..first + count) }
     }
 
-    /// Makes an empty tree with the room that this number of triangles usually needs.
+    /// Makes an empty tree, with the room that this number of triangles usually needs.
     fn with_room(triangles: usize) -> Self {
         Self {
             nodes: Vec::with_capacity(triangles / 12),
@@ -175,7 +175,7 @@ impl Tree {
         }
     }
 
-    /// Appends `other` and returns where its child `child` is now.
+    /// Appends `other`, and returns its child `child` with its new index.
     fn append_tree(&mut self, mut other: Self, child: Child) -> Child {
         let (nodes, blocks) = (self.nodes.len(), self.blocks.len());
         let quadrics = self.quadrics.len();
@@ -201,7 +201,7 @@ impl Tree {
 
 /// Part of a tree.
 enum Part {
-    /// A tree of its own, and the child that leads to all of it.
+    /// A tree of its own, and the child that is all of it.
     Tree(Tree, Child),
     /// A node: its children and their bounds.
     Node(Vec<(Aabb, Part)>),
@@ -220,8 +220,8 @@ impl Part {
     }
 }
 
-/// Returns the levels of nodes that suffice for `count` primitives if groups are halved by count: three
-/// halvings a level, down to at most eight primitives, which a node has room for.
+/// Returns the number of levels of nodes that suffice for `count` primitives if groups are halved by count: three
+/// halvings per level, down to at most eight primitives, for which a node has room.
 fn balanced_height(count: usize) -> usize {
     if count <= WIDTH {
         1
@@ -237,7 +237,7 @@ struct Builder<'a, P: ?Sized> {
 }
 
 impl<P: Primitives + ?Sized> Builder<'_, P> {
-    /// Appends what leads to `group`, and returns the reference to it.
+    /// Appends the leaf or the nodes of `group`, and returns the child that refers to them.
     fn child(&self, group: Group, depth: usize, tree: &mut Tree) -> Child {
         if group.is_leaf() {
             self.leaf(&group, tree)
@@ -258,7 +258,7 @@ impl<P: Primitives + ?Sized> Builder<'_, P> {
         Child::node(index)
     }
 
-    /// Builds what leads to `group`, on several threads if it is large.
+    /// Builds the part of the tree for `group`, on several threads if it is large.
     fn part(&self, group: Group, depth: usize) -> Part {
         if group.len() < PARALLEL_MIN {
             let mut tree = Tree::with_room(group.len());
@@ -270,8 +270,8 @@ impl<P: Primitives + ?Sized> Builder<'_, P> {
         Part::Node(parts.collect())
     }
 
-    /// Splits until there are eight groups, or none that it would help. Larger boxes come last: an any-hit ray
-    /// starts there, since they stop it most often.
+    /// Splits the group into at most eight, as long as a split pays. Sorts them by area: an any-hit ray starts with
+    /// the last, because the largest box stops it most often.
     fn collapse<'r>(&self, group: Group<'r>, depth: usize) -> Vec<Group<'r>> {
         let by_count = depth + balanced_height(group.len()) >= MAX_DEPTH;
         let mut groups = Vec::with_capacity(WIDTH);

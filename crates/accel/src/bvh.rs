@@ -1,4 +1,4 @@
-//! [`Bvh`]: building and asking.
+//! [`Bvh`]: construction and queries.
 
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -17,7 +17,7 @@ use crate::ray::{Hit, Ray};
 use crate::stop::Stop;
 use crate::triangle::TriangleBlock;
 
-/// How to build a [`Bvh`].
+/// The options of building a [`Bvh`].
 #[derive(Debug, Clone)]
 pub struct BuildOptions {
     /// The instructions that rays are traced with. The default is the best of this machine.
@@ -30,7 +30,7 @@ impl Default for BuildOptions {
     }
 }
 
-/// A bounding volume hierarchy: finds which of many primitives a ray hits.
+/// A bounding volume hierarchy: finds the primitives that a ray hits.
 ///
 /// ```
 /// use bidir_accel::{Bvh, BuildOptions, Primitive, Ray, accept_all};
@@ -59,10 +59,9 @@ impl Bvh {
         Self::with_instances(primitives, Vec::new(), &[], options)
     }
 
-    /// Builds the tree over primitives and over instances of `objects`, which have none themselves.
+    /// Builds the tree over primitives and over instances of `objects`, which must not have instances themselves.
     ///
-    /// An instance of an empty object is never hit. The instructions of the objects' own trees do
-    /// not matter.
+    /// An instance of an empty object is never hit. The instruction sets of the objects' own trees are ignored.
     ///
     /// ```
     /// use std::sync::Arc;
@@ -106,7 +105,7 @@ impl Bvh {
         })
     }
 
-    /// Makes the tree use other instructions. Those of its objects stay: they are not used.
+    /// Sets the instruction set. Those of its objects are not used.
     pub fn with_isa(self, isa: Isa) -> Result<Self, BuildError> {
         let isa = supported(isa)?;
         Ok(Self { isa, ..self })
@@ -114,8 +113,8 @@ impl Bvh {
 
     /// Returns the hit of smallest `t` among those for which `accept` holds.
     ///
-    /// At equal `t` the lowest `(instance, primitive)` wins.
-    /// `accept` must be a pure function of the hit: it is asked in any order, about any hits.
+    /// At equal `t`, the hit with the lowest `(instance, primitive)` wins. `accept` must be a pure function of the
+    /// hit: it is called in any order, for any hits.
     #[inline]
     pub fn closest<F: Fn(&Hit) -> bool>(&self, ray: &Ray, accept: F) -> Option<Hit> {
         self.until(Stop::NEVER).closest(ray, accept)
@@ -127,14 +126,14 @@ impl Bvh {
         self.until(Stop::NEVER).is_blocked(ray)
     }
 
-    /// Sets `blocked` to what [`is_blocked`](Self::is_blocked) says of each of `rays`. With dozens of rays in a large
+    /// Sets `blocked` to the results of [`is_blocked`](Self::is_blocked) for `rays`. For dozens of rays in a large
     /// tree this is faster.
     pub fn are_blocked(&self, rays: &[Ray], blocked: &mut Vec<bool>) {
         self.until(Stop::NEVER).are_blocked(rays, blocked);
     }
 
-    /// Calls `found` with every hit of the ray, each once and in any order, until it breaks off.
-    /// Returns whether it did.
+    /// Calls `found` with every hit of the ray, each once and in any order, until it breaks. Returns the last result
+    /// of `found`.
     #[inline]
     pub fn each_hit<F: FnMut(&Hit) -> ControlFlow<()>>(
         &self,
@@ -149,7 +148,7 @@ impl Bvh {
         self.tree.bounds
     }
 
-    /// Returns the number of primitives it was built from, those of objects not counted.
+    /// Returns the number of primitives of the tree, without those of objects.
     pub fn primitive_count(&self) -> usize {
         self.primitive_count
     }
@@ -176,8 +175,8 @@ impl Bvh {
         self.isa
     }
 
-    /// Returns the bytes of memory that the tree and its copy of the primitives take, with the instances and with
-    /// every object once.
+    /// Returns the memory of the tree and its copy of the primitives, with instances, and with every object once.
+    /// Unit: bytes.
     pub fn memory_bytes(&self) -> usize {
         let of_objects: usize = self
             .objects
@@ -232,6 +231,6 @@ fn place(
     Ok(placed?.into_iter().unzip())
 }
 
-// The layout that memory estimates and wider vectors count on.
+// Memory estimates and vector loads rely on this layout.
 const _: () = assert!(size_of::<Node>() == 256 && align_of::<Node>() == 64);
 const _: () = assert!(size_of::<TriangleBlock>() == 160);

@@ -29,7 +29,7 @@ pub(crate) enum Target {
 
 impl Child {
     pub(crate) const NOTHING: Self = Self(u32::MAX);
-    /// Elements (triangle blocks or quadrics) of the largest leaf.
+    /// The number of elements (triangle blocks or quadrics) of the largest leaf.
     pub(crate) const MAX_LEAF: usize = 8;
     /// One more than the largest first element of a leaf.
     pub(crate) const MAX_ELEMENTS: usize = 1 << Self::LENGTH_SHIFT;
@@ -68,13 +68,13 @@ impl Child {
         Self(bits)
     }
 
-    /// Returns the index of the node that it is.
+    /// Returns the index of the node. None: it is not a node.
     #[inline(always)]
     pub(crate) fn as_node(self) -> Option<usize> {
         (self.0 >> Self::KIND_SHIFT == 0).then_some(self.0 as usize)
     }
 
-    /// Returns the first of the triangle blocks that it is, and how many they are.
+    /// Returns the first triangle block, and the number of blocks. None: it is not a leaf of triangles.
     #[inline(always)]
     pub(crate) fn as_triangles(self) -> Option<(usize, usize)> {
         (self.0 >> Self::KIND_SHIFT == 1).then_some(self.elements())

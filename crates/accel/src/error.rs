@@ -1,10 +1,10 @@
-//! Why a tree could not be built.
+//! The errors of building a tree.
 
 use std::fmt;
 
 use crate::isa::Isa;
 
-/// Why a [`Bvh`](crate::Bvh) could not be built.
+/// The reasons why a [`Bvh`](crate::Bvh) could not be built.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum BuildError {

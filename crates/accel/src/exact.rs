@@ -42,8 +42,8 @@ pub(crate) fn pass_triangle(triangle: [Vec3; 3], direction: Vec3, axis: usize) -
     Some(passage(weights, triangle, direction, axis))
 }
 
-/// The same where the line is known to pass so far from the edges that plain edge functions exceed their
-/// error bound (see [`crate::triangle`]): the same bits, for less.
+/// Returns the result of [`pass_triangle`] if the line is known to pass so far from the edges that plain edge
+/// functions exceed their error bound (see [`crate::triangle`]): the same bits, at less cost.
 #[inline(always)]
 pub(crate) fn pass_certain(triangle: [Vec3; 3], direction: Vec3, axis: usize) -> Passage {
     let plain = |a: DVec3, b: DVec3, d: DVec3| a.cross(b).dot(d);
@@ -119,7 +119,7 @@ struct Expansion {
 impl Expansion {
     /// Adds `pair·factor`, where `pair` is a product of two `f32` and `factor` an `f32`.
     fn add_product(&mut self, pair: f64, factor: f64) {
-        // Of the 48 bits of a pair, the upper and the lower 24: either times 24 bits is exact.
+        // The upper and the lower 24 of the 48 bits of a pair: the product of either with 24 bits is exact.
         let upper = f64::from_bits(pair.to_bits() & !((1 << 29) - 1));
         self.add((pair - upper) * factor);
         self.add(upper * factor);

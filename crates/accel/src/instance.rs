@@ -1,17 +1,17 @@
-//! Objects that stand in several places: a tree of their own, shared, and an affine map each.
+//! Instances: an object's tree, shared by all its instances, and an affine map for each.
 //!
-//! A ray is taken to the object's space and meets the object's tree there, so that all triangles of an
-//! instance see one and the same local ray: edges between them stay as tight as without the map.
-//! With `M` the map to the object's space, the local ray is
+//! A ray is mapped to the object's space, and intersects the object's tree there. All triangles of an instance see
+//! the same local ray, so that edges between them stay as tight as without the map. With `M` the map to the object's
+//! space, the local ray is
 //!
 //! ```text
 //!     d' = M d   (no translation),   o' = M o + t₀·d',   t = t₀ + t'
 //! ```
 //!
-//! `t₀ ≥ 0` is where the ray enters a ball around the instance, 0 if it starts inside. It is what a
-//! distant origin costs in digits. The direction is not normalised, so that `t'` has the unit of `t`.
-//! All of it is computed in `f64`, in one order, without FMA; `o'` and `d'` are then rounded, to the
-//! `f32` numbers that the exact test of edges asks for.
+//! `t₀ ≥ 0` is where the ray enters a ball around the instance, or 0 if it starts inside. Starting there avoids the
+//! loss of digits by a distant origin. The direction is not normalised, so that `t'` has the unit of `t`. All of it
+//! is computed in `f64`, in one order, without FMA; `o'` and `d'` are then rounded to `f32` numbers, which the exact
+//! test of edges needs.
 //!
 //! **Boxes.** Rounding moves the local line. Let `ε` be half of `f32::EPSILON`, `R` the radius of the ball
 //! and `c'` its local center. Per local axis, `ρ = R·|row of M|` bounds the distance from `c'` in the
@@ -23,8 +23,8 @@
 //! local line hits is in a box that the world ray meets. Local boxes are those at the third level of the object's tree:
 //! mapped together they leave less room around what is round or turned than the object's own box.
 //!
-//! **Limits.** `t` is rounded once, from `t₀ + t'`. The local limits are those of the world less `t₀`,
-//! moved outward by `4ε` of themselves, so that nothing is culled that would tie.
+//! **Limits.** `t` is rounded once, from `t₀ + t'`. The local limits are those of the world minus `t₀`, moved outward
+//! by `4ε` of themselves, so that no hit at an equal distance is culled.
 
 use glam::{DAffine3, DVec3};
 
@@ -32,7 +32,7 @@ use crate::aabb::Aabb;
 use crate::primitive::{abs_times, outward};
 use crate::ray::{Hit, Ray};
 
-/// A place of an object.
+/// An object, and its map to the world.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Instance {
     /// Index of the object.
@@ -51,7 +51,7 @@ pub(crate) struct Placement {
     pub(crate) object: u32,
 }
 
-/// The most that a map may stretch in either direction: directions stay in the range of `f32`.
+/// The largest factor by which a map may stretch, in either direction: directions stay in the range of `f32`.
 const MOST_SCALE: f64 = 1e18;
 
 /// The error of a sum of two lengths, relative to them: 2⁻⁴⁸, some roundings of an `f64`.
@@ -61,8 +61,8 @@ const CANCELLED: f64 = 1.0 / (1u64 << 48) as f64;
 const _: () = assert!(size_of::<Placement>() <= 128);
 
 impl Placement {
-    /// Places an object with these bounds, and returns the bounds of the place. `parts`: boxes that together contain the
-    /// object; small ones make the bounds tight.
+    /// Places an object with these bounds, and returns the bounds of the instance. `parts` are boxes that together
+    /// contain the object; small ones make the bounds tight.
     ///
     /// None: the map has no inverse, or is so close to having none that the rounding of rays exceeds
     /// the instance, or something overflows.
@@ -73,7 +73,7 @@ impl Placement {
         let local_center = 0.5 * (low + high);
         let center = world_from_object.transform_point3(local_center);
         let half = abs_times(&world_from_object, 0.5 * (high - low));
-        // The rounding error depends on the ball, and the ball on the error: begin with room.
+        // The rounding error depends on the ball, and the ball on the error: the first ball is larger.
         let offset = abs_times(&world_from_object, local_center.abs());
         let cancelled = CANCELLED * (center.abs() + offset + half);
         let radius = 2.0 * half.length() + 1e-5 * offset.length() + 1e3 * cancelled.length();
@@ -109,8 +109,7 @@ impl Placement {
         &self.object_from_world
     }
 
-    /// Returns the ray in the object's space, with how it is seen from the world. `instance` is the number
-    /// that hits get.
+    /// Returns the ray in the object's space, and its relation to the world. `instance` is the index that hits get.
     #[inline(always)]
     pub(crate) fn view(&self, ray: &Ray, approach: &Approach, instance: u32) -> (Ray, Object) {
         let start = approach.entry(self);
@@ -160,7 +159,7 @@ impl Approach {
     }
 }
 
-/// Returns the corners of a box around all `parts` in the place where `map` takes them.
+/// Returns the corners of a box around all `parts` after `map`.
 fn mapped(map: &DAffine3, parts: &[Aabb]) -> (DVec3, DVec3) {
     let none = (DVec3::INFINITY, DVec3::NEG_INFINITY);
     parts.iter().fold(none, |(min, max), part| {
@@ -171,7 +170,7 @@ fn mapped(map: &DAffine3, parts: &[Aabb]) -> (DVec3, DVec3) {
     })
 }
 
-/// Returns how far rounding moves a local line within the ball: `e` of the module's page.
+/// Returns the distance that rounding moves a local line within the ball: `e` of the module's page.
 fn local_error(object_from_world: &DAffine3, local_center: DVec3, radius: f64) -> DVec3 {
     let rows = object_from_world.matrix3.transpose();
     let lengths = DVec3::new(
@@ -191,11 +190,11 @@ pub(crate) trait Space {
     /// Returns the world's hit for a local one. None: it is beyond the limits.
     fn world_hit(&self, local: Hit) -> Option<Hit>;
 
-    /// Lets `shorten` lower the limit of world hits, and lowers that of local hits to match.
+    /// Calls `shorten` to lower the limit of world hits, and lowers the limit of local hits to match.
     fn limit<R>(&mut self, ray: &mut Ray, shorten: impl FnOnce(&mut f32) -> R) -> R;
 }
 
-/// The tree's own primitives: nothing is changed.
+/// The space of the tree's own primitives: hits are not changed.
 pub(crate) struct World;
 
 impl Space for World {
@@ -215,15 +214,15 @@ impl Space for World {
     }
 }
 
-/// The primitives of one instance.
+/// The space of the primitives of one instance.
 pub(crate) struct Object {
     instance: u32,
     /// `t₀`.
     start: f64,
-    /// The limits in the world.
+    /// The limits in the world. Hits before `t_min` do not count.
     t_min: f32,
     pub(crate) t_max: f32,
-    /// Limits of local hits that are certainly within those of the ray as it came.
+    /// The limits of local hits that are certainly within the ray's initial limits.
     sure: [f32; 2],
 }
 

@@ -1,4 +1,4 @@
-//! Which vector instructions the traversal uses.
+//! The vector instructions of the traversal.
 
 use std::fmt;
 use std::str::FromStr;
@@ -7,7 +7,7 @@ use crate::simd::{self, Kernel, Simd};
 
 /// A set of vector instructions.
 ///
-/// The choice changes speed, never an answer.
+/// The choice affects the speed, never a result.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Isa {
@@ -17,12 +17,12 @@ pub enum Isa {
     Sse2,
     /// 256-bit vectors, with FMA and bit manipulation: most machines since 2013.
     Avx2,
-    /// The same width, with masks and compression: F, VL, DQ and BW.
+    /// AVX-512 (F, VL, DQ, BW) on 256-bit vectors, for its masks and compress instructions.
     Avx512,
 }
 
 impl Isa {
-    /// All sets that have a name, from the narrowest to the newest.
+    /// All sets, from the narrowest to the newest.
     pub const ALL: [Self; 4] = [Self::Scalar, Self::Sse2, Self::Avx2, Self::Avx512];
 
     /// Returns the sets of this machine, from the narrowest to the newest.
@@ -30,8 +30,8 @@ impl Isa {
         Self::ALL.into_iter().filter(|isa| isa.is_supported())
     }
 
-    /// Returns the set that rays use where none is named: the fastest, but not AVX-512, which gains nothing over AVX2
-    /// in most scenes (docs/performance.md).
+    /// Returns the default set: the fastest, except for AVX-512, which gains nothing over AVX2 in most scenes
+    /// (docs/performance.md).
     pub fn detect() -> Self {
         let mut by_speed = [Self::Avx2, Self::Sse2].into_iter();
         by_speed
@@ -64,8 +64,8 @@ impl Isa {
     #[inline(always)]
     pub(crate) fn call<K: Kernel>(self, kernel: K) -> K::Output {
         debug_assert!(self.is_supported(), "{self}");
-        // SAFETY: whoever makes use of a set has asked whether it is supported: `Bvh` when it is
-        // built or changes its set, tests by going through the supported ones.
+        // SAFETY: the set is known to be supported: `Bvh` checks it when it is built or changes its set, and tests
+        // use only supported sets.
         unsafe {
             match self {
                 #[cfg(target_arch = "x86_64")]

@@ -1,9 +1,9 @@
 //! Watertight ray intersection: an 8-wide BVH over triangles, spheres, disks, cylinders and instances.
 //!
-//! A [`Bvh`] is built once from a slice of [`Primitive`]s and then answers rays from any number of
-//! threads: [`Bvh::closest`] takes a filter that decides which hits exist, so that cut-outs (alpha) cost
-//! one call per hit and nothing where they are not used ([`accept_all`]);
-//! [`Bvh::each_hit`] reports all hits, and [`Bvh::are_blocked`] finds which of many rays hit anything.
+//! A [`Bvh`] is built once from a slice of [`Primitive`]s, and then answers queries from any number of threads.
+//! [`Bvh::closest`] takes a filter that decides which hits exist, so that cut-outs (alpha) cost one call per hit, and
+//! nothing if they are not used ([`accept_all`]). [`Bvh::each_hit`] reports all hits, and [`Bvh::are_blocked`] finds
+//! which of many rays hit anything.
 //!
 //! ```
 //! use bidir_accel::{Bvh, BuildOptions, Primitive, Ray, accept_all};

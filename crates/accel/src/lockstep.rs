@@ -1,11 +1,11 @@
-//! Any-hit queries of many rays, eight in step.
+//! Any-hit queries for many rays, eight in lockstep.
 //!
-//! A single ray waits most of its time: for mispredicted branches on what it met, and for the next node. In step,
-//! every ray takes one node at a time from a stack of its own, and the children that are met are packed without a
-//! branch: nodes onto that stack, leaves into a queue of all rays, which is worked off every other round. A ray
-//! that is done makes room for the next.
+//! A single ray spends most of its time waiting: for mispredicted branches after tests, and for the next node. In
+//! lockstep, every ray opens one node at a time from a stack of its own. The children that it hits are packed without
+//! a branch: nodes onto that stack, leaves into a queue for all rays, which is emptied every other round. A ray that
+//! is done is replaced by the next.
 //!
-//! Boxes and leaves are visited in another order than by single rays; whether there is a hit does not depend on it.
+//! Boxes and leaves are visited in another order than by single rays; the results do not depend on it.
 
 use std::array::from_fn;
 use std::mem::MaybeUninit;
@@ -23,10 +23,10 @@ use crate::stop::Stop;
 use crate::traverse::{Ask, Leaves, VisitInstance, clean};
 use crate::triangle::TriangleRay;
 
-/// Rays in step.
+/// The number of rays in lockstep.
 const RAYS: usize = 8;
 
-/// Nodes that a ray opens before the queue of leaves is worked off.
+/// The number of nodes that a ray opens before the queue of leaves is emptied.
 const ROUNDS: usize = 2;
 
 /// The number of triangle blocks, 640 KiB, below which caches are likely to hold all of them.
@@ -113,8 +113,8 @@ struct Waiting<'a> {
 }
 
 impl Waiting<'_> {
-    /// Returns the next ray that may hit something, and the root on its stack. None: there is none, or nobody waits for
-    /// it.
+    /// Returns the next ray that may hit something, and pushes the root onto its stack. None: no ray is left, or the
+    /// host asked to stop.
     #[inline(always)]
     fn start(&mut self, tree: &Tree, stack: &mut NodeStack) -> Option<ActiveRay> {
         stack.clear();
@@ -139,10 +139,10 @@ impl Waiting<'_> {
     }
 }
 
-/// A ray in step.
+/// A ray in lockstep.
 struct ActiveRay {
     ray: Ray,
-    /// The distance at which a box must still be entered.
+    /// The largest distance at which a box must be entered.
     limit: f32,
     box_ray: BoxRay,
     triangle_ray: TriangleRay,
@@ -151,8 +151,8 @@ struct ActiveRay {
 }
 
 impl ActiveRay {
-    /// Takes a node from `stack`, if there is one, and packs the children that the ray meets. `place`: where the
-    /// ray is among those in step.
+    /// Opens a node from `stack`, if there is one, and packs the children that the ray hits. `place` is the index of
+    /// the ray among those in lockstep.
     #[inline(always)]
     fn open_next<S: Simd>(
         &self,
@@ -207,19 +207,19 @@ impl ActiveRay {
     }
 }
 
-/// Nodes that a ray has still to open, the next one last.
+/// The nodes that a ray has still to open, the next one last.
 struct NodeStack {
-    /// The first is the root and stays, so that there is always a top to load ahead.
+    /// The first is the root. It stays, so that there is always a top to prefetch.
     nodes: [MaybeUninit<u32>; Self::SIZE],
     len: usize,
 }
 
 impl NodeStack {
-    /// The first; of every node on the way all children but the one opened, and at the last node that one too;
-    /// words that are written behind those that count.
+    /// The size: the first entry; for each node on the path all children but the opened one, and at the last node
+    /// that one, too; and the words that are written after the valid ones.
     const SIZE: usize = 1 + MAX_DEPTH * (WIDTH - 1) + 1 + WIDTH;
 
-    // A function, because every use of a constant would copy all words, the uninitialised ones too.
+    // This is a function, because every use of a constant would copy all words, even uninitialised ones.
     #[inline(always)]
     fn new() -> Self {
         Self {
@@ -248,7 +248,7 @@ impl NodeStack {
     #[inline(always)]
     fn top(&self) -> usize {
         debug_assert!((1..=Self::SIZE).contains(&self.len), "{}", self.len);
-        // SAFETY: `clear` comes first, so that there is an entry, and all entries below `len` were written.
+        // SAFETY: `clear` is called first, so that there is an entry, and all entries below `len` were written.
         unsafe { self.nodes.get_unchecked(self.len - 1).assume_init() as usize }
     }
 
@@ -262,7 +262,7 @@ impl NodeStack {
         Some(top)
     }
 
-    /// Pushes those of `nodes` whose bit is set.
+    /// Pushes the `nodes` whose bit in `mask` is set.
     #[inline(always)]
     fn push_all<S: Simd>(&mut self, mask: u32, nodes: &[u32; WIDTH]) {
         // SAFETY: the builder makes no tree deeper than `MAX_DEPTH`, for which `SIZE` suffices.
@@ -273,16 +273,17 @@ impl NodeStack {
     }
 }
 
-/// Leaves that rays have still to visit.
+/// The leaves that rays have still to visit.
 struct LeafQueue {
     leaves: [MaybeUninit<u32>; Self::SIZE],
-    /// For each leaf the place of its ray among those in step.
+    /// For each leaf, the index of its ray among those in lockstep.
     places: [MaybeUninit<u8>; Self::SIZE],
     len: usize,
 }
 
 impl LeafQueue {
-    /// All children of the nodes that are opened before it is worked off, and the words written behind them.
+    /// The size: all children of the nodes that are opened before the queue is emptied, and the words that are
+    /// written after them.
     const SIZE: usize = RAYS * ROUNDS * WIDTH + WIDTH;
 
     #[inline(always)]
@@ -294,10 +295,10 @@ impl LeafQueue {
         }
     }
 
-    /// Adds those of `leaves` whose bit is set.
+    /// Adds the `leaves` whose bit in `mask` is set.
     #[inline(always)]
     fn push_all<S: Simd>(&mut self, mask: u32, leaves: &[u32; WIDTH], place: usize) {
-        // SAFETY: the queue is worked off before more is pushed than `SIZE` has room for.
+        // SAFETY: the queue is emptied before more is pushed than `SIZE` has room for.
         unsafe {
             S::Eight::pack(mask, leaves, eight_from(&mut self.leaves, self.len));
             *eight_from(&mut self.places, self.len) = [MaybeUninit::new(place as u8); WIDTH];
@@ -305,7 +306,7 @@ impl LeafQueue {
         self.len += mask.count_ones() as usize;
     }
 
-    /// Begins to load all leaves, unless the caches are likely to have them.
+    /// Begins to load all leaves, unless the caches are likely to hold them.
     #[inline(always)]
     fn load_ahead(&self, tree: &Tree) {
         if tree.blocks.len() < CACHED_BLOCKS {
@@ -317,7 +318,7 @@ impl LeafQueue {
         }
     }
 
-    /// Visits all leaves, and empties the queue. Returns for each ray in step a bit that says whether it is blocked.
+    /// Visits all leaves, and empties the queue. Returns a bit for each ray in lockstep: 1 if it is blocked.
     #[inline(always)]
     fn visit_all<S: Simd>(
         &mut self,
@@ -350,7 +351,7 @@ impl LeafQueue {
 ///
 /// # Safety
 ///
-/// The array has them.
+/// `first + WIDTH` is at most `N`.
 #[inline(always)]
 unsafe fn eight_from<T, const N: usize>(array: &mut [T; N], first: usize) -> &mut [T; WIDTH] {
     debug_assert!(first + WIDTH <= N, "{first} of {N}");

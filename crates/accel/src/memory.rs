@@ -1,12 +1,12 @@
 //! The memory of a tree's arrays.
 
-/// Arrays below this size do not ask for large pages: they would not fill many.
+/// The size of arrays from which large pages are requested: smaller ones would not fill many. Unit: bytes.
 const LARGE: usize = 1 << 20;
 
-/// Bytes of a line of a cache.
+/// The size of a cache line. Unit: bytes.
 const LINE: usize = 64;
 
-/// Begins to load values that will be read before long, into the nearest cache. It changes nothing but time.
+/// Begins to load values that will be read soon into the nearest cache. It affects only time.
 #[inline(always)]
 pub fn load_ahead<T>(values: &[T]) {
     let place: *const u8 = values.as_ptr().cast();
@@ -30,8 +30,8 @@ pub(crate) fn prefetch<const BYTES: usize>(place: *const u8) {
     let _ = place;
 }
 
-/// Returns an empty array with room for just so many elements. Where that is much, and the system can, it is in large
-/// pages: rays jump about in it, and each jump to a small page costs a search for that page.
+/// Returns an empty array with room for exactly `count` elements. If it is large, it is in large pages if the system
+/// allows it: rays jump about in it, and each jump to a small page costs a search for that page.
 pub(crate) fn with_room<T>(count: usize) -> Vec<T> {
     let mut empty = Vec::with_capacity(count);
     if count * size_of::<T>() >= LARGE {
@@ -40,7 +40,7 @@ pub(crate) fn with_room<T>(count: usize) -> Vec<T> {
     empty
 }
 
-/// Asks before the memory is touched. A refusal changes nothing.
+/// Requests large pages before the memory is touched. A refusal changes nothing.
 #[cfg(target_os = "linux")]
 fn ask_for_large_pages<T>(empty: &mut Vec<T>) {
     /// The size of the smallest pages; the range of the advice must begin at a multiple.

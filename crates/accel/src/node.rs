@@ -1,7 +1,7 @@
 //! Inner nodes: eight boxes side by side, tested conservatively.
 //!
-//! A ray is inside a slab between `(near - o)/d` and `(far - o)/d`, and inside a box where it is inside
-//! all three. With `r = 1/d` that is computed as `near·r - o·r`: one fused operation on many machines.
+//! A ray is inside a slab between `(near - o)/d` and `(far - o)/d`, and inside a box if it is inside all three slabs.
+//! With `r = 1/d` that is computed as `near·r - o·r`: one fused operation on many machines.
 //!
 //! **Rounding.** Let `ε` be half of `f32::EPSILON`. `o·r`, its sum with `e` below and the product `near·r`
 //! lose at most `3ε|o·r|` together, which `e = 4ε|o·r|` makes up for: entries are computed with `o·r + e`,
@@ -15,8 +15,8 @@
 //! later. Then a slab that the ray is in stays open until `T`, and one that is `2δ` away is missed. The
 //! code takes `2⁻²³·(s + |o|)` for `δ`.
 //!
-//! An axis along which anything overflows has no limits. Then no number is NaN but where a box is
-//! empty, and exits are not zero but where the ray leaves before its origin.
+//! An axis along which anything overflows has no limits. Then a number is NaN only for an empty box, and an exit is
+//! zero only if the ray leaves before its origin.
 //!
 //! [Ize13]: https://jcgt.org/published/0002/02/02/
 
@@ -27,18 +27,18 @@ use crate::child::Child;
 use crate::ray::Ray;
 use crate::simd::F32x8;
 
-/// Children of a [`Node`].
+/// The number of children of a [`Node`].
 pub(crate) const WIDTH: usize = 8;
 
 /// `1 + 16ε`: the factor of an exit.
 const WIDENING: f32 = 1.0 + 8.0 * f32::EPSILON;
 
-/// Returns the largest distance at which a box must still be entered to find all hits up to `t_max`. Beyond a
-/// tenth of what a number can be, products on the way to a distance can overflow: no limit.
+/// Returns the largest distance at which a box must be entered to find all hits up to `t_max`. For `t_max` above a
+/// tenth of the largest `f32` it is infinite, because products on the way to a distance could overflow.
 #[inline(always)]
 pub(crate) fn widen(t_max: f32) -> f32 {
     if t_max < 0.1 * f32::MAX {
-        // The zero takes the sign of another one away, which comparisons of bits would mind.
+        // Adding zero removes the sign of a negative zero, which would matter to comparisons of bits.
         t_max * WIDENING + 0.0
     } else {
         f32::INFINITY
@@ -49,7 +49,7 @@ pub(crate) fn widen(t_max: f32) -> f32 {
 #[derive(Debug, Clone, Copy)]
 #[repr(C, align(64))]
 pub(crate) struct Node {
-    /// `[2·axis + side][child]`, with side 0 the minimum; an empty box where there is no child.
+    /// The planes of boxes, by `[2·axis + side][child]`; side 0 is the minimum. An unused slot has an empty box.
     planes: [[f32; WIDTH]; 6],
     children: [Child; WIDTH],
 }
@@ -102,8 +102,8 @@ impl Node {
             .collect()
     }
 
-    /// Returns which boxes the ray meets at distances up to `limit` (of [`widen`]): a mask with the bit of each
-    /// box, and the distances at which they are entered.
+    /// Returns a mask of the boxes that the ray hits at distances up to `limit` (from [`widen`]), and the distances
+    /// at which it enters them.
     #[inline(always)]
     pub(crate) fn intersect<V: F32x8>(&self, ray: &BoxLanes<V>, limit: f32) -> (u32, V) {
         let plane = |axis: usize, side: usize| {
@@ -119,20 +119,20 @@ impl Node {
             let ray = &ray.axes[axis];
             plane(axis, ray.near ^ 1).mul_sub(ray.inverse_widened, ray.exit_offset)
         };
-        // An entry that is negative is none, whichever it is: so is an exit, which is missed.
+        // The sign of a zero or negative entry does not matter: an exit there is missed.
         let entry = entry(0).max(entry(1)).max(entry(2).max(ray.t_min));
         let exit = exit(0).min(exit(1)).min(exit(2).min(V::splat(limit)));
         (entry.le(exit), entry)
     }
 
-    /// Returns a word for each box: the bits of its distance above those of its child.
+    /// Returns a word for each box: the bits of its distance above the bits of its child.
     #[inline(always)]
     pub(crate) fn entries<V: F32x8>(&self, distances: V) -> [u64; WIDTH] {
         distances.over(Child::all_bits(&self.children))
     }
 }
 
-/// A ray made ready for boxes.
+/// A ray prepared for tests against boxes.
 #[derive(Clone, Copy)]
 pub(crate) struct BoxRay {
     axes: [AxisRay<f32>; 3],
@@ -140,11 +140,11 @@ pub(crate) struct BoxRay {
 }
 
 impl BoxRay {
-    /// Returns `reach`: the largest magnitude of a coordinate of what can be hit.
+    /// Prepares a ray; `reach` is the largest absolute coordinate of anything that can be hit.
     #[inline(always)]
     pub(crate) fn new(ray: &Ray, reach: f32) -> Self {
         let (origin, direction) = (Vec3A::from(ray.origin), Vec3A::from(ray.direction));
-        // Room for what rounds below.
+        // The factor leaves room for the rounding below.
         let largest = direction.abs().max_element();
         let last = 1.001 * (reach + origin.abs().max_element()) / largest;
         let steepest = Vec3A::splat(STEEPEST / largest);
@@ -157,7 +157,7 @@ impl BoxRay {
         let slack = |offset: Vec3A| 2.0 * f32::EPSILON * offset.abs() + least;
         let (entry, exit) = (origin * inverse, origin * widened);
         let (entry, exit) = (entry + slack(entry), exit - slack(exit));
-        // Not zero where a number is infinite or none.
+        // It is not zero if a number is infinite or NaN.
         let zero = inverse * 0.0 + widened * 0.0 + entry * 0.0 + exit * 0.0;
         let is_finite = zero.cmpeq(Vec3A::ZERO);
         let or = |value: Vec3A, limitless: f32| {
@@ -180,7 +180,7 @@ impl BoxRay {
         }
     }
 
-    /// The same in all lanes.
+    /// Returns the ray with its numbers in all lanes.
     #[inline(always)]
     pub(crate) fn lanes<V: F32x8>(&self) -> BoxLanes<V> {
         let axis = |axis: usize| {
@@ -216,7 +216,7 @@ struct AxisRay<V> {
     entry_offset: V,
     inverse_widened: V,
     exit_offset: V,
-    /// Which of the two planes the ray meets first: 0 or 1.
+    /// The plane that the ray reaches first: 0 or 1.
     near: usize,
 }
 

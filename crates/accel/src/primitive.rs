@@ -39,15 +39,15 @@ impl Primitive {
     }
 }
 
-/// Numbered primitives. A tree asks for each of them twice, and keeps triangles in a form of its own: they need not all
-/// be in memory at once.
+/// Numbered primitives. Building a tree reads each of them twice, and keeps triangles in a form of its own: they need
+/// not all be in memory at once.
 pub trait Primitives: Sync {
-    /// Returns the number of primitives. It is asked once for a tree.
+    /// Returns the number of primitives. It is called once for a tree.
     fn count(&self) -> usize;
 
-    /// Returns primitive `index`, below [`count`](Self::count): the same each time.
+    /// Returns primitive `index`, less than [`count`](Self::count): the same one each time.
     ///
-    /// Panics: building may panic if it is another.
+    /// Panics: building may panic if it returns another one.
     fn primitive(&self, index: usize) -> Primitive;
 }
 
@@ -61,8 +61,8 @@ impl Primitives for [Primitive] {
     }
 }
 
-/// Bounds in world space of the ellipsoid that `x² + y² + z² ≤ 1` becomes after scaling by `radii`
-/// and moving by `center` in the space of `local_from_world`.
+/// Returns bounds in world space of the ellipsoid that `x² + y² + z² ≤ 1` becomes after scaling by `radii` and moving
+/// by `center` in the space of `local_from_world`.
 ///
 /// Each world coordinate is a linear function of the unit ball: its largest value is the length
 /// of its row in the combined matrix.
@@ -82,7 +82,7 @@ pub(crate) fn ellipsoid_bounds(
     padded(world_from_local.transform_point3(center), reach)
 }
 
-/// Bounds in world space of a box in the space of `local_from_world`.
+/// Returns bounds in world space of a box in the space of `local_from_world`.
 pub(crate) fn box_bounds(local_from_world: &glam::Affine3A, center: DVec3, half: DVec3) -> Aabb {
     let world_from_local: DAffine3 = to_f64(local_from_world).inverse();
     let reach = abs_times(&world_from_local, half);
@@ -105,7 +105,7 @@ fn padded(center: DVec3, reach: DVec3) -> Aabb {
     }
 }
 
-/// Returns `value` rounded upward where `direction` is 1, downward where it is -1.
+/// Returns `value` rounded up if `direction` is 1, or down if it is -1.
 pub(crate) fn outward(value: f64, direction: f64) -> f32 {
     let rounded = value as f32;
     match direction * (f64::from(rounded) - value) {

@@ -1,4 +1,4 @@
-//! Leaves of primitives that are no triangles: a closed set, intersected one at a time.
+//! Leaves of primitives that are not triangles: a closed set of kinds, intersected one at a time.
 //!
 //! Affine maps keep `t`, so a quadric is intersected in its own space, in `f64`: the error there
 //! is far below that of the `f32` answer.
@@ -19,13 +19,13 @@ use crate::sphere::SphereTest;
 pub(crate) struct Quadric {
     /// Index of the primitive.
     pub(crate) primitive: u32,
-    /// As the tree knows it.
+    /// Its bounds in the tree.
     pub(crate) bounds: Aabb,
     local_from_world: DAffine3,
     shape: Shape,
 }
 
-/// To add a kind, give it a test like the ones here and a [`Primitive`].
+/// The kinds of quadrics. To add one, give it a test like the ones here and a [`Primitive`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Shape {
     Sphere(SphereTest),
@@ -50,7 +50,7 @@ impl LocalLine {
 pub(crate) type Roots = [f64; 2];
 
 impl Quadric {
-    /// None: the primitive is a triangle.
+    /// Prepares a primitive. None: it is a triangle.
     pub(crate) fn new(index: u32, primitive: &Primitive) -> Option<Self> {
         let (local_from_world, shape) = match primitive {
             Primitive::Triangle(_) => return None,

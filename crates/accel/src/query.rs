@@ -1,12 +1,12 @@
-//! The questions that can be asked about the hits of a ray.
+//! The queries about the hits of a ray.
 
 use std::ops::ControlFlow;
 
 use crate::ray::Hit;
 
-/// A question about the hits of a ray.
+/// A query about the hits of a ray.
 pub(crate) trait Query {
-    /// True if any hit answers it.
+    /// True if any hit answers the query.
     const ANYTHING: bool = false;
 
     /// Takes a hit at most as far as the ray's `t_max`, which it may shorten.
@@ -51,7 +51,7 @@ impl Query for Anything {
     }
 }
 
-/// Finds all hits, as long as it is wanted.
+/// Finds all hits, until `found` breaks.
 pub(crate) struct EachHit<F> {
     found: F,
     pub(crate) flow: ControlFlow<()>,

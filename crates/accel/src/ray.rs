@@ -1,4 +1,4 @@
-//! Questions and answers: [`Ray`] and [`Hit`].
+//! [`Ray`] and [`Hit`].
 
 use glam::Vec3;
 
@@ -7,7 +7,7 @@ use glam::Vec3;
 pub struct Ray {
     /// The point at `t = 0`.
     pub origin: Vec3,
-    /// Any length between 1e-37 and 1e37, which is the unit of `t`; in the space of an instance too.
+    /// The direction. Its length, between 1e-37 and 1e37 in the space of an instance, too, is the unit of `t`.
     /// Components smaller than the smallest normal `f32` count as zero.
     pub direction: Vec3,
     /// The smallest `t` that counts as a hit, itself included. A negative value counts as zero.
@@ -17,7 +17,7 @@ pub struct Ray {
 }
 
 impl Ray {
-    /// Returns the whole half-line from `origin`: `t` in `[0, ∞)`.
+    /// Makes the whole half-line from `origin`: `t` in `[0, ∞)`.
     pub const fn new(origin: Vec3, direction: Vec3) -> Self {
         Self {
             origin,

@@ -1,7 +1,7 @@
 //! The surface area heuristic over bins of equal width [Wald07].
 //!
-//! The cost of a split is `A_l·B_l + A_r·B_r`, with `A` the surface area of a side and `B` the number
-//! of blocks it fills. Divided by the area of the whole, that is the expected number of tests.
+//! The cost of a split is `A_l·B_l + A_r·B_r`, with `A` the surface area of a side and `B` the number of blocks that
+//! it fills. Divided by the area of the whole group, it is the expected number of tests.
 //!
 //! [Wald07]: https://doi.org/10.1109/RT.2007.4342588
 
@@ -15,16 +15,16 @@ const MAX_BINS: usize = 32;
 
 /// A division of a group.
 pub(super) struct Split {
-    /// Expected tests, times the area of the group.
+    /// The expected number of tests, times the area of the group.
     pub(super) cost: f32,
     axis: usize,
-    /// The first bin of the right side, and how many there are.
+    /// The first bin of the right side, and below, the number of bins.
     first_right: usize,
     bins: usize,
 }
 
 impl Split {
-    /// Returns whether a reference is on the left, of those whose centers have these bounds.
+    /// Returns a predicate that is true for references on the left; `centers` bounds the centers of the group.
     pub(super) fn is_left(&self, centers: [Vec3A; 2]) -> impl Fn(&Reference) -> bool {
         let grid = Grid::new(centers, self.bins);
         let (first, scale) = (grid.first[self.axis], grid.scale[self.axis]);
@@ -37,7 +37,7 @@ impl Split {
     }
 }
 
-/// Blocks that this many lanes fill.
+/// Returns the number of blocks that this many lanes fill.
 pub(super) fn blocks(lanes: u32) -> f32 {
     lanes.div_ceil(LANES as u32) as f32
 }
@@ -51,7 +51,7 @@ pub(super) fn scaled_area(scale: f32, [min, max]: [Vec3A; 2]) -> f32 {
 /// Bins of equal width along each axis, between the outermost centers.
 struct Grid {
     first: Vec3A,
-    /// Bins per unit of length. Infinite for tiny extents, which [`Self::bins_of`] copes with.
+    /// The number of bins per unit of length. It is infinite for tiny extents; [`Self::bins_of`] handles that.
     scale: Vec3A,
     last_bin: Vec3A,
 }
@@ -68,15 +68,15 @@ impl Grid {
     /// Returns the bin of a center along each axis.
     #[inline]
     fn bins_of(&self, center: Vec3A) -> [usize; 3] {
-        // A NaN (nothing times infinity) belongs to the first bin: the cast sees to it where `max` need not.
+        // A NaN (zero times infinity) goes to the first bin: the cast ensures it, `max` might not.
         let place = ((center - self.first) * self.scale).max(Vec3A::ZERO);
         let [x, y, z] = place.min(self.last_bin).to_array();
-        // By way of 32 bits, to which conversions are quicker.
+        // Converted by way of 32 bits, which is faster.
         [x as i32 as usize, y as i32 as usize, z as i32 as usize]
     }
 }
 
-/// Bounds of a bin, and the lanes of what is in it.
+/// The bounds and the lanes of the references in a bin.
 #[derive(Clone, Copy)]
 struct Bin {
     bounds: [Vec3A; 2],
@@ -101,16 +101,17 @@ impl Bin {
     }
 }
 
-/// `[axis][bin]`.
+/// The bins, by `[axis][bin]`.
 type Table<const BINS: usize> = [[Bin; BINS]; 3];
 
-/// Returns the split of least cost; `centers` bound those of the references. None: all are in one place, or nearly.
+/// Returns the split of least cost; `centers` bounds the centers of the references. None: all centers are at one
+/// point, or nearly.
 pub(super) fn best_split(
     references: &[Reference],
     centers: [Vec3A; 2],
     scale: f32,
 ) -> Option<Split> {
-    // Small groups do not deserve many bins, nor a table with room for them.
+    // Small groups need fewer bins, and a smaller table.
     match references.len() {
         ..=8 => best_of::<12>(references, centers, scale),
         9..=16 => best_of::<16>(references, centers, scale),

@@ -19,8 +19,8 @@ pub(super) enum Kind {
 
 /// A primitive, as the builder sees it.
 ///
-/// The bounds come last: a vector that is loaded with the word behind its three coordinates must not find an
-/// index there, with which arithmetic is slow, as with all subnormal numbers.
+/// The bounds come last: the word after the last three coordinates, which a vector load includes, must not be an
+/// index. As an `f32`, an index is subnormal, which makes arithmetic slow.
 #[derive(Debug, Clone, Copy)]
 #[repr(C)]
 pub(super) struct Reference {
@@ -51,7 +51,7 @@ impl Reference {
         }
     }
 
-    /// Returns true if it has a place in a tree.
+    /// Returns true if its box is valid, so that it can be in a tree.
     pub(super) fn is_valid(&self) -> bool {
         self.bounds.is_valid()
     }
@@ -69,15 +69,15 @@ impl Reference {
         0.5 * min + 0.5 * max
     }
 
-    /// Returns a coordinate of [`Self::center`], with the same rounding: both must put a reference into the same bin.
+    /// Returns a coordinate of [`Self::center`] with the same rounding: both must put a reference into the same bin.
     #[inline]
     pub(super) fn center_on(&self, axis: usize) -> f32 {
         let [min, max]: [&[f32; 3]; 2] = [self.bounds.min.as_ref(), self.bounds.max.as_ref()];
         0.5 * min[axis] + 0.5 * max[axis]
     }
 
-    /// Returns the work of intersecting it, in lanes: a quadric costs what a block of triangles does, an
-    /// instance so much that none shares a leaf.
+    /// Returns the work of intersecting it, in lanes: a quadric costs as much as a block of triangles, and an
+    /// instance so much that nothing shares its leaf.
     #[inline]
     pub(super) fn lanes(&self) -> u32 {
         match self.kind {
@@ -137,7 +137,7 @@ impl Totals {
         self.centers
     }
 
-    /// Returns the box around all.
+    /// Returns the box around all references.
     pub(super) fn bounds(&self) -> Aabb {
         let [min, max] = self.bounds.map(Into::into);
         Aabb { min, max }
@@ -151,24 +151,24 @@ pub(super) fn scale_of(reach: f32) -> f32 {
     exponent_only.max(f32::MIN_POSITIVE).recip()
 }
 
-/// References that are in no other group.
+/// A group of references, which are in no other group.
 pub(super) struct Group<'a> {
     pub(super) references: &'a mut [Reference],
-    /// None: several kinds occur.
+    /// The kind of all references. None: several kinds occur.
     pub(super) kind: Option<Kind>,
     totals: Totals,
     area: f32,
     split: Option<Split>,
 }
 
-/// Lanes of the largest leaf, and those that an instance counts as. One block less than a [`Child`] can say, so that
-/// 32 bits count the lanes of any number of instances.
+/// The number of lanes of the largest leaf, and the number that an instance counts as. It is one block less than a
+/// [`Child`] can express, so that 32 bits can count the lanes of any number of instances.
 const MAX_LEAF_LANES: u32 = ((Child::MAX_LEAF - 1) * LANES) as u32;
 
 const _: () = assert!(Child::MAX_ELEMENTS as u64 * MAX_LEAF_LANES as u64 <= u32::MAX as u64);
 
 impl<'a> Group<'a> {
-    /// Groups at least one reference; `totals` are theirs.
+    /// Makes a group of at least one reference; `totals` are the sums over them.
     pub(super) fn new(references: &'a mut [Reference], totals: Totals, scale: f32) -> Self {
         let is_one_kind = totals.kinds.is_power_of_two();
         let mut group = Self {
@@ -196,14 +196,14 @@ impl<'a> Group<'a> {
         self.totals.bounds()
     }
 
-    /// Returns true if a leaf is to be made: always if it is one test, never if a leaf has no room for it, and
-    /// otherwise if testing all is expected to cost no more than a node and its children.
-    /// A node's test counts as much as a block's.
+    /// Returns true if the group becomes a leaf: always if it is one test, never if a leaf has no room for it, and
+    /// otherwise if testing all is expected to cost no more than a node and its children. The test of a node counts
+    /// as much as that of a block.
     pub(super) fn is_leaf(&self) -> bool {
         self.is_one_test() || self.has_room() && self.leaf_cost() <= self.area + self.split_cost()
     }
 
-    /// Returns true if a split pays where the node that will test the parts is paid for already.
+    /// Returns true if a split pays when the node that tests the parts exists anyway.
     pub(super) fn deserves_split(&self) -> bool {
         !(self.is_one_test() || self.has_room() && self.leaf_cost() <= self.split_cost())
     }
@@ -228,7 +228,7 @@ impl<'a> Group<'a> {
             .map_or(f32::INFINITY, |split| split.cost)
     }
 
-    /// Divides by the heuristic, or in two halves if it knows no way.
+    /// Splits by the heuristic, or into halves if it finds no split.
     pub(super) fn split(self, scale: f32) -> [Self; 2] {
         let Some(split) = &self.split else {
             return self.halve(scale);
@@ -237,7 +237,7 @@ impl<'a> Group<'a> {
         self.cut(middle, scale)
     }
 
-    /// Divides in two halves of equal count, or nearly.
+    /// Splits into two halves of equal count, or nearly.
     pub(super) fn halve(self, scale: f32) -> [Self; 2] {
         let middle = self.len() / 2;
         self.cut(middle, scale)
@@ -252,11 +252,11 @@ impl<'a> Group<'a> {
     }
 }
 
-/// References per chunk. Fixed, so that the result does not depend on the number of threads: sums
+/// The number of references of a part. It is fixed, so that the result does not depend on the number of threads: sums
 /// of boxes may differ in the sign of a zero.
 const PART: usize = 1 << 15;
 
-/// Adds what `look` finds at the references to `total`, which is empty: at all of them at once, or at parts, whose
+/// Adds to `total`, which is empty, the results of `look` on the references: on all at once, or on parts, whose
 /// totals are added in order.
 pub(super) fn sum<T: Clone + Send + Sync>(
     references: &[Reference],
@@ -279,12 +279,12 @@ pub(super) fn sum<T: Clone + Send + Sync>(
     }
 }
 
-/// Moves the left side to the front, and returns its length. It has no branch, since no processor could predict the
-/// side.
+/// Moves the references on the left to the front, and returns their number. It has no branch, because no processor
+/// could predict the side.
 fn partition(references: &mut [Reference], is_left: impl Fn(&Reference) -> bool) -> usize {
     let mut left = 0;
     for next in 0..references.len() {
-        // Asked before the exchange, for which it need not wait.
+        // Computed before the exchange, so that the exchange need not wait for it.
         let belongs_left = is_left(&references[next]);
         references.swap(left, next);
         left += usize::from(belongs_left);

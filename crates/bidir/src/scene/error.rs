@@ -44,7 +44,7 @@ pub enum SceneError {
         /// The instance, in the order of addition.
         instance: usize,
     },
-    /// There are more media than places can name.
+    /// There are more media than [`MediumId`] can number. can name.
     #[error("the scene has {count} media; at most {most} are possible", most = MediumId::MOST)]
     TooManyMedia {
         /// How many.
