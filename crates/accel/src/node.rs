@@ -119,7 +119,8 @@ impl Node {
             let ray = &ray.axes[axis];
             plane(axis, ray.near ^ 1).mul_sub(ray.inverse_widened, ray.exit_offset)
         };
-        // The sign of a zero or negative entry does not matter: an exit there is missed.
+        // Of two negative numbers, `max` and `min` may return either: `t_min` is not negative, and a negative exit is
+        // a miss.
         let entry = entry(0).max(entry(1)).max(entry(2).max(ray.t_min));
         let exit = exit(0).min(exit(1)).min(exit(2).min(V::splat(limit)));
         (entry.le(exit), entry)

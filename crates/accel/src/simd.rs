@@ -26,13 +26,13 @@ pub(crate) trait F32x4:
     fn splat(value: f32) -> Self;
     /// Lanes from memory.
     fn load(values: &[f32; 4]) -> Self;
-    /// Lanes to memory.
+    /// Writes the lanes to memory.
     fn to_array(self) -> [f32; 4];
     /// Returns `self < other ? self : other`: a NaN in either operand selects `other`.
     fn min(self, other: Self) -> Self;
     /// Returns `self > other ? self : other`: a NaN in either operand selects `other`.
     fn max(self, other: Self) -> Self;
-    /// Returns the magnitudes.
+    /// Returns the absolute values.
     fn abs(self) -> Self;
     /// Returns `self·factor + term`, the product rounded or not.
     fn mul_add(self, factor: Self, term: Self) -> Self;
@@ -46,29 +46,29 @@ pub(crate) trait F32x4:
     fn le(self, other: Self) -> u32;
 }
 
-/// Eight `f32` with lane-wise arithmetic. Comparisons may be those of the bits as integers, which take a
-/// quarter of the time and are right but for negative numbers.
+/// Eight `f32` with lane-wise arithmetic. Implementations may compare the bits as integers, which takes a quarter of
+/// the time, and is right except for negative numbers.
 pub(crate) trait F32x8: Copy {
-    /// True if [`pack`](Self::pack) takes a few instructions.
+    /// True if [`pack`](Self::pack) takes only a few instructions.
     const PACKS_FAST: bool = false;
 
     /// Returns all lanes equal to `value`.
     fn splat(value: f32) -> Self;
     /// Lanes from memory.
     fn load(values: &[f32; WIDTH]) -> Self;
-    /// Returns the smaller number; where both are negative, either. Not for NaN.
+    /// Returns the smaller number; if both are negative, either. Not for NaN.
     fn min(self, other: Self) -> Self;
-    /// Returns the larger number; where both are negative, either. Not for NaN.
+    /// Returns the larger number; if both are negative, either. Not for NaN.
     fn max(self, other: Self) -> Self;
-    /// As [`F32x4::mul_sub`].
+    /// Returns `self·factor - term`, like [`F32x4::mul_sub`].
     fn mul_sub(self, factor: Self, term: Self) -> Self;
-    /// Bit `k` is set where lane `k` has `self <= other`; where both are negative it is set or not. A
-    /// zero in `other` is positive. Not for NaN.
+    /// Bit `k` is set where lane `k` has `self <= other`; if both are negative it may be set or clear. A zero in
+    /// `other` must be positive. Not for NaN.
     fn le(self, other: Self) -> u32;
-    /// Lane `k`, in the upper half of a word, above `low[k]`.
+    /// Returns words with lane `k` in the upper half and `low[k]` in the lower.
     fn over(self, low: &[u32; WIDTH]) -> [u64; WIDTH];
 
-    /// Bit `k` is set where either of the upper two bits of `words[k]` is.
+    /// Bit `k` is set where either of the upper two bits of `words[k]` is set.
     #[inline(always)]
     fn upper_two(words: &[u32; WIDTH]) -> u32 {
         let mut mask = 0;
@@ -78,8 +78,8 @@ pub(crate) trait F32x8: Copy {
         mask
     }
 
-    /// Writes to the front of `to` the words whose bit is set in `mask`, in their order, and anything behind
-    /// them. `mask` has bits of eight words only.
+    /// Writes the words whose bit in `mask` is set to the front of `to`, in their order, and arbitrary words behind
+    /// them. Only the lowest eight bits of `mask` may be set.
     #[inline(always)]
     fn pack(mask: u32, words: &[u32; WIDTH], to: &mut [MaybeUninit<u32>; WIDTH]) {
         let mut len = 0;
@@ -95,23 +95,23 @@ pub(crate) trait Simd: Sized {
     type Four: F32x4;
     type Eight: F32x8;
 
-    /// Runs a kernel that is compiled for the set, out of line.
+    /// Runs a kernel compiled for the set, out of line.
     ///
     /// # Safety
     ///
-    /// The machine has the instructions.
+    /// The machine must have the instructions.
     unsafe fn call<K: Kernel>(kernel: K) -> K::Output;
 }
 
-/// Code that is compiled for each set. All it calls must be inlined, so that it is compiled for the
-/// set too.
+/// Code that is compiled for each set. Everything that it calls must be inlined, so that it is compiled for the set,
+/// too.
 pub(crate) trait Kernel {
     type Output;
 
     fn run<S: Simd>(self) -> Self::Output;
 }
 
-/// Without intrinsics.
+/// The set of portable code, without intrinsics.
 pub(crate) struct Portable;
 
 impl Simd for Portable {
@@ -163,7 +163,7 @@ mod x86 {
         Avx2, Sse4<true>, Avx8<false>, "avx2,fma,bmi1,bmi2,lzcnt,popcnt"
     );
     declare!(
-        /// The same width with masks and compression.
+        /// AVX-512 on 256-bit vectors, with masks and compression.
         Avx512, Sse4<true>, Avx8<true>,
         "avx512f,avx512vl,avx512dq,avx512bw,avx2,fma,bmi1,bmi2,lzcnt,popcnt"
     );

@@ -7,15 +7,15 @@ use crate::child::Child;
 use crate::node::{BoxLanes, Node, WIDTH};
 use crate::simd::Simd;
 
-/// Entries on the stack of a tree at most: of every node on the way all children but the one visited,
-/// and at the last node that one too.
+/// The largest number of entries on the stack of a tree: of each node on the path all children but the visited one,
+/// and at the last node that one, too.
 const STACK_SIZE: usize = MAX_DEPTH * (WIDTH - 1) + 1;
 
-/// Children still to visit, the next one last.
+/// The children still to visit, the next one last.
 ///
-/// An entry is a word: the bits of the distance at which the ray enters the child's box, above those
-/// of the child. Distances are not negative, so that words compare as distances do.
-/// Without initialisation, which would cost as much as a short ray.
+/// An entry is a word: the bits of the distance at which the ray enters the child's box, above the bits of the child.
+/// Distances are not negative, so that words compare as distances do. Entries are not initialised: that would cost as
+/// much as a short ray.
 pub(crate) struct Stack {
     entries: [MaybeUninit<u64>; STACK_SIZE],
     len: usize,
@@ -38,7 +38,7 @@ impl Stack {
         self.len += 1;
     }
 
-    /// Pushes what will be visited before long, and begins to load it.
+    /// Pushes an entry that will be visited soon, and begins to load its child.
     #[inline(always)]
     fn push_ahead(&mut self, tree: &Tree, entry: u64) {
         tree.prefetch(child(entry));
@@ -52,8 +52,8 @@ impl Stack {
         unsafe { self.entries.get_unchecked(index).assume_init() }
     }
 
-    /// Finds the children of `node` that the ray meets up to `limit`; returns the one to visit next and
-    /// pushes the others.
+    /// Finds the children of `node` that the ray hits up to `limit`. Returns the one to visit next, and pushes the
+    /// others.
     #[inline(always)]
     pub(crate) fn open<S: Simd>(
         &mut self,
@@ -65,7 +65,7 @@ impl Stack {
         let (mask, distances) = node.intersect(ray, limit);
         let mut slots = bits(mask);
         let first = slots.next()?;
-        // Most nodes have one child that is met, or none.
+        // Of most nodes a ray hits one child, or none.
         let Some(second) = slots.next() else {
             return Some(node.child(first));
         };
@@ -83,7 +83,7 @@ impl Stack {
         Some(child(last))
     }
 
-    /// Moves the last entry down to its place in the order of falling distance, not below `bottom`.
+    /// Moves the last entry down to its place in the order of falling distance, but not below `bottom`.
     #[inline(always)]
     fn sink(&mut self, bottom: usize) {
         let last = self.get(self.len - 1);
@@ -102,7 +102,7 @@ impl Stack {
         unsafe { self.entries.get_unchecked_mut(index) }.write(entry);
     }
 
-    /// Returns the last child that is entered at `limit` or before; drops those after it.
+    /// Pops the last child that the ray enters at `limit` or before, and the entries after it.
     #[inline(always)]
     pub(crate) fn pop(&mut self, limit: f32) -> Option<Child> {
         let limit = u64::from(limit.to_bits()) << 32 | u64::from(u32::MAX);
@@ -123,7 +123,7 @@ fn child(entry: u64) -> Child {
     Child::from_bits(entry as u32)
 }
 
-/// Returns the numbers of the set bits, ascending.
+/// Returns the positions of the set bits, ascending.
 #[inline(always)]
 pub(crate) fn bits(mut mask: u32) -> impl Iterator<Item = usize> {
     std::iter::from_fn(move || {

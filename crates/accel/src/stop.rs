@@ -1,4 +1,4 @@
-//! Asking what takes long to end.
+//! Requests to end a long computation.
 
 use std::fmt;
 use std::ops::ControlFlow;
@@ -10,13 +10,13 @@ use crate::query::{Anything, ClosestHit, EachHit, Query};
 use crate::ray::{Hit, Ray};
 use crate::traverse::Ask;
 
-/// A flag of somebody who may lose interest in an answer. Once set it must stay set for as long as anybody looks at
-/// it: whoever has seen it may have left anything undone.
+/// A flag that asks a computation to end, because its result is no longer needed. Once set, it must stay set for as
+/// long as anything reads it: whatever has seen it may have left its work undone.
 #[derive(Clone, Copy, Default)]
 pub struct Stop<'a>(Option<&'a AtomicBool>);
 
 impl<'a> Stop<'a> {
-    /// Nobody asks.
+    /// Never asks.
     pub const NEVER: Stop<'static> = Stop(None);
 
     /// Asks as soon as `flag` is set.
@@ -37,8 +37,8 @@ impl fmt::Debug for Stop<'_> {
     }
 }
 
-/// The questions that a [`Bvh`] answers until it is asked to stop; then their answers mean nothing, and come at once:
-/// a ray that meets a million instances looks at each of them first.
+/// The queries of a [`Bvh`], until they are asked to stop; then they return at once, with arbitrary results. A ray
+/// checks the flag before each instance, as it may hit a million of them.
 #[derive(Clone, Copy, Debug)]
 pub struct Queries<'a> {
     bvh: &'a Bvh,
@@ -46,7 +46,7 @@ pub struct Queries<'a> {
 }
 
 impl Bvh {
-    /// The same questions, for as long as nobody asks to `stop`.
+    /// Returns the queries of the tree, to end when `stop` asks.
     #[inline(always)]
     pub fn until<'a>(&'a self, stop: Stop<'a>) -> Queries<'a> {
         Queries { bvh: self, stop }
@@ -54,7 +54,7 @@ impl Bvh {
 }
 
 impl Queries<'_> {
-    /// As [`Bvh::closest`].
+    /// Like [`Bvh::closest`].
     #[inline]
     pub fn closest<F: Fn(&Hit) -> bool>(self, ray: &Ray, accept: F) -> Option<Hit> {
         let mut query = ClosestHit::new(accept);
@@ -62,7 +62,7 @@ impl Queries<'_> {
         query.best
     }
 
-    /// As [`Bvh::is_blocked`].
+    /// Like [`Bvh::is_blocked`].
     #[inline]
     pub fn is_blocked(self, ray: &Ray) -> bool {
         let mut query = Anything { found: false };
@@ -70,7 +70,7 @@ impl Queries<'_> {
         query.found
     }
 
-    /// As [`Bvh::are_blocked`].
+    /// Like [`Bvh::are_blocked`].
     pub fn are_blocked(self, rays: &[Ray], blocked: &mut Vec<bool>) {
         let Self { bvh, stop } = self;
         blocked.clear();
@@ -83,7 +83,7 @@ impl Queries<'_> {
         });
     }
 
-    /// As [`Bvh::each_hit`].
+    /// Like [`Bvh::each_hit`].
     #[inline]
     pub fn each_hit<F: FnMut(&Hit) -> ControlFlow<()>>(
         self,

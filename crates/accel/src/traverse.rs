@@ -1,4 +1,4 @@
-//! Follows a ray through the tree, once for all instruction sets and all questions.
+//! The traversal of the tree by a ray: one function for all instruction sets and all queries.
 
 use std::ops::ControlFlow;
 
@@ -17,7 +17,7 @@ use crate::stack::{Stack, bits};
 use crate::stop::Stop;
 use crate::triangle::{TriangleBlock, TriangleLanes, TriangleRay};
 
-/// Offers `query` every hit of `ray` that it could care for.
+/// Offers every hit of `ray` that may matter to `query`.
 pub(crate) struct Ask<'a, Q> {
     pub(crate) bvh: &'a Bvh,
     pub(crate) ray: &'a Ray,
@@ -44,7 +44,7 @@ impl<Q: Query> Kernel for Ask<'_, Q> {
                 ray,
             };
             let mut approach = None;
-            // A query that breaks off has nothing more to ask.
+            // A query that breaks needs no more hits.
             let _ = walk.run::<S, Q>(query, |_, index, ray, query| {
                 let visit = VisitInstance {
                     bvh,
@@ -61,8 +61,8 @@ impl<Q: Query> Kernel for Ask<'_, Q> {
     }
 }
 
-/// Follows the ray through the object of instance number `index`, and returns its new `t_max`, or breaks off when it
-/// is asked to stop. A kernel of its own, so that trees without instances do not carry it in their loop.
+/// Follows the ray through the object of instance number `index`, and returns its new `t_max`, or breaks if it is
+/// asked to stop. It is a kernel of its own, so that the loop of trees without instances does not contain it.
 pub(crate) struct VisitInstance<'a, Q> {
     pub(crate) bvh: &'a Bvh,
     pub(crate) index: usize,
@@ -96,7 +96,7 @@ impl<Q: Query> Kernel for VisitInstance<'_, Q> {
     }
 }
 
-/// A way through one tree, in its own space.
+/// The traversal of one tree, in its own space.
 struct Walk<'a, P> {
     tree: &'a Tree,
     space: P,
@@ -104,10 +104,10 @@ struct Walk<'a, P> {
 }
 
 impl<P: Space> Walk<'_, P> {
-    /// Visits the tree, which has a root; `instance` is called for the instances on the way, and returns
-    /// the `t_max` after them.
+    /// Visits the tree, which has a root. Calls `instance` for the instances on the way; it returns the `t_max` after
+    /// them.
     ///
-    /// Rare leaves get a copy of the ray: a value whose address no other function has stays in registers.
+    /// Rare leaves get a copy of the ray: the original stays in registers if no other function has its address.
     #[inline(always)]
     fn run<S: Simd, Q: Query>(
         &mut self,
@@ -151,14 +151,14 @@ impl<P: Space> Walk<'_, P> {
     }
 }
 
-/// Returns the ray in the form that the kernels assume: finite, not empty, without negative or infinite
-/// `t`, and with zero for components whose reciprocal would overflow. None: it hits nothing.
+/// Returns the ray in the form that the kernels assume: finite, not empty, without negative or infinite `t`, and with
+/// zero in place of components whose reciprocal would overflow. None: the ray hits nothing.
 #[inline(always)]
 pub(crate) fn clean(ray: &Ray) -> Option<Ray> {
     let normal = |x: f32| if x.abs() < f32::MIN_POSITIVE { 0.0 } else { x };
     let [x, y, z] = ray.direction.to_array();
     let direction = Vec3::new(normal(x), normal(y), normal(z));
-    // Nor is there a negative zero: the stack compares distances as integers.
+    // Negative zeros are removed, too: the stack compares distances as integers.
     let t_min = ray.t_min.max(0.0) + 0.0;
     let t_max = ray.t_max.min(f32::MAX);
     // Infinities and NaN become NaN.
@@ -182,7 +182,7 @@ const ANY_HIT: Hit = Hit {
     v: 0.0,
 };
 
-/// Leaves, in the space of a tree.
+/// Visits of leaves, in the space of a tree.
 pub(crate) trait Leaves: Space {
     /// Offers the hits of a block of triangles.
     #[inline(always)]
@@ -247,7 +247,7 @@ pub(crate) trait Leaves: Space {
         ControlFlow::Continue(ray.t_max)
     }
 
-    /// Offers a local hit as what it is in the world.
+    /// Offers a local hit, converted to the world.
     #[inline(always)]
     fn offer<Q: Query>(&mut self, local: Hit, ray: &mut Ray, query: &mut Q) -> ControlFlow<()> {
         match self.world_hit(local) {

@@ -1,4 +1,4 @@
-//! Leaves of triangles: four at a time, discarded by SIMD, decided by [`crate::exact`].
+//! Leaves of triangles. SIMD discards triangles, four at a time; [`crate::exact`] decides about the others.
 //!
 //! The filter looks along the ray [Woop13]: with the axes permuted so that the direction's largest
 //! component is `z`, a vertex `p` (relative to the origin) is sheared onto the plane `z = 0`,
@@ -36,7 +36,7 @@ use crate::exact::{Passage, pass_certain, pass_triangle};
 use crate::ray::Ray;
 use crate::simd::F32x4;
 
-/// Lanes of a [`TriangleBlock`].
+/// The number of lanes of a [`TriangleBlock`].
 pub(crate) const LANES: usize = 4;
 
 /// The triangles of a block that the filter keeps, as masks of lanes.
@@ -44,7 +44,7 @@ pub(crate) const LANES: usize = 4;
 pub(crate) struct Candidates {
     /// Triangles that the ray may hit.
     pub(crate) possible: u32,
-    /// Triangles that the ray's line certainly passes: by so much that `f64` needs no help to see it.
+    /// Triangles that the ray's line passes with certainty: plain `f64` arithmetic finds the signs.
     pub(crate) certain: u32,
     /// Triangles whose `t`, if the line passes, is certainly within the limits.
     pub(crate) within: u32,
@@ -62,7 +62,7 @@ impl Candidates {
 #[derive(Debug, Clone, Copy)]
 #[repr(C, align(32))]
 pub(crate) struct TriangleBlock {
-    /// `[vertex][axis][lane]`; NaN in unused lanes, which come last.
+    /// The vertices, by `[vertex][axis][lane]`; NaN in unused lanes, which come last.
     vertices: [[[f32; LANES]; 3]; 3],
     /// Indices of the primitives; [`Self::NONE`] in unused lanes.
     primitives: [u32; LANES],
@@ -88,7 +88,7 @@ impl TriangleBlock {
         block
     }
 
-    /// Returns the used lanes: indices and vertices.
+    /// Returns the indices and the vertices in the used lanes.
     pub(crate) fn triangles(&self) -> impl Iterator<Item = (u32, [Vec3; 3])> {
         let used = self
             .primitives
@@ -102,7 +102,7 @@ impl TriangleBlock {
         self.primitives[lane]
     }
 
-    /// Returns the vertices in `lane`. Written out, as `array::map` is not always inlined into the loop.
+    /// Returns the vertices in `lane`. Written out, because `array::map` is not always inlined into the loop.
     #[inline(always)]
     fn triangle(&self, lane: usize) -> [Vec3; 3] {
         let vertex = |i: usize| {
@@ -112,7 +112,7 @@ impl TriangleBlock {
         [vertex(0), vertex(1), vertex(2)]
     }
 
-    /// Returns which of its triangles the ray may hit; `sure`: limits of `t` for those that are surely within.
+    /// Returns the triangles that the ray may hit. `sure` are limits of `t` that are certainly within the ray's.
     #[inline(always)]
     pub(crate) fn candidates<V: F32x4>(
         &self,
@@ -163,8 +163,8 @@ impl TriangleBlock {
         }
     }
 
-    /// Returns the point where the ray's line passes the triangle in `lane`.
-    /// `certain`: the lanes known to be passed.
+    /// Returns the point where the ray's line passes the triangle in `lane`. `certain` is the mask of lanes that the
+    /// line passes with certainty. None: the line misses it.
     #[inline(always)]
     pub(crate) fn pass<V: F32x4>(
         &self,
@@ -188,7 +188,7 @@ impl TriangleBlock {
     }
 }
 
-/// Returns the axes in cyclic order, that of the direction's largest component last.
+/// Returns the axes in cyclic order, the axis of the direction's largest component last.
 #[inline(always)]
 fn axes_of(direction: Vec3) -> [usize; 3] {
     let [x, y, z] = direction.abs().to_array();
@@ -201,16 +201,16 @@ fn axes_of(direction: Vec3) -> [usize; 3] {
     }
 }
 
-/// A ray made ready for triangles.
+/// A ray prepared for triangles.
 #[derive(Clone, Copy)]
 pub(crate) struct TriangleRay {
     origin: Vec3,
     direction: Vec3,
-    /// The permutation of the axes: the last is that of the direction's largest component.
+    /// The permutation of the axes: the axis of the direction's largest component is last.
     axes: [usize; 3],
     /// The direction's two smaller components over the largest.
     shear: [f32; 2],
-    /// One over the direction's largest component; NaN where it would be subnormal.
+    /// One over the direction's largest component; NaN if it would be subnormal.
     per_depth: f32,
 }
 
@@ -235,7 +235,7 @@ impl TriangleRay {
         }
     }
 
-    /// The same in all lanes.
+    /// Returns the ray with its numbers in all lanes.
     #[inline(always)]
     pub(crate) fn lanes<V: F32x4>(&self) -> TriangleLanes<V> {
         let origin = self.origin.to_array();
@@ -260,8 +260,8 @@ pub(crate) struct TriangleLanes<V> {
 }
 
 impl<V: F32x4> TriangleLanes<V> {
-    /// Returns the `t` at which the line passes triangles with vertices at `depths`, by the edge functions opposite to
-    /// them, whose error is at most `bound`.
+    /// Returns the `t` at which the line passes triangles with vertices at `depths`. `edges` are the edge functions
+    /// opposite to the vertices, with an error of at most `bound`.
     #[inline(always)]
     fn passage(&self, depths: [V; 3], edges: [V; 3], bound: V) -> PassageLanes<V> {
         let [a, b, c] = edges.map(F32x4::abs);
@@ -279,7 +279,7 @@ impl<V: F32x4> TriangleLanes<V> {
     }
 }
 
-/// The `t` at which a line passes triangles, if it passes them, with its error. Both are times `sum`.
+/// The `t` at which a line passes triangles, if it passes them, and its error, both multiplied by `sum`.
 struct PassageLanes<V> {
     sum: V,
     t: V,

@@ -9,8 +9,8 @@ use crate::child::{Child, Target};
 use crate::node::WIDTH;
 
 impl Bvh {
-    /// Walks the whole tree and checks its nodes, boxes and leaves; `Err` describes the first
-    /// violation. For tests and for suspicion: a tree that was built is valid.
+    /// Walks the whole tree and checks its nodes, boxes and leaves; `Err` describes the first violation. It is for
+    /// tests: a tree that was built is valid.
     pub fn validate(&self) -> Result<(), String> {
         let mut walk = Walk {
             bvh: self,
@@ -18,7 +18,7 @@ impl Bvh {
             nodes: vec![false; self.tree.nodes.len()],
             blocks: vec![false; self.tree.blocks.len()],
             quadrics: vec![false; self.tree.quadrics.len()],
-            // Empty objects have no place to be reached at.
+            // Instances of empty objects are not in the tree.
             instances: (0..self.instance_count())
                 .map(|i| self.object_of(i).tree.nodes.is_empty())
                 .collect(),
@@ -86,7 +86,7 @@ struct Walk<'a> {
 }
 
 impl Walk<'_> {
-    /// Checks a node and all below, and returns the bounds of the primitives found there.
+    /// Checks a node and all nodes below it, and returns the bounds of the primitives there.
     fn node(&mut self, index: usize, depth: usize) -> Result<Aabb, String> {
         visit("node", index, &mut self.nodes)?;
         if depth >= MAX_DEPTH {

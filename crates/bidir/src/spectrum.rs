@@ -1,9 +1,8 @@
 //! Four lanes of light.
 //!
-//! Everything that travels along a path is a [`Spectrum`]: four `f32` lanes, multiplied and added
-//! lane by lane. [`Lanes`] has the meaning of the lanes, which all samples of a group share. Three edges convert:
-//! emission, texture look-up and film development. Between them code asks only which lanes carry light: for means,
-//! and for the lane by which a walk draws its distance.
+//! All light along a path is a [`Spectrum`]: four `f32` lanes, multiplied and added lane by lane. [`Lanes`] gives
+//! their meaning, which all samples of a group share. Only emission, texture look-up and film development convert.
+//! Other code asks only which lanes carry light: for means, and for the lane by which a walk draws its distance.
 
 mod four;
 #[cfg(test)]
@@ -25,7 +24,7 @@ impl Spectrum {
     /// One in every lane.
     pub const ONE: Self = Self([1.0; 4]);
 
-    /// Returns the value in every lane.
+    /// Returns a spectrum with `value` in every lane.
     #[inline]
     pub const fn splat(value: f32) -> Self {
         Self([value; 4])
@@ -69,7 +68,7 @@ impl Spectrum {
         self.lanes().cmpeq(Vec4::ZERO).all()
     }
 
-    /// Returns true where no lane is larger than `limit`, or NaN.
+    /// Returns true if no lane is NaN, or larger than `limit` in absolute value.
     #[inline]
     pub fn is_within(self, limit: f32) -> bool {
         self.lanes().abs().cmple(Vec4::splat(limit)).all()
@@ -205,7 +204,7 @@ impl Lanes {
         }
     }
 
-    /// Returns the mean over the lanes that carry light: of contributions the scalar by which candidates are compared.
+    /// Returns the mean over the lanes that carry light. For contributions it is the score of candidates.
     #[inline]
     pub fn mean(self, spectrum: Spectrum) -> f32 {
         match self {
@@ -227,7 +226,7 @@ impl Lanes {
         lanes.into_iter()
     }
 
-    /// Returns one of the lanes that carry light, each as likely as others, by `u` in `[0, 1)`.
+    /// Chooses a lane that carries light, all equally likely, by `u` in `[0, 1)`.
     #[inline]
     pub fn pick_lane(self, u: f32) -> usize {
         match self {

@@ -1,5 +1,5 @@
-//! Counters of a render: rays where they are traced, candidates, the fate of each strategy's
-//! contributions, and dropped ones; and, apart from them, times of a host's clock.
+//! Counters of a render: rays where they are traced, candidates, the fate of each strategy's contributions, and
+//! dropped contributions; and separately, times by a host's clock.
 
 mod stages;
 mod strategies;
@@ -27,7 +27,7 @@ pub struct RayCounts {
 }
 
 impl RayCounts {
-    /// Returns all rays.
+    /// Returns the number of all rays.
     pub fn total(&self) -> u64 {
         self.camera + self.light + self.connection + self.light_image
     }
@@ -55,7 +55,7 @@ impl AddAssign for RayCounts {
     }
 }
 
-/// The origin of a contribution that was not finite, or too large.
+/// The origin of a dropped contribution, which was not finite, or too large.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 pub struct Dropped {
     /// The pass.
@@ -66,19 +66,19 @@ pub struct Dropped {
     pub strategy: Strategy,
 }
 
-/// The number of dropped contributions that are listed: the first by (pass, pixel, strategy).
+/// The number of dropped contributions in the list: the first ones by (pass, pixel, strategy).
 pub const LISTED_DROPS: usize = 64;
 
-/// The counters of a render, or of a part of one; adding parts in any order gives the same.
+/// The counters of a render, or of a part of one. The sum of parts does not depend on their order.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Stats {
     /// Camera samples taken.
     pub samples: u64,
     /// Rays by kind.
     pub rays: RayCounts,
-    /// Connection rays that something blocked.
+    /// Shadow rays of connections that are blocked.
     pub connections_blocked: u64,
-    /// Light-image rays that something blocked.
+    /// Shadow rays of the light image that are blocked.
     pub light_image_blocked: u64,
     /// Candidate connections evaluated.
     pub candidates: u64,
@@ -88,7 +88,7 @@ pub struct Stats {
     pub strategy_images: StrategyTable<LayerCounts>,
     /// Contributions dropped.
     pub dropped: u64,
-    /// The first of them.
+    /// The first dropped contributions.
     pub dropped_list: BTreeSet<Dropped>,
 }
 
@@ -100,7 +100,7 @@ impl Stats {
         self.candidates += u64::from(strategy.s >= 1 && strategy.t >= 2);
     }
 
-    /// Counts the contributions of connections in the same way, of s ≥ 1 and t ≥ 2 all of them.
+    /// Counts contributions like [`Self::count_candidate`], all of connections with s ≥ 1 and t ≥ 2.
     #[inline]
     pub fn count_connections(&mut self, strategies: impl ExactSizeIterator<Item = Strategy>) {
         self.candidates += strategies.len() as u64;
@@ -119,7 +119,7 @@ impl Stats {
         }
     }
 
-    /// Counts a shadow ray of `strategy` that something blocked, besides.
+    /// Counts that a shadow ray of `strategy`, counted before, is blocked.
     #[inline]
     pub fn count_blocked(&mut self, strategy: Strategy) {
         self.strategies.of(strategy).blocked += 1;
@@ -129,7 +129,7 @@ impl Stats {
         }
     }
 
-    /// Counts the luminance that one sample added to the weighted image of `strategy`.
+    /// Counts the square of the luminance that one sample added to the weighted image of `strategy`.
     #[inline]
     pub fn add_square(&mut self, strategy: Strategy, luminance: f64) {
         self.strategy_images.of(strategy).add_square(luminance);

@@ -21,7 +21,7 @@ macro_rules! avx2 {
     };
 }
 
-/// Eight lanes. `MASKS`: with AVX-512. Values exist only in [kernels](super::Kernel) of sets with AVX2.
+/// Eight lanes; `MASKS` is true with AVX-512. Values exist only in [kernels](super::Kernel) of sets with AVX2.
 #[derive(Clone, Copy)]
 pub(crate) struct Avx8<const MASKS: bool>(__m256);
 
@@ -120,7 +120,7 @@ impl<const MASKS: bool> F32x8 for Avx8<MASKS> {
     }
 }
 
-/// The numbers of the set bits of every byte, ascending, then zeros.
+/// For each byte, the positions of its set bits, ascending, then zeros.
 static SET_BITS: [[u8; WIDTH]; 1 << WIDTH] = {
     let mut table = [[0; WIDTH]; 1 << WIDTH];
     let mut mask = 0;

@@ -1,4 +1,4 @@
-//! Lanes without intrinsics, and eight lanes from twice four.
+//! Lanes without intrinsics, and eight lanes as two times four.
 
 use std::array::from_fn;
 use std::ops::{Add, Mul, Sub};
@@ -105,7 +105,7 @@ impl F32x4 for Scalar4 {
     }
 }
 
-/// Eight lanes: the first four, and the others.
+/// Eight lanes: the first four, and the last four.
 #[derive(Clone, Copy)]
 pub(crate) struct Pair<V>(V, V);
 

@@ -17,7 +17,7 @@ macro_rules! sse2 {
     };
 }
 
-/// Four lanes. `FUSED`: with FMA; such values exist only in [kernels](super::Kernel) of sets with it.
+/// Four lanes; `FUSED` is true with FMA. Such values exist only in [kernels](super::Kernel) of sets with FMA.
 #[derive(Clone, Copy)]
 pub(crate) struct Sse4<const FUSED: bool>(__m128);
 

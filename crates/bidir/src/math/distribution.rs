@@ -1,8 +1,8 @@
 //! Choices in proportion to weights: p_i = w_i / Σ w, by inversion of the sums. A guide table shortens the search to a
 //! step or two \[Chen74\].
 //!
-//! Densities are over the unit interval, square and cube; whoever stretches those to another
-//! domain divides by its measure.
+//! Densities are over the unit interval, square and cube; a caller that maps these to another domain divides by its
+//! measure.
 
 use super::ONE_MINUS_EPSILON;
 use glam::{Vec2, Vec3};
@@ -10,30 +10,30 @@ use glam::{Vec2, Vec3};
 /// The most cells for which a search without a guide table is as fast.
 const FEW: usize = 8;
 
-/// A piecewise-constant distribution over `[0, 1)`: also the choice of one of `n` things.
+/// A piecewise-constant distribution over `[0, 1)`, which is also a choice of one of `n` cells.
 ///
-/// Sums are kept in f64, so that a million small weights lose nothing.
+/// Sums are f64, so that a million small weights are summed accurately.
 #[derive(Clone, Debug)]
 pub struct Distribution1d {
-    /// Sums of the first `i` weights, normalised: `n + 1` values from 0 to 1.
+    /// The sums of the first `i` weights, normalised: `n + 1` values from 0 to 1.
     cdf: Vec<f64>,
-    /// The guide table: for each of 2^k equal parts of the interval the cell in which the part begins; then the last cell
-    /// of positive width.
+    /// The guide table: for each of 2^k equal parts of the interval, the cell in which the part begins; then the last
+    /// cell of positive width.
     parts: Vec<u32>,
-    /// The first stride of the search: the largest power of two that is not above the number of cells between the ends
-    /// of the longest part; 0 where every part lies in one cell.
+    /// The first stride of the search: the largest power of two that is at most the number of cells between the ends
+    /// of the longest part; 0 if every part lies in one cell.
     stride: usize,
     /// The sum of the weights as they were given.
     total: f64,
 }
 
 impl Distribution1d {
-    /// Returns the distribution proportional to `weights`, which are finite and not negative. If all are
-    /// zero, or there are none, it is uniform over `max(1, n)` cells and its [`total`](Self::total) is zero.
+    /// Makes the distribution proportional to `weights`, which are finite and not negative. If all are zero, or there
+    /// are none, it is uniform over `max(1, n)` cells and its [`total`](Self::total) is zero.
     ///
     /// # Panics
     ///
-    /// With 2³² weights or more.
+    /// Panics with 2³² weights or more.
     pub fn new(weights: impl IntoIterator<Item = f32>) -> Self {
         let mut cdf = vec![0.0];
         let mut total = 0.0;
@@ -79,7 +79,7 @@ impl Distribution1d {
         } else {
             1
         };
-        // Rounding of a number near 1 must not lead beyond this cell.
+        // By rounding, a number near 1 must not lead beyond this cell.
         let has_width = |&i: &usize| cdf[i] < cdf[i + 1];
         let last = (0..cells).rev().find(has_width).unwrap_or(0);
         let mut cell = 0;
@@ -114,7 +114,7 @@ impl Distribution1d {
         (self.cdf[i + 1] - self.cdf[i]) as f32
     }
 
-    /// Draws a cell: its index, its probability, and what is left of `u`, uniform in `[0, 1)`.
+    /// Draws a cell. Returns its index, its probability, and the rest of `u`, uniform in `[0, 1)`.
     #[inline]
     pub fn sample(&self, u: f32) -> (usize, f32, f32) {
         let u = f64::from(u);
@@ -126,8 +126,8 @@ impl Distribution1d {
             0
         };
         let (mut i, last) = (self.parts[part] as usize, self.parts[part + 1] as usize);
-        // The last cell that begins at or before u; cells of no width are stepped over. The number of steps is the same
-        // for every u, so that the processor predicts the end of the loop.
+        // Finds the last cell that begins at or before u; it skips cells without width. The number of steps is the
+        // same for every u, so that the processor predicts the end of the loop.
         let mut stride = self.stride;
         while stride > 0 {
             let next = (i + stride).min(last);
@@ -139,7 +139,7 @@ impl Distribution1d {
         (i, width as f32, rest.clamp(0.0, ONE_MINUS_EPSILON))
     }
 
-    /// Draws a point of `[0, 1)`: the point, its density, and its cell.
+    /// Draws a point of `[0, 1)`. Returns the point, its density, and its cell.
     #[inline]
     pub fn sample_continuous(&self, u: f32) -> (f32, f32, usize) {
         let (i, prob, rest) = self.sample(u);
@@ -164,7 +164,7 @@ pub struct Distribution2d {
 }
 
 impl Distribution2d {
-    /// Returns the distribution proportional to `weights`, row by row, each row `width` long.
+    /// Makes the distribution proportional to `weights`, row by row, each row `width` long.
     pub fn new(weights: &[f32], width: usize) -> Self {
         let columns: Vec<_> = weights
             .chunks_exact(width.max(1))
@@ -174,7 +174,7 @@ impl Distribution2d {
         Self { rows, columns }
     }
 
-    /// Draws a point `(x, y)` of the unit square and its density over the square's area.
+    /// Draws a point `(x, y)` of the unit square. Returns it, and its density over the square's area.
     #[inline]
     pub fn sample(&self, u: Vec2) -> (Vec2, f32) {
         let (y, pdf_y, row) = self.rows.sample_continuous(u.y);
@@ -204,7 +204,7 @@ pub struct Distribution3d {
 }
 
 impl Distribution3d {
-    /// Returns the distribution proportional to `weights`, x fastest, in planes of `nx` by `ny` cells.
+    /// Makes the distribution proportional to `weights`, x fastest, in planes of `nx` by `ny` cells.
     pub fn new(weights: &[f32], [nx, ny]: [usize; 2]) -> Self {
         let planes: Vec<_> = weights
             .chunks_exact((nx * ny).max(1))
@@ -214,7 +214,7 @@ impl Distribution3d {
         Self { slabs, planes }
     }
 
-    /// Draws a point of the unit cube and its density over the cube's volume.
+    /// Draws a point of the unit cube. Returns it, and its density over the cube's volume.
     #[inline]
     pub fn sample(&self, u: Vec3) -> (Vec3, f32) {
         let (z, pdf_z, slab) = self.slabs.sample_continuous(u.z);

@@ -1,12 +1,13 @@
-//! Fixed-point sums: integers, so that the order of addition cannot matter.
+//! Fixed-point sums: integers, so that the order of addition does not matter.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Values are kept at 2⁻⁶⁰.
+/// The scale of values: they are multiples of 2⁻⁶⁰.
 pub const VALUE_SCALE: i32 = 60;
-/// Squares are kept at 2⁻⁴⁰; their sum stops at 2⁸⁷, where only the variance is of no use.
+/// The scale of squares: they are multiples of 2⁻⁴⁰. Their sum saturates at 2⁸⁷, where only the variance becomes
+/// useless.
 pub const MOMENT_SCALE: i32 = 40;
-/// A contribution above this is dropped and counted.
+/// The largest contribution: a larger one is dropped and counted.
 pub const LARGEST_CONTRIBUTION: f32 = 1_099_511_627_776.0; // 2⁴⁰
 
 /// Returns 2^exponent, exactly.
@@ -15,7 +16,7 @@ fn power_of_two(exponent: i32) -> f64 {
     f64::from_bits(((1023 + exponent) as u64) << 52)
 }
 
-/// Returns `value`·2^scale, rounded towards zero, which is the same on every machine; 0 for no number.
+/// Returns `value`·2^scale, rounded towards zero, as every machine does; 0 for NaN.
 #[inline]
 pub fn from_f64(value: f64, scale: i32) -> i128 {
     let scaled = value * power_of_two(scale);
@@ -27,13 +28,13 @@ pub fn from_f64(value: f64, scale: i32) -> i128 {
     }
 }
 
-/// Converts a number of 2⁶³ or more, which is an integer: 53 bits that are shifted, in a tenth of the time of a
+/// Converts a number of 2⁶³ or more, which is an integer, by shifting its 53 bits: it takes a tenth of the time of a
 /// conversion to 128 bits.
 fn large_from_f64(value: f64) -> i128 {
     let (bits, fraction) = (value.to_bits(), (1 << 52) - 1);
     let shift = ((bits >> 52) & 0x7ff) as i32 - 1075;
     if shift > 127 - 53 {
-        // It does not fit, or is no number.
+        // It does not fit, or is NaN.
         return value as i128;
     }
     let magnitude = i128::from(bits & fraction | (1 << 52)) << shift;
@@ -47,7 +48,7 @@ pub fn to_f64(fixed: i128, scale: i32) -> f64 {
     value * power_of_two(-scale)
 }
 
-/// Converts by the first 63 bits: they round as all of them do if the last one stands for what is behind them.
+/// Converts by the first 63 bits. They round as all bits do, if the last of them is set when any bit behind them is.
 fn large_to_f64(fixed: i128) -> f64 {
     let magnitude = fixed.unsigned_abs();
     let shift = 65 - magnitude.leading_zeros();
@@ -57,8 +58,8 @@ fn large_to_f64(fixed: i128) -> f64 {
     if fixed < 0 { -value } else { value }
 }
 
-/// A sum that threads add to without a lock: the low limb carries into the high one. It may be
-/// read only when no thread adds.
+/// A sum that threads add to without a lock: the low word carries into the high one. It may be read only when no
+/// thread adds.
 #[derive(Debug, Default)]
 pub(crate) struct FixedSum {
     low: AtomicU64,

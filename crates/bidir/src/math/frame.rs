@@ -1,4 +1,4 @@
-//! Orthonormal frames: world to local and back, by dot products [Duff17, listing 3].
+//! Orthonormal frames: conversion between world and local space by dot products [Duff17, listing 3].
 
 use glam::Vec3;
 
@@ -27,8 +27,8 @@ impl Frame {
         }
     }
 
-    /// Returns the frame around the unit vector `z` whose x is nearest to `tangent`; some frame where
-    /// `tangent` is zero or parallel to `z`.
+    /// Makes the frame around the unit vector `z` whose x is nearest to `tangent`; any frame if `tangent` is zero or
+    /// parallel to `z`.
     #[inline]
     pub fn from_z_and_tangent(z: Vec3, tangent: Vec3) -> Self {
         let x = tangent - z * z.dot(tangent);
@@ -44,13 +44,13 @@ impl Frame {
         }
     }
 
-    /// Returns the local vector of one of the world.
+    /// Converts a vector from world to local space.
     #[inline]
     pub fn to_local(&self, v: Vec3) -> Vec3 {
         Vec3::new(self.x.dot(v), self.y.dot(v), self.z.dot(v))
     }
 
-    /// Returns the world vector of a local one.
+    /// Converts a vector from local to world space.
     #[inline]
     pub fn to_world(&self, v: Vec3) -> Vec3 {
         self.x * v.x + self.y * v.y + self.z * v.z

@@ -6,7 +6,7 @@ use glam::{Mat4, Vec4};
 /// The coordinates of four vectors.
 pub(crate) type Vec3x4 = [Vec4; 3];
 
-/// Returns `p` less each of `from`.
+/// Returns `p` minus each of `from`.
 #[inline]
 pub(crate) fn offset(p: Vec3, from: &Vec3x4) -> Vec3x4 {
     [p.x - from[0], p.y - from[1], p.z - from[2]]
@@ -32,7 +32,7 @@ pub(crate) fn gather([a, b, c, d]: [(Vec3, f32); 4]) -> (Vec3x4, Vec4) {
     ([x, y, z], numbers)
 }
 
-/// Rows in place of columns.
+/// Transposes a matrix.
 #[inline]
 pub(crate) fn transpose([a, b, c, d]: [Vec4; 4]) -> [Vec4; 4] {
     let columns = Mat4::from_cols(a, b, c, d).transpose();

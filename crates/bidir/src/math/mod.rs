@@ -34,7 +34,7 @@ pub fn sqr(x: f32) -> f32 {
     x * x
 }
 
-/// Returns the square root, zero below zero: for arguments that rounding pushed under zero.
+/// Returns the square root, or zero for negative arguments, which come from rounding.
 #[inline]
 pub fn safe_sqrt(x: f32) -> f32 {
     x.max(0.0).sqrt()

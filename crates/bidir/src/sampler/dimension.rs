@@ -1,20 +1,21 @@
-//! The use of random numbers: a vertex and a purpose. Numbers have names instead of an order, so
-//! that code may ask for them in any order, or leave some out, and change no other.
+//! Dimensions of random numbers: each is a vertex and a purpose. Numbers have names instead of an order, so that code
+//! may ask for them in any order, or leave some out, without an effect on others.
 
-/// The decision of a random number at one vertex.
+/// The decision that a random number makes at a vertex.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Purpose {
     /// Position within the pixel's filter (vertex 0 of a camera subpath).
     Film,
     /// Position on the lens (vertex 0 of a camera subpath).
     Lens,
-    /// Wavelengths of a group. Nothing draws them for red, green and blue; later purposes keep their numbers by it.
+    /// Wavelengths of a group. They are not drawn for red, green and blue; the purpose keeps the numbers of later
+    /// ones.
     Wavelengths,
-    /// Which light a light subpath starts on.
+    /// The light on which a light subpath starts.
     Light,
     /// The point on the light where it starts.
     LightPosition,
-    /// In what direction it leaves.
+    /// The direction in which it leaves the light.
     LightDirection,
     /// Direction of scattering.
     Scatter,
@@ -22,7 +23,7 @@ pub enum Purpose {
     Lobe,
     /// Path roulette.
     Roulette,
-    /// Which light next-event estimation connects to.
+    /// The light to which next-event estimation connects.
     NextEventLight,
     /// The point on that light.
     NextEventPosition,
@@ -34,17 +35,17 @@ pub enum Purpose {
     Select,
     /// The passage of a walk through surfaces with partial coverage, on its way to the vertex.
     Alpha,
-    /// Which of mixed materials a surface point is made of.
+    /// The choice of a material of a mixture.
     Mix,
-    /// Which vertices of the light vertex cache a camera vertex is connected with.
+    /// The vertices of the light cache that a camera vertex is connected with.
     CachedVertex,
-    /// Which vertices of long subpaths are connected (vertex 0 of a camera subpath).
+    /// The vertices of long subpaths that are connected (vertex 0 of a camera subpath).
     Pairs,
-    /// The lane by which a walk draws the distance to the vertex, and the optical depth that it goes, in media.
+    /// The lane and the optical depth by which a walk draws the distance to the vertex in media.
     Flight,
-    /// The third coordinate of a light subpath's start, in a medium that glows.
+    /// The third coordinate of a light subpath's start in a medium that emits.
     LightDepth,
-    /// The third coordinate of the light point of next-event estimation, in a medium that glows.
+    /// The third coordinate of the light point of next-event estimation in a medium that emits.
     NextEventDepth,
 }
 
@@ -53,13 +54,13 @@ pub enum Purpose {
 pub struct Dimension(u64);
 
 impl Dimension {
-    /// Returns the number that decides `purpose` at vertex `vertex` of the subpath.
+    /// Returns the dimension of `purpose` at vertex `vertex` of a subpath.
     #[inline]
     pub const fn at(vertex: usize, purpose: Purpose) -> Self {
         Self(((vertex as u64) << 8) | purpose as u64)
     }
 
-    /// Returns the number that decides another purpose at the same vertex.
+    /// Returns the dimension of another purpose at the same vertex.
     #[inline]
     #[must_use]
     pub const fn with_purpose(self, purpose: Purpose) -> Self {

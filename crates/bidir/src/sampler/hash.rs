@@ -1,7 +1,7 @@
 //! The hash that all keys of random numbers go through \[Steele14\].
 
-/// Returns a bijection of 64 bits whose output bits each depend on every input bit: the finaliser of
-/// SplitMix64 \[Steele14\].
+/// Returns a bijective hash of 64 bits. Each output bit depends on every input bit: the finaliser of SplitMix64
+/// \[Steele14\].
 #[inline]
 pub(super) fn mix(x: u64) -> u64 {
     let step = |x: u64, shift: u32, factor: u64| (x ^ (x >> shift)).wrapping_mul(factor);

@@ -1,13 +1,12 @@
-//! Random numbers as a pure function of where they are used.
+//! Random numbers as a pure function of their use.
 //!
-//! A number is addressed by (seed, [`Domain`], stream, index, [`Dimension`]) and by nothing else: no
-//! state, no thread, no task. Hence one sample can be replayed alone, a render can stop and go on,
-//! and any split of the work gives the same bits.
+//! The address of a number is (seed, [`Domain`], stream, index, [`Dimension`]). It depends on nothing else: no state,
+//! no thread, no task. Hence a single sample can be replayed, a render can stop and go on, and any split of the work
+//! gives the same bits.
 //!
 //! - Camera sample of pass `p` at pixel `q`: stream `q`, index `p`.
-//! - The light path that goes with it: member `q` of a [family](Sampler::member), index `p`. The light
-//!   paths of a pass are stratified over the light, as the light image wants them, and those of a pixel
-//!   over its passes, as connections want them.
+//! - Its light path: member `q` of a [family](Sampler::member), index `p`. The light paths of a pass are stratified
+//!   over the light, for the light image, and those of a pixel over its passes, for connections.
 //!
 //! Any range of indices is exact; ranges aligned to powers of two are also well stratified.
 
@@ -22,13 +21,13 @@ use crate::names::named;
 use hash::mix;
 use sobol::Digits;
 
-/// How the numbers of a stream relate to each other.
+/// The relation of the numbers of a stream.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum SamplerKind {
-    /// Uncorrelated numbers: the choice for statistics.
+    /// Independent numbers, for statistics.
     Independent,
-    /// Owen-scrambled Sobol' points, two dimensions at a time, each pair shuffled on its own
-    /// \[Burley20\]: the choice for pictures.
+    /// Owen-scrambled Sobol' points, two dimensions at a time, each pair with its own shuffle \[Burley20\], for
+    /// pictures.
     #[default]
     Sobol,
 }
@@ -51,8 +50,8 @@ pub enum Domain {
     TrainingLight,
 }
 
-/// Returns point `k` of the Kronecker sequence that begins with `u`: u + k (1 ∕ φ, 1 ∕ φ²) modulo 1, where
-/// φ³ = φ + 1. If `u` is uniform each of them is, and together they fill the square evenly.
+/// Returns point `k` of the Kronecker sequence that begins with `u`: u + k (1 ∕ φ, 1 ∕ φ²) modulo 1, where φ³ = φ +
+/// 1. If `u` is uniform, each point is, and together they fill the square evenly.
 #[inline]
 pub fn kronecker_point(u: Vec2, k: u16) -> Vec2 {
     const STEP: [f64; 2] = [0.754_877_666_246_692_8, 0.569_840_290_998_053_3];
@@ -88,7 +87,7 @@ impl Sampler {
         let key = mix(self.key(domain) ^ stream);
         match self.kind {
             SamplerKind::Independent => SampleStream::independent(key, index),
-            // A sequence has 2³² points; later points are of another one.
+            // A sequence has 2³² points; later points are from another sequence.
             SamplerKind::Sobol => SampleStream {
                 source: Source::Sequence(reversed(index)),
                 key: mix(key ^ (index >> 32)),
@@ -99,8 +98,7 @@ impl Sampler {
     /// Returns the numbers of point `index` of one of many streams that complement each other: the points
     /// of a member are stratified over the indices, and the points of an index over the members.
     ///
-    /// A point is S(index) ⊕ S'(member), digit by digit: either sequence, moved by a digital shift,
-    /// is as even as before.
+    /// A point is S(index) ⊕ S'(member), digit by digit: a digital shift keeps the evenness of either sequence.
     #[inline]
     pub fn member(&self, domain: Domain, member: u64, index: u64) -> SampleStream {
         let key = self.key(domain);
@@ -158,7 +156,7 @@ impl SampleStream {
         unit(self.get_bits(dimension))
     }
 
-    /// Returns the number of `dimension` in units of 2⁻³², of which [`get_1d`](Self::get_1d) has the upper 24 bits.
+    /// Returns the number of `dimension`. Unit: 2⁻³². [`get_1d`](Self::get_1d) is its upper 24 bits.
     #[inline]
     pub fn get_bits(&self, dimension: Dimension) -> u32 {
         let key = mix(self.key ^ dimension.key());
@@ -169,11 +167,11 @@ impl SampleStream {
         }
     }
 
-    /// Returns the number of `dimension` for one of many things that have no order, each with a key of its own.
-    /// The numbers of different things are unrelated. Range: `[0, 1)`.
+    /// Returns the number of `dimension` for one of many items without an order, each with its own key. The numbers
+    /// of different items are unrelated. Range: `[0, 1)`.
     #[inline]
     pub fn get_for(&self, dimension: Dimension, key: u64) -> f32 {
-        // One inside the other: a sum of hashes would cancel where key and index are the same.
+        // The hashes are nested: their sum would cancel if key and index are equal.
         let of_dimension = mix(self.key ^ dimension.key());
         let of_sample = match self.source {
             Source::Independent => of_dimension,

@@ -1,22 +1,21 @@
 //! The first two dimensions of Sobol's sequence with hashed Owen scrambling \[Burley20\].
 //!
-//! Both dimensions need no table: the digits of the first are the bits of the index, those of the
-//! second the same after multiplication with Pascal's triangle modulo 2, least significant bit first.
-//! A digit is bit 31 of a fraction and bit 0 of an index, so that all but the index that comes in and
-//! the fractions that go out is free of reversals.
+//! Neither dimension needs a table: the digits of the first are the bits of the index, and those of the second are
+//! the same bits multiplied by Pascal's triangle modulo 2, least significant bit first. A digit is bit 31 of a
+//! fraction and bit 0 of an index, so that bits are reversed only in the given index and in the resulting fractions.
 
 /// The digits of a point, before they become fractions.
 #[derive(Clone, Copy)]
 pub(super) struct Digits {
-    /// The index in the sequence, which is x, in the lower half; in the upper the digital shift, the index
-    /// of an unscrambled point.
+    /// The lower half is the index in the sequence, which is x; the upper half is the digital shift, the index of an
+    /// unscrambled point.
     indices: u64,
     key: u64,
 }
 
 impl Digits {
-    /// Returns the point of the sequence that `key` shuffles and scrambles. `reversed_index` is its number with
-    /// the bits in reverse order.
+    /// Makes the point of the sequence that `key` shuffles and scrambles. `reversed_index` is its index with reversed
+    /// bits.
     #[inline]
     pub(super) fn new(reversed_index: u32, key: u64) -> Self {
         Self {
@@ -25,7 +24,8 @@ impl Digits {
         }
     }
 
-    /// Returns the point moved, digit by digit, by one of another sequence, whose number in reverse order is `other`.
+    /// Makes the point, shifted digit by digit by a point of another sequence, whose index with reversed bits is
+    /// `other`.
     #[inline]
     pub(super) fn moved(reversed_index: u32, other: u32, key: u64) -> Self {
         // The sum is as uniform as one of the two.
@@ -37,13 +37,13 @@ impl Digits {
         }
     }
 
-    /// Returns the first coordinate as a fraction of 2³².
+    /// Returns the first coordinate. Unit: 2⁻³².
     #[inline]
     pub(super) fn x(self) -> u32 {
         self.scrambled_x().reverse_bits()
     }
 
-    /// Returns both coordinates as fractions of 2³².
+    /// Returns both coordinates. Unit: 2⁻³².
     #[inline]
     pub(super) fn xy(self) -> [u32; 2] {
         let seed = (self.key >> 32) as u32 ^ 0x27d4_eb2f;
@@ -59,7 +59,7 @@ impl Digits {
     }
 }
 
-/// Returns a number by its lower and its upper half: the halves of its reversal are theirs, exchanged.
+/// Returns a number with these halves. Reversing it reverses the halves and exchanges them.
 #[inline]
 fn pair(lower: u32, upper: u32) -> u64 {
     u64::from(upper) << 32 | u64::from(lower)
@@ -71,7 +71,7 @@ fn halves(x: u64) -> [u32; 2] {
     [x as u32, (x >> 32) as u32]
 }
 
-/// Returns the reversed index after a nested uniform scramble: aligned ranges of the sequence change places.
+/// Returns the reversed index after a nested uniform scramble: it permutes aligned ranges of the sequence.
 #[inline]
 fn shuffled(reversed_index: u32, key: u64) -> u32 {
     let seed = (key as u32).rotate_left(16) ^ (key >> 32) as u32;
@@ -92,8 +92,8 @@ fn pascal(mut x: u64) -> u64 {
     x ^ ((x >> 16) & 0x0000_ffff_0000_ffff)
 }
 
-/// Returns a permutation in which bit i of the result depends on bits 0..=i only: on reversed bits, a
-/// nested uniform scramble \[Laine11\]. The multipliers are even, so no bit reaches itself.
+/// Returns a permutation in which bit i of the result depends only on bits 0..=i: on reversed bits, a nested uniform
+/// scramble \[Laine11\]. The multipliers are even, so no bit reaches itself.
 #[inline]
 fn scramble(x: u32, seed: u32) -> u32 {
     let mut x = x.wrapping_add(seed);

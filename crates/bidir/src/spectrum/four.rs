@@ -1,11 +1,11 @@
-//! Four spectra at once: a lane of light of each in a register.
+//! Four spectra at once: a register holds one lane of each.
 
 use super::{Lanes, Spectrum};
 use crate::math::lanes::transpose;
 use glam::{BVec4A, Vec4};
 use std::ops::Mul;
 
-/// Four spectra. All of it is what [`Spectrum`] does with each of them, in the same bits.
+/// Four spectra. Operations give the same bits as those of [`Spectrum`] on each of them.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FourSpectra([Vec4; 4]);
 
@@ -16,32 +16,32 @@ impl FourSpectra {
         Self(transpose(spectra.map(Spectrum::lanes)))
     }
 
-    /// Returns the four one by one.
+    /// Returns the four spectra.
     #[inline]
     pub(crate) fn each(self) -> [Spectrum; 4] {
         transpose(self.0).map(|lanes| Spectrum(lanes.to_array()))
     }
 
-    /// Returns true of each that is exactly zero.
+    /// Returns true for each spectrum that is exactly zero.
     #[inline]
     pub(crate) fn are_black(self) -> BVec4A {
         self.all(|lanes| lanes.cmpeq(Vec4::ZERO))
     }
 
-    /// Returns true of each that has no lane that is larger than `limit`, or NaN.
+    /// Returns true for each spectrum with no lane that is NaN, or larger than `limit` in absolute value.
     #[inline]
     pub(crate) fn are_within(self, limit: f32) -> BVec4A {
         self.all(|lanes| lanes.abs().cmple(Vec4::splat(limit)))
     }
 
-    /// Returns for each spectrum whether `is` holds in every lane.
+    /// Returns true for each spectrum in which `is` holds for every lane.
     #[inline]
     fn all(self, is: impl Fn(Vec4) -> BVec4A) -> BVec4A {
         let [a, b, c, d] = self.0.map(is);
         (a & b) & (c & d)
     }
 
-    /// Returns the means of the lanes of the four that carry light, without signs.
+    /// Returns the mean of absolute values of each spectrum, over the lanes that carry light.
     #[inline]
     pub(crate) fn abs_means(self, lanes: Lanes) -> Vec4 {
         match lanes {
@@ -60,7 +60,7 @@ impl FourSpectra {
     }
 }
 
-/// Each times the same spectrum.
+/// Multiplies each spectrum by the same one.
 impl Mul<Spectrum> for FourSpectra {
     type Output = Self;
     #[inline]
@@ -70,7 +70,7 @@ impl Mul<Spectrum> for FourSpectra {
     }
 }
 
-/// Each times a number of its own.
+/// Multiplies each spectrum by its own number.
 impl Mul<Vec4> for FourSpectra {
     type Output = Self;
     #[inline]

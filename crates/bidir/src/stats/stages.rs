@@ -1,17 +1,16 @@
-//! The time of samples by stage, measured in some of the samples by the host's clock.
+//! The time of stages, measured in some of the samples by the host's clock.
 //!
-//! Times differ from run to run, so they are kept apart from what is counted: no film, no counter
-//! and no estimate depends on them.
+//! Times differ from run to run, so they are separate from counters: no film, no counter and no estimate depends on
+//! them.
 
 use std::ops::AddAssign;
 use std::time::{Duration, Instant};
 
-/// A clock that never goes back, such as [`Instant::now`]. The host gives it; the library looks at
-/// no other.
+/// A monotonic clock, such as [`Instant::now`]. The host gives it; the library reads no other.
 pub type Clock = fn() -> Instant;
 
-/// The batches of a thread per measured one. A prime, so that no width of an image makes
-/// the same columns be measured in every row.
+/// The number of batches of a thread per measured one. It is prime, so that for no image width the same columns are
+/// measured in every row.
 const MEASURED_EVERY: u32 = 7;
 
 /// A stage of a sample.
@@ -19,7 +18,7 @@ const MEASURED_EVERY: u32 = 7;
 pub enum Stage {
     /// Walking the subpaths, with their rays.
     Walk,
-    /// The light that a bidirectional camera walk hits by itself, and its weights: s = 0.
+    /// Hits of light by a bidirectional camera walk, and their weights: s = 0.
     Hits,
     /// The light image, t = 1: connections, weights and shadow rays.
     LightImage,
@@ -27,11 +26,11 @@ pub enum Stage {
     Candidates,
     /// Choosing candidates.
     Select,
-    /// Shadow rays of those that were chosen.
+    /// Shadow rays of the chosen candidates.
     Shadow,
-    /// All that path tracing does at its vertices: hits, light points, weights and shadow rays.
+    /// All work of path tracing at its vertices: hits, light points, weights and shadow rays.
     Direct,
-    /// Bringing the contributions to the film; adding a pass to the film is not in it.
+    /// Adding contributions to the pass, without adding the pass to the film.
     Film,
 }
 
@@ -82,7 +81,7 @@ impl AddAssign<&Self> for StageTimes {
 #[derive(Clone, Debug, Default)]
 pub struct Stopwatch {
     clock: Option<Clock>,
-    /// Batches begun since one was measured.
+    /// The number of batches since the last measured one.
     waited: u32,
     /// The end of the last stage. None: this batch is not measured.
     last: Option<Instant>,
@@ -90,7 +89,7 @@ pub struct Stopwatch {
 }
 
 impl Stopwatch {
-    /// Measures by `clock`, if there is one.
+    /// Makes a stopwatch that reads `clock`, if there is one.
     pub(crate) fn new(clock: Option<Clock>) -> Self {
         Self {
             clock,

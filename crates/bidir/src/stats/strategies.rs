@@ -10,9 +10,9 @@ use std::ops::AddAssign;
 pub struct StrategyCounts {
     /// Contributions that are not zero, before selection and visibility.
     pub candidates: u64,
-    /// Candidates whose shadow ray was traced. s = 0 needs none; all of t = 1 are.
+    /// Candidates whose shadow ray was traced: none for s = 0, all for t = 1.
     pub traced: u64,
-    /// Candidates whose shadow ray something blocked.
+    /// Candidates whose shadow ray was blocked.
     pub blocked: u64,
 }
 
@@ -24,19 +24,20 @@ impl AddAssign for StrategyCounts {
     }
 }
 
-/// The counts of a strategy of which the film keeps images: integers, so that no
-/// order of adding can matter.
+/// The counts of a strategy whose images the film keeps. They are integers, so that the order of addition does not
+/// matter.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct LayerCounts {
     /// Σ Y², with Y the luminance that one sample added to the strategy's weighted image, in
     /// [`MOMENT_SCALE`]; of a splat before it is divided by the number of light paths.
     squares: i128,
-    /// Values that could be summed, but not without their weight: they are in no raw image.
+    /// The number of values that the weighted image has, but the raw image lacks because they are too large without
+    /// their weight.
     pub raw_dropped: u64,
 }
 
 impl LayerCounts {
-    /// Counts what one sample added.
+    /// Counts the luminance that one sample added.
     #[inline]
     pub(super) fn add_square(&mut self, luminance: f64) {
         let square = fixed::from_f64(luminance * luminance, MOMENT_SCALE);
@@ -61,7 +62,7 @@ impl AddAssign for LayerCounts {
 /// million strategies.
 const MAX_ROW: usize = 32;
 
-/// The counts of each strategy; adding tables in any order gives the same.
+/// The counts of each strategy. The sum of tables does not depend on their order.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct StrategyTable<T = StrategyCounts> {
     /// Rows of n = 1, 2, … vertices, by s; as far as was counted.
