@@ -1,18 +1,17 @@
 //! A dielectric layer over metal: lacquer, anodised or wet metal.
 //!
-//! f = F D G₂ / (4 |cosθ_o cosθ_i|) + T(wo) T(wi) A(wo) A(wi) (f_m(wo', wi') / η² + M) [1/sr], with
-//! f_m the metal's own reflection for an index relative to the layer's, between directions that a
-//! smooth interface refracts. A rough interface, which scatters what it refracts, broadens the facets
-//! of f_m as variances of slopes add [Belcour18, §4]; T and A are such that as much leaves as walks between
-//! both surfaces say, and f_m is a little brighter, as facets meet light more steeply than it has them.
+//! f = F D G₂ / (4 |cosθ_o cosθ_i|) + T(wo) T(wi) A(wo) A(wi) (f_m(wo', wi') / η² + M) [1/sr], with f_m the metal's
+//! own reflection, for an index relative to the layer's and between the directions refracted by a smooth interface. A
+//! rough interface, which scatters what it refracts, broadens the facets of f_m: variances of slopes add [Belcour18,
+//! §4]. T and A are fitted so that as much light leaves as in random walks between both surfaces, and f_m is a little
+//! brighter, because light meets facets more steeply than in its closed form.
 //!
-//! M is what the metal reflects more than once, between whiles thrown back by the interface. It is
-//! E(wo) E(wi) / (π Ē) · Σ_k m_k F̄^k, k ≥ 2, as if it had forgotten where it came from
-//! \[Kulla17\]; E, what white metal so reflects, and m_k, the share of k reflections, are tabulated by a
-//! walk ([`Reflections`]). If both surfaces are smooth, there is one mirrored
-//! direction, and the sum over all reflections is exact.
+//! M is the light that the metal reflects more than once, with reflections at the interface in between. It is E(wo)
+//! E(wi) / (π Ē) · Σ_k m_k F̄^k, k ≥ 2, as if it had lost its direction \[Kulla17\]. E, the fraction that white metal
+//! reflects so, and m_k, the share of k reflections, are tabulated by random walks ([`Reflections`]). If both
+//! surfaces are smooth, there is one mirrored direction, and the sum over all reflections is exact.
 //!
-//! Light that the layer scatters (ϖ > 0) goes on as if it had not been.
+//! Light that the layer scatters (ϖ > 0) continues as if it had not been scattered.
 
 use super::coat::{
     Coat, Curve, Layer, METAL_SHAPES, MetalCoat, Reflections, Seen, all_orders, seen_through,
@@ -26,7 +25,7 @@ use crate::spectrum::Spectrum;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CoatedConductor {
     coat: MetalCoat,
-    /// Index and facets of the metal: no field of its own, whose padding would enlarge all vertices.
+    /// The index and the facets of the metal. They are not a struct, whose padding would enlarge all vertices.
     eta: Spectrum,
     k: Spectrum,
     facets: Ggx,
@@ -34,7 +33,8 @@ pub struct CoatedConductor {
     trapped: Curve<METAL_SHAPES>,
     /// Ē Σ_k m_k F̄^k.
     multiple: Spectrum,
-    /// How much more steeply than in closed form light meets the metal when it is reflected once.
+    /// s of [`Reflections`]: how much more steeply than in the closed form light meets the metal in a single
+    /// reflection.
     steepness: f32,
 }
 
@@ -56,7 +56,7 @@ impl CoatedMetal {
     }
 }
 
-/// A way in which light leaves.
+/// A lobe: a way in which light leaves.
 #[derive(Clone, Copy, PartialEq)]
 enum Lobe {
     /// Off the interface.
@@ -67,7 +67,7 @@ enum Lobe {
     Trapped,
 }
 
-/// The factors of f and of the lobes' shares that depend on one direction alone.
+/// The factors of f and of the lobes' shares that depend on only one direction.
 struct MetalSeen {
     coat: Seen,
     /// The refracted direction within the layer. None: total reflection.
@@ -79,7 +79,7 @@ struct MetalSeen {
 }
 
 impl CoatedConductor {
-    /// Returns `metal` under an interface of `ggx`, with the tables of the two surfaces.
+    /// Makes `metal` under an interface of `ggx`, with the tables of the two surfaces.
     pub fn new(
         layer: &Layer,
         reflections: &Reflections,
@@ -122,8 +122,8 @@ impl CoatedConductor {
         self.facets.is_smooth()
     }
 
-    /// Returns the reflectance along the mirrored direction, if all is smooth: F + T² a F_m / (1 - F a F_m),
-    /// with a the part that the layer leaves after one trip.
+    /// Returns the reflectance along the mirrored direction if all is smooth: F + T² a F_m / (1 - F a F_m), with a
+    /// the fraction that the layer does not absorb in one trip.
     #[inline]
     fn mirror_reflectance(&self, wo: Vec3) -> Spectrum {
         let reflected = self.coat.reflectance(wo);
@@ -154,7 +154,7 @@ impl CoatedConductor {
         })
     }
 
-    /// Returns the approximate albedo of each lobe. It depends on |cosθ| alone.
+    /// Returns the approximate albedo of each lobe. It depends only on |cosθ|.
     #[inline]
     fn shares(&self, seen: &MetalSeen) -> [Spectrum; 3] {
         let coat = Spectrum::splat(seen.coat.reflected);
@@ -171,8 +171,8 @@ impl CoatedConductor {
         fresnel::conductor(cos, self.eta, self.k)
     }
 
-    /// Returns the metal's reflectance of what it reflects once, at a facet of cosine `cos`, along directions of
-    /// mean (1-μ)⁵ `grazing`.
+    /// Returns the metal's reflectance of light reflected once, at a facet of cosine `cos`; `grazing` is the mean
+    /// (1-μ)⁵ of both directions.
     #[inline]
     fn once_fresnel(&self, cos: f32, grazing: f32) -> Spectrum {
         let more = self.steepness * grazing;
@@ -225,7 +225,7 @@ impl CoatedConductor {
     }
 
     /// Returns f of the metal under the interface, and the densities of drawing either direction by one reflection at
-    /// the metal: that of the direction within, times dω'/dω = |cosθ| / (η² |cosθ'|).
+    /// the metal: the density of the direction within the layer, times dω'/dω = |cosθ| / (η² |cosθ'|).
     #[inline]
     fn eval_metal(
         &self,
@@ -277,7 +277,7 @@ impl CoatedConductor {
         BsdfSample::of_value(wi, &self.eval(wo, wi))
     }
 
-    /// Draws a direction from a lobe that is no Dirac distribution. None: it does not leave.
+    /// Draws a direction from a lobe that is not a Dirac distribution. None: the light does not leave.
     #[inline]
     fn sample_lobe(&self, lobe: Lobe, wo: Vec3, u: Vec2) -> Option<Vec3> {
         match lobe {

@@ -1,13 +1,13 @@
 //! f = F D G₂ / (4 |cosθ_o cosθ_i|) + T(wo) T(wi) (A(wo) A(wi) ρ Σ_k (ρ R)^k / (π η²) + M(wo, wi)),
 //! 1/sr: varnish, plastic, polished wood.
 //!
-//! The base is Lambertian, so light that interface and medium throw back comes to it as any diffuse
-//! light does: each round trip leaves the part ρ R of it ([`Filled`]). The sum over all k is
-//! 1 / (1 - ρ R): pbrt-v4's random walk in closed form [PBRT4, §14.3], without its limit of events.
+//! The base is Lambertian, so light that interface and medium return to it is like any other diffuse light: each
+//! round trip leaves the fraction ρ R ([`Filled`]). The sum over all k is 1 / (1 - ρ R): pbrt-v4's random walk in
+//! closed form [PBRT4, §14.3], without its limit of events.
 //!
-//! Light that scatters within the layer and leaves without having reached the base has
-//! M = Ē e(wo) e(wi) / π, as if it had forgotten where it came from: its energy is right from every
-//! direction, its distribution an approximation. So the reflectance is exact, up to tables.
+//! Light that scatters within the layer and leaves without reaching the base has M = Ē e(wo) e(wi) / π, as if it had
+//! lost its direction: its energy is right for every direction, its distribution an approximation. So the reflectance
+//! is exact, up to tables.
 
 use super::coat::{Coat, Curve, Filled, LENGTHS, Layer, RATIOS, SHAPES, Seen, Slab, all_orders};
 use super::microfacet::Ggx;
@@ -25,7 +25,7 @@ pub struct CoatedDiffuse {
     thrown: Spectrum,
     /// e.
     shape: Curve<SHAPES>,
-    /// About the part of entering light that leaves again.
+    /// The approximate fraction of entering light that leaves again.
     entering: Spectrum,
 }
 
@@ -34,7 +34,7 @@ pub struct CoatedDiffuse {
 pub struct InterlayerMedium {
     /// The optical depth of the layer, scattering and absorption together.
     pub thickness: f32,
-    /// The part of it that scatters.
+    /// The fraction of it that scatters.
     pub albedo: Spectrum,
     /// The mean cosine of the angle of scattering.
     pub g: f32,
@@ -77,7 +77,7 @@ impl CoatedDiffuse {
         }
     }
 
-    /// Returns true where nothing below a smooth coat scatters: a Dirac distribution alone.
+    /// Returns true if all scattering is a Dirac distribution: the coat is smooth, and nothing below it scatters.
     #[inline]
     pub(super) fn is_delta(&self) -> bool {
         self.coat.is_smooth() && self.is_black_within()
@@ -100,14 +100,15 @@ impl CoatedDiffuse {
             .map(|part| (reflected + part * through).min(1.0))
     }
 
-    /// About the part of light that the interface reflects, and the part that the base scatters in its brightest lane.
+    /// Returns the approximate fractions of light that the interface reflects, and that the base scatters in its
+    /// brightest lane.
     #[inline]
     fn shares(&self, seen: Seen) -> [f32; 2] {
         [seen.reflected, self.entering.max_lane() * seen.through]
     }
 
-    /// Returns the probability of drawing from the interface. It depends on |cosθ| alone, so that a mirrored
-    /// direction has the same.
+    /// Returns the probability of drawing from the interface. It depends only on |cosθ|, so that a mirrored direction
+    /// has the same.
     #[inline]
     fn coat_prob(&self, seen: Seen) -> f32 {
         let [coat, base] = self.shares(seen);

@@ -1,8 +1,7 @@
 //! f = F(wo·m) D(m) G₂(wo, wi) / (4 |cosθ_o cosθ_i|) [Walter07, eq. 20]: metal, 1/sr.
 //!
-//! Facets are drawn as `wo` sees them, and the density of `wi` is that of the facet over 4 |wo·m|
-//! (solid angle, 1/sr). Light that a facet sends to others is lost, or leaves by a lobe of its own
-//! ([`multiple`]).
+//! Facets are drawn by their visibility from `wo`. The density of `wi` is that of the facet over 4 |wo·m| (solid
+//! angle, 1/sr). Light that a facet sends to other facets is lost, or leaves by a lobe of its own ([`multiple`]).
 
 use super::microfacet::Ggx;
 use super::multiple::{self, FacetScattering, Spread};
@@ -21,7 +20,7 @@ pub struct Conductor {
     pub k: Spectrum,
     /// The distribution of facets.
     pub ggx: Ggx,
-    /// The part of the light lost by one facet that leaves after several; black: it is lost.
+    /// The fraction of the light lost by one facet that leaves after several; black if it is all lost.
     multiple: Spectrum,
     /// k̄.
     lost: f32,
@@ -49,7 +48,7 @@ impl Conductor {
         }
     }
 
-    /// Returns false where light between facets is lost.
+    /// Returns false if light between facets is lost.
     #[inline]
     fn is_multiple(&self) -> bool {
         self.lost > 0.0

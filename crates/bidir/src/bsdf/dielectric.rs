@@ -1,10 +1,10 @@
-//! Glass, water: reflection F D G₂ / (4 |cosθ_o cosθ_i|) and refraction (1 - F) D G₂ |wo·m| |wi·m|
-//! / (|cosθ_o cosθ_i| (wi·m + wo·m/η)²), η the index of the side of `wi` relative to that of `wo`
-//! [Walter07, eq. 20 and 21]. Unit: 1/sr.
+//! The BSDF of glass or water: reflection F D G₂ / (4 |cosθ_o cosθ_i|) and refraction (1 - F) D G₂ |wo·m| |wi·m| /
+//! (|cosθ_o cosθ_i| (wi·m + wo·m/η)²), with η the index of the side of `wi` relative to that of `wo` [Walter07, eq.
+//! 20 and 21]. Unit: 1/sr.
 //!
-//! Radiance is divided by η² where it crosses; importance is not [Veach97, §5.2]. There is no
-//! absorption within, and no dispersion. Light that a facet sends to others is lost, or leaves by a lobe of its own
-//! on either side ([`multiple`]).
+//! Radiance is divided by η² when it crosses; importance is not [Veach97, §5.2]. There is no absorption within, and
+//! no dispersion. Light that a facet sends to other facets is lost, or leaves by a lobe of its own on either side
+//! ([`multiple`]).
 
 use super::microfacet::Ggx;
 use super::multiple::{self, FacetScattering, Sides, Spread};
@@ -26,7 +26,7 @@ pub struct Dielectric {
     pub(super) lost: Sides,
 }
 
-/// The two things a facet does.
+/// The two lobes of a facet.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum Lobe {
     Reflection,
@@ -37,16 +37,17 @@ pub(super) enum Lobe {
 pub(super) struct Crossing {
     /// D G₂ |wo·m| |wi·m| / (|cosθ_o cosθ_i| (wi·m + wo·m/η)²), without the factor 1/η² of radiance. Unit: 1/sr.
     pub(super) facets: f32,
-    /// The densities of drawing wi for wo, and wo for wi, by a draw of m: D_v(m) |dω_m / dω| [Walter07, eq. 17].
+    /// The densities of drawing wi for wo, and wo for wi, given a draw of m: D_v(m) |dω_m / dω| [Walter07, eq. 17].
     /// Measure: solid angle, 1/sr.
     pub(super) densities: [f32; 2],
 }
 
 /// The lobe of light that one facet loses.
 pub(super) struct Multiple {
-    /// k(o) k(i) x / (π k̄), without the factor 1/η² of radiance; 1 - x where light stays on its side. Unit: 1/sr.
+    /// k(o) k(i) x / (π k̄), without the factor 1/η² of radiance; with 1 - x for x if light stays on its side. Unit:
+    /// 1/sr.
     pub(super) f: f32,
-    /// The probabilities k of drawing this lobe, seen from each of both directions.
+    /// The probabilities k of drawing this lobe, for each of both directions as wo.
     pub(super) probs: [f32; 2],
     /// The densities of drawing wi for wo, and wo for wi, by this lobe. Measure: solid angle, 1/sr.
     pub(super) densities: [f32; 2],
@@ -106,9 +107,9 @@ impl Dielectric {
         }
     }
 
-    /// Returns the facet that sends `wo` to `wi`, in the upper hemisphere, and how it does.
+    /// Returns the facet in the upper hemisphere that sends `wo` to `wi`, and its lobe.
     ///
-    /// None: where that facet is seen from behind, or the directions are degenerate.
+    /// None: the facet is seen from behind, or the directions are degenerate.
     #[inline]
     pub(super) fn facet(&self, wo: Vec3, wi: Vec3) -> Option<(Vec3, Lobe)> {
         if wo.z == 0.0 || wi.z == 0.0 {
@@ -161,7 +162,7 @@ impl Dielectric {
         multiple::of_interface(self.ggx, self.eta_across(w), w)
     }
 
-    /// Returns the scattering by more than one facet, away from the rim.
+    /// Returns the scattering by more than one facet, for directions that are not grazing.
     #[inline]
     pub(super) fn multiple(&self, [wo, wi]: [Vec3; 2]) -> Multiple {
         let probs = [wo, wi].map(|w| self.lost_of(w));
@@ -181,7 +182,7 @@ impl Dielectric {
         }
     }
 
-    /// Draws a direction of light that one facet loses, by `u_side` on either side.
+    /// Draws a direction of the light that one facet loses; `u_side` chooses the side.
     #[inline]
     pub(super) fn sample_multiple(&self, wo: Vec3, u_side: f32, u: Vec2) -> Vec3 {
         let crossing = self.lost.crossing(wo, self.eta_across(wo));
@@ -281,7 +282,7 @@ impl Dielectric {
         BsdfSample::of_value(wi, &self.eval(wo, wi, mode))
     }
 
-    /// Returns `wi` drawn by a flat interface, which takes its lobe with probability `prob`.
+    /// Returns the sample `wi` of a flat interface, whose lobe has the probability `prob`.
     #[inline]
     fn smooth_sample(&self, wo: Vec3, wi: Vec3, scale: f32, prob: f32) -> BsdfSample {
         BsdfSample {

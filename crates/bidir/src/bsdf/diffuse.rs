@@ -5,7 +5,7 @@ use super::{BsdfSample, BsdfValue, same_hemisphere};
 use crate::math::{INV_PI, Vec2, Vec3, warp};
 use crate::spectrum::Spectrum;
 
-/// Lambertian reflection on the side that is looked at: f = ρ/π.
+/// Lambertian reflection on the side of `wo`: f = ρ/π.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Diffuse {
     /// The reflectance ρ. Range: `[0, 1]` per lane.
@@ -30,7 +30,7 @@ impl Diffuse {
     pub(super) fn sample(&self, wo: Vec3, u: Vec2) -> Option<BsdfSample> {
         let mut wi = warp::cosine_hemisphere(u);
         wi.z = wi.z.copysign(wo.z);
-        // At the rim the density is zero and cannot be used.
+        // At grazing directions the density is zero and cannot be used.
         if wi.z == 0.0 || wo.z == 0.0 || self.reflectance.is_black() {
             return None;
         }

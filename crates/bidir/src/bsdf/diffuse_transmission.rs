@@ -1,7 +1,7 @@
-//! f = r/π on the side that is looked at, t/π through the surface (1/sr): paper, leaves, cloth.
+//! f = r/π on the side of `wo`, t/π through the surface (1/sr): paper, leaves, cloth.
 //!
-//! Drawn by one cosine-distributed direction on the side of `wi`, the side with probability
-//! proportional to the largest lane of r and of t. No interface is crossed: radiance is not scaled.
+//! A draw chooses the side of `wi`, with probability proportional to the largest lane of r or t, and a
+//! cosine-distributed direction on it. No interface is crossed: radiance is not scaled.
 
 use super::{BsdfSample, BsdfValue, same_hemisphere};
 use crate::math::{INV_PI, Vec2, Vec3, warp};
@@ -12,7 +12,7 @@ use crate::spectrum::Spectrum;
 pub struct DiffuseTransmission {
     /// The reflectance r. Range: `[0, 1]` per lane.
     pub reflectance: Spectrum,
-    /// The transmittance t. Range: `[0, 1]` per lane; r + t above 1 makes light.
+    /// The transmittance t. Range: `[0, 1]` per lane; r + t above 1 creates light.
     pub transmittance: Spectrum,
 }
 

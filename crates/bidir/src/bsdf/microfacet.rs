@@ -10,7 +10,7 @@
 
 use crate::math::{INV_PI, PI, Vec2, Vec3, safe_sqrt, sin_cos, sqr};
 
-/// Below this slope a surface counts as smooth: a Dirac distribution.
+/// The slope below which a surface counts as smooth: a Dirac distribution.
 pub const SMOOTH_ALPHA: f32 = 1e-3;
 
 /// GGX with slopes along local x and y.
@@ -33,8 +33,8 @@ pub struct Mirror {
 }
 
 impl Ggx {
-    /// Slopes α_x and α_y. Smooth where both are below [`SMOOTH_ALPHA`]; else each is at least
-    /// 10⁻⁴, so that no term overflows.
+    /// Makes facets of slopes α_x and α_y. The surface is smooth if both are below [`SMOOTH_ALPHA`]; otherwise each
+    /// slope is at least 10⁻⁴, so that no term overflows.
     pub fn new(alpha_x: f32, alpha_y: f32) -> Self {
         if alpha_x.max(alpha_y) < SMOOTH_ALPHA {
             return Self {
@@ -64,7 +64,7 @@ impl Ggx {
     #[inline]
     fn lambda(self, v: Vec3) -> f32 {
         let tan2 = (sqr(self.alpha_x * v.x) + sqr(self.alpha_y * v.y)) / sqr(v.z);
-        // Finite even where z² vanishes, so that quotients of two such terms stay numbers.
+        // It is finite even if z² vanishes, so that quotients of two such terms are not NaN.
         ((1.0 + tan2.min(f32::MAX)).sqrt() - 1.0) / 2.0
     }
 
@@ -74,7 +74,7 @@ impl Ggx {
         [self.alpha_x, self.alpha_y]
     }
 
-    /// Returns true where all azimuths are alike.
+    /// Returns true if the slopes along x and y are equal.
     #[inline]
     pub(super) fn is_isotropic(self) -> bool {
         self.alpha_x.to_bits() == self.alpha_y.to_bits()
@@ -86,13 +86,13 @@ impl Ggx {
         1.0 / (1.0 + 2.0 * self.lambda(v))
     }
 
-    /// Returns the part of facets seen from `v` that nothing shadows.
+    /// Returns the fraction of facets facing `v` that are not shadowed.
     #[inline]
     pub fn g1(self, v: Vec3) -> f32 {
         1.0 / (1.0 + self.lambda(v))
     }
 
-    /// Returns the part of facets seen from both `wo` and `wi` that nothing shadows.
+    /// Returns the fraction of facets facing `wo` and `wi` that are shadowed for neither.
     #[inline]
     pub fn g2(self, wo: Vec3, wi: Vec3) -> f32 {
         1.0 / (1.0 + self.lambda(wo) + self.lambda(wi))
@@ -112,7 +112,8 @@ impl Ggx {
         }
     }
 
-    /// Returns the direction that a facet which `wo` sees reflects it to. None: below the surface.
+    /// Draws a facet visible from `wo`, and returns the direction to which it reflects `wo`. None: it is below the
+    /// surface.
     #[inline]
     pub fn sample_mirror(self, wo: Vec3, u: Vec2) -> Option<Vec3> {
         let m = self.sample_visible(wo, u);
@@ -120,19 +121,19 @@ impl Ggx {
         (wo.z * wi.z > 0.0).then_some(wi)
     }
 
-    /// Returns the slope of an isotropic surface with as much variance.
+    /// Returns the slope of an isotropic surface with the same variance.
     #[inline]
     pub fn mean_alpha(self) -> f32 {
         ((sqr(self.alpha_x) + sqr(self.alpha_y)) / 2.0).sqrt()
     }
 
-    /// Returns how near to a mirror it is: 1 for a mirror, 0 for slopes of 1 and above.
+    /// Returns the gloss: 1 for a mirror, 0 for slopes of 1 and above.
     #[inline]
     pub fn gloss(self) -> f32 {
         1.0 - self.mean_alpha().min(1.0)
     }
 
-    /// Returns these slopes, each with the variance `scale`² α² of another surface's added.
+    /// Returns these facets, with the variance `scale`² α² of other facets added along each axis.
     #[inline]
     #[must_use]
     pub fn broadened(self, other: Self, scale: f32) -> Self {
@@ -143,8 +144,8 @@ impl Ggx {
         )
     }
 
-    /// Returns a normal in the upper hemisphere, by how much of its facets `v` sees; for `v` below the
-    /// surface, of the facets seen from beneath \[Heitz18\].
+    /// Draws a normal in the upper hemisphere by the visible area of its facets from `v`; for `v` below the surface,
+    /// from beneath \[Heitz18\].
     #[inline]
     pub fn sample_visible(self, v: Vec3, u: Vec2) -> Vec3 {
         // Stretch to the hemisphere configuration, α = 1.
@@ -163,7 +164,7 @@ impl Ggx {
     }
 }
 
-/// Axes perpendicular to `v`: the first horizontal, the second completing a right-handed frame.
+/// Returns axes perpendicular to `v`: the first horizontal, the second completing a right-handed frame.
 #[inline]
 fn tilt_axes(v: Vec3) -> (Vec3, Vec3) {
     let horizontal = sqr(v.x) + sqr(v.y);

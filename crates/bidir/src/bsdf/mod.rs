@@ -1,4 +1,4 @@
-//! How a surface point scatters light.
+//! The scattering of light at a surface point.
 //!
 //! A [`Bsdf`] is the material at one point with its textures looked up: a small `Copy` value. It
 //! works in the local shading frame: z is the shading normal `n_s`, and both `wo` and `wi` point away
@@ -19,10 +19,10 @@
 //! the η and θ of the sampled side. Ratios of the two are then the true ratios of densities, which is
 //! all that multiple importance sampling needs.
 //!
-//! **Mixed lobes.** A smooth coat reflects by a Dirac lobe, and its base does not. `eval` is the sum
-//! of the other lobes; its densities include the probability of drawing them. Each sample is marked
-//! with its kind. Almost no path that the one kind makes is made by the other, so on every path the
-//! vertex is the one or the other (docs/derivations/mis-weights.md).
+//! **Mixed lobes.** A smooth coat reflects by a Dirac lobe, and its base does not. `eval` is the sum of the other
+//! lobes; its densities include the probability of drawing them. Each sample has a mark of its kind. Almost no path
+//! that one kind makes can be made by the other, so that on every path the vertex is of one kind
+//! (docs/derivations/mis-weights.md).
 //!
 //! **Adding one**: a file with the model and its tests, a variant here with an arm in each match (the
 //! compiler lists them), and a constructor in [`material`](crate::material).
@@ -55,7 +55,7 @@ pub use thin_dielectric::ThinDielectric;
 use crate::math::{Vec2, Vec3};
 use crate::spectrum::Spectrum;
 
-/// Which quantity flows along a walk, and so on which side the light is.
+/// The quantity that a walk carries, which determines the side of the light.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TransportMode {
     /// The walk comes from the camera: `wi` points to where light comes from.
@@ -79,7 +79,7 @@ impl TransportMode {
 /// The scattering between two directions, without Dirac lobes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BsdfValue {
-    /// f, the same for light in either direction but for η². Unit: 1/sr.
+    /// f, which is symmetric except for η². Unit: 1/sr.
     pub f: Spectrum,
     /// The density with which `sample(wo)` draws `wi`; it integrates to the probability of all lobes that are not Dirac.
     /// Measure: solid angle, 1/sr.
@@ -112,15 +112,15 @@ pub struct BsdfSample {
     pub pdf: f32,
     /// The coefficient or density of drawing `wo` by a walk that arrives along `wi`.
     pub pdf_reverse: f32,
-    /// The largest lane of the albedo that such a walk meets.
+    /// The largest lane of the albedo for that walk.
     pub albedo_reverse: f32,
-    /// True where a Dirac lobe was drawn: on this path no strategy may connect at this vertex.
+    /// True if a Dirac lobe was drawn: on this path no strategy may connect at this vertex.
     pub is_delta: bool,
 }
 
 impl BsdfSample {
-    /// Returns the mirrored direction, drawn with probability `prob` from a Dirac lobe of `reflectance`. `prob` and
-    /// `albedo` are the same for `wo` and the mirrored direction.
+    /// Makes the sample of the mirrored direction, drawn with probability `prob` from a Dirac lobe of `reflectance`.
+    /// `prob` and `albedo` are the same for `wo` and the mirrored direction.
     #[inline]
     fn mirror(wo: Vec3, reflectance: Spectrum, prob: f32, albedo: Spectrum) -> Self {
         let pdf = prob * wo.z.abs();
@@ -134,7 +134,7 @@ impl BsdfSample {
         }
     }
 
-    /// Returns the sample `wi` that was drawn for `wo`, where `value` is that of both. None: its density underflows.
+    /// Makes the sample `wi` drawn for `wo`; `value` is the scattering between them. None: its density underflows.
     #[inline]
     fn of_value(wi: Vec3, value: &BsdfValue) -> Option<Self> {
         (value.pdf > 0.0 && wi.z != 0.0).then(|| Self {
@@ -148,12 +148,12 @@ impl BsdfSample {
     }
 }
 
-/// How a surface scatters, as far as it decides which normals can be seen.
+/// The kinds of lobes of a surface, which determine the normals that may be seen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Lobes {
-    /// Also diffusely, under facets of this gloss: 1 of a mirror, 0 of the roughest, and without facets.
+    /// Diffuse lobes, under facets of this gloss: 1 for a mirror, 0 for the roughest, and 0 without facets.
     Diffuse(f32),
-    /// By facets alone, around mirrored or refracted directions.
+    /// Only facets, which scatter around mirrored or refracted directions.
     Glossy,
 }
 
@@ -197,10 +197,9 @@ impl Bsdf {
         }
     }
 
-    /// Draws a direction from `u`, and from `u_lobe`, which is asked for where there is a choice
-    /// between lobes.
+    /// Draws a direction by `u`, and by `u_lobe`, which is called only if there is a choice of lobes.
     ///
-    /// None: where nothing is scattered, or the draw fell below the surface.
+    /// None: nothing is scattered, or the draw is below the surface.
     #[inline]
     pub(crate) fn sample(
         &self,
@@ -223,7 +222,7 @@ impl Bsdf {
         sample.filter(|sample| sample.pdf > 0.0)
     }
 
-    /// Puts `index` around the surface in place of air, of which only its transparent part takes notice.
+    /// Sets the index of refraction around the surface, in place of air. It matters only to a transparent part.
     #[inline]
     pub fn put_within(&mut self, index: f32) {
         if index.to_bits() == 1f32.to_bits() {
@@ -241,7 +240,7 @@ impl Bsdf {
         }
     }
 
-    /// Returns true where all scattering is a Dirac distribution.
+    /// Returns true if all scattering is a Dirac distribution.
     #[inline]
     pub fn is_delta(&self) -> bool {
         match self {
@@ -255,7 +254,7 @@ impl Bsdf {
         }
     }
 
-    /// Returns how it scatters, without a coat that has a normal of its own.
+    /// Returns the kinds of its lobes, without a coat that has a normal of its own.
     pub fn lobes(&self) -> Lobes {
         match self {
             Self::Diffuse(_) | Self::DiffuseTransmission(_) => Lobes::Diffuse(0.0),
@@ -277,7 +276,7 @@ impl Bsdf {
         }
     }
 
-    /// Gives the clear coat, if there is one, its own normal `n`. Space: local.
+    /// Sets the normal `n` of the clear coat, if there is one. Space: local.
     #[inline]
     pub fn put_coat_normal(&mut self, n: Vec3) {
         if let Self::Principled(bsdf) = self {
@@ -285,7 +284,7 @@ impl Bsdf {
         }
     }
 
-    /// Returns false where light stays on the side it comes from.
+    /// Returns false if all light stays on its side.
     #[inline]
     pub fn transmits(&self) -> bool {
         match self {
@@ -298,9 +297,8 @@ impl Bsdf {
         }
     }
 
-    /// About which part of the light that arrives along `wo` is scattered, for path roulette.
-    /// Deterministic in (`self`, `wo`), and positive where anything is scattered, but no
-    /// exact integral. Range: `[0, 1]` per lane.
+    /// Returns the approximate fraction of light along `wo` that is scattered, for path roulette. It is a function of
+    /// `self` and `wo`, positive if anything is scattered, but not an exact integral. Range: `[0, 1]` per lane.
     #[inline(always)] // Most surfaces are diffuse, which is one load.
     pub fn albedo(&self, wo: Vec3) -> Spectrum {
         match self {

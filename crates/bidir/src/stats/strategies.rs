@@ -58,21 +58,21 @@ impl AddAssign for LayerCounts {
     }
 }
 
-/// Paths of more vertices are counted together: without a limit of depth there may be half a
-/// million strategies.
+/// The most vertices of paths with counts of their own; longer ones are counted together. Without a limit of depth
+/// there may be half a million strategies.
 const MAX_ROW: usize = 32;
 
 /// The counts of each strategy. The sum of tables does not depend on their order.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct StrategyTable<T = StrategyCounts> {
-    /// Rows of n = 1, 2, … vertices, by s; as far as was counted.
+    /// The counts by rows of n = 1, 2, … vertices, then by s, as far as there are any.
     rows: Vec<T>,
-    /// All strategies of more than [`MAX_ROW`] vertices.
+    /// The counts of all strategies of more than [`MAX_ROW`] vertices.
     longer: T,
 }
 
 impl<T: Copy + Default + PartialEq> StrategyTable<T> {
-    /// Returns the counts of a strategy, to be raised.
+    /// Returns the counts of a strategy for an increment.
     #[inline]
     pub(super) fn of(&mut self, strategy: Strategy) -> &mut T {
         let (s, t) = (usize::from(strategy.s), usize::from(strategy.t));
@@ -87,7 +87,7 @@ impl<T: Copy + Default + PartialEq> StrategyTable<T> {
         &mut self.rows[i]
     }
 
-    /// Returns the counts of a strategy; together with others where paths are too long for counts of their own.
+    /// Returns the counts of a strategy; for a path too long for counts of its own, those of all such paths.
     pub fn get(&self, strategy: Strategy) -> T {
         let (s, t) = (usize::from(strategy.s), usize::from(strategy.t));
         let n = s + t;
@@ -98,7 +98,7 @@ impl<T: Copy + Default + PartialEq> StrategyTable<T> {
         self.rows.get(i).copied().unwrap_or_default()
     }
 
-    /// Returns every strategy of which something was counted, shorter paths first.
+    /// Returns every strategy with its counts if there are any, shorter paths first.
     pub fn rows(&self) -> impl Iterator<Item = (Strategy, T)> {
         let strategies = (1..).flat_map(|n| (0..n).map(move |s| Strategy::new(s, n - s)));
         strategies

@@ -3,7 +3,7 @@
 use super::mean;
 use glam::Vec4;
 
-/// The least √μ that a curve is fitted for; it is constant below.
+/// The least √μ of the fit; below it a curve is constant.
 const LEAST: f32 = 0.1;
 
 /// A function of the cosine μ: a polynomial in √μ, as a series of Chebyshev's polynomials
@@ -27,7 +27,7 @@ impl<const N: usize> Curve<N> {
         Self { unit: 1.0, steps }
     };
 
-    /// Returns the cosines that a curve goes through: at the zeros of T_N.
+    /// Returns the cosines of the interpolation points: the zeros of T_N.
     pub(super) fn cosines() -> [f32; N] {
         std::array::from_fn(|i| {
             let x = LEAST + (1.0 - LEAST) * (libm::cosf(angle::<N>(i)) + 1.0) / 2.0;
@@ -35,7 +35,7 @@ impl<const N: usize> Curve<N> {
         })
     }
 
-    /// Returns the curve with `values` at [`cosines`](Self::cosines).
+    /// Makes the curve with `values` at [`cosines`](Self::cosines).
     pub(super) fn through(values: [f32; N]) -> Self {
         Self::of_series(std::array::from_fn(|k| {
             let term = |(i, value)| value * libm::cosf(k as f32 * angle::<N>(i));
@@ -91,7 +91,7 @@ impl<const N: usize> Curve<N> {
         mean(64, |cos| self.at(cos))
     }
 
-    /// Multiplies the values by `scale`.
+    /// Returns the curve with its values multiplied by `scale`.
     #[must_use]
     pub(super) fn scaled(self, scale: f32) -> Self {
         Self {
@@ -100,7 +100,7 @@ impl<const N: usize> Curve<N> {
         }
     }
 
-    /// Returns the sum of this and of another times `factor`, value by value.
+    /// Returns the sum of this curve and `factor` times another.
     #[must_use]
     pub(super) fn plus(self, other: Self, factor: f32) -> Self {
         let (a, b) = (self.series(), other.series());

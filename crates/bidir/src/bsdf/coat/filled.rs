@@ -1,33 +1,34 @@
-//! A layer with the medium in it: the light that it throws back and lets through to a black base, and diffuse light from below.
+//! A layer filled with a medium: the light that it scatters back and lets through to a black base, and its reflection
+//! of diffuse light from below.
 //!
-//! - B(μ) is the part of light from outside that reaches the base;
-//! - E(μ) the part that scatters within the layer and leaves without having reached the base;
-//! - R the part of diffuse light from the base that comes back to it.
+//! - B(μ) is the fraction of light from outside that reaches the base;
+//! - E(μ) is the fraction that scatters within the layer and leaves without reaching the base;
+//! - R is the fraction of diffuse light from the base that returns to it.
 //!
-//! A Lambertian base sees nothing but B and R, so these give its reflection exactly
-//! (docs/derivations/layered-materials.md). Without scattering they are integrals over facets: of
-//! T exp(-τ/μ') from outside, and of 2μ exp(-τ/μ) F exp(-τ/μ_r) from within, μ_r the cosine after
-//! reflection. With it they are walks, by numbers that do not depend on the scene, which keep the
-//! number k of scattering events apart: each is a polynomial Σ_k ϖ^k S_k in the albedo ϖ.
+//! The reflection of a Lambertian base depends only on B and R, so these give it exactly
+//! (docs/derivations/layered-materials.md). Without scattering they are integrals over facets: of T exp(-τ/μ') from
+//! outside, and of 2μ exp(-τ/μ) F exp(-τ/μ_r) from within, with μ_r the cosine after reflection. With scattering they
+//! come from random walks, whose random numbers do not depend on the scene. The walks separate the numbers k of
+//! scattering events: each quantity is a polynomial Σ_k ϖ^k S_k in the albedo ϖ.
 
 use super::layer::{FACETS, Interface};
 use super::{Curve, Layer, mean};
 use crate::math::{Frame, PI, Vec2, Vec3, safe_sqrt, sin_cos, sqr, warp};
 use crate::sampler::{Dimension, Domain, Purpose, SampleStream, Sampler, SamplerKind};
 
-/// Walks for each value of a curve, and from the base.
+/// The number of walks for each value of a curve, and from the base.
 const WALKS: u64 = 1 << 13;
-/// The most events of a walk; few reach it.
+/// The most scattering events of a walk; few reach it.
 const MOST: usize = 256;
-/// Numbers of scattering events that are counted apart; the last stands for all larger ones.
+/// The number of scattering counts that are kept apart; the last stands for all larger ones.
 const ORDERS: usize = 32;
-/// Points of an integral over the cosine from within, and over facets.
+/// The number of points of the integral over the cosine from within, and over facets.
 const POINTS: u32 = 1 << 17;
-/// The largest optical depth: beyond it nothing gets through.
+/// The largest optical depth: beyond it no light gets through.
 const DEEPEST: f32 = 10.0;
-/// Knots of ℓ.
+/// The number of coefficients of ℓ.
 pub(in crate::bsdf) const LENGTHS: usize = 8;
-/// Knots of e.
+/// The number of coefficients of e.
 pub(in crate::bsdf) const SHAPES: usize = 6;
 
 /// The tabulated quantities of a filled layer.
@@ -54,7 +55,7 @@ impl Filled {
         shape: Curve::NONE,
     };
 
-    /// Returns the mean of tables that count alike.
+    /// Returns the mean of tables with equal weights.
     pub fn mean(mut parts: impl ExactSizeIterator<Item = Self> + Clone) -> Self {
         let weight = 1.0 / parts.len() as f32;
         let all = parts.clone();
@@ -64,7 +65,7 @@ impl Filled {
         }
     }
 
-    /// Returns the mean of tables by their weights, which sum to 1.
+    /// Returns the mean of tables with weights that sum to 1.
     pub fn mixed(mut parts: impl Iterator<Item = (f32, Self)>) -> Self {
         let Some((first_weight, first)) = parts.next() else {
             return Self::NONE;
@@ -103,9 +104,9 @@ pub struct Slab {
     g: f32,
 }
 
-/// The parts of light that arrives from outside.
+/// The fractions of light that arrives from outside.
 struct Arriving {
-    /// T: the part that enters.
+    /// T: the fraction that enters.
     entering: f32,
     /// B.
     base: Orders,
@@ -113,7 +114,7 @@ struct Arriving {
     thrown: Orders,
 }
 
-/// Light within, on its way along `w`.
+/// Light within the layer, travelling along `w`.
 #[derive(Clone, Copy)]
 struct Light {
     w: Vec3,
@@ -130,7 +131,7 @@ enum End {
 }
 
 impl Slab {
-    /// Makes a layer under `layer`'s interface.
+    /// Makes a layer under the interface of `layer`.
     pub fn new(layer: &Layer, depth: f32, g: f32) -> Self {
         Self {
             interface: layer.interface,
@@ -139,7 +140,7 @@ impl Slab {
         }
     }
 
-    /// Returns the tables for each of `albedos`: nothing is walked where none scatters.
+    /// Returns the tables for each of `albedos`. No walks are needed if nothing scatters.
     pub fn tables(&self, layer: &Layer, albedos: &[f32]) -> Vec<Filled> {
         let scatters = self.depth > 0.0 && albedos.iter().any(|&albedo| albedo > 0.0);
         let arriving = |cos| self.arriving(cos, scatters);
@@ -243,7 +244,8 @@ impl Slab {
         sums
     }
 
-    /// Follows light to the base, where it ends. `count` gets what arrives there, and what leaves.
+    /// Follows light until it reaches the base. Calls `count` for the light that reaches it, and for light that
+    /// leaves.
     fn walk(
         &self,
         mut light: Light,
@@ -285,7 +287,7 @@ impl Slab {
     }
 }
 
-/// Returns D and ℓ of a curve through what arrives.
+/// Returns D and ℓ, of a curve through `arriving`.
 fn length(arriving: &[Arriving; LENGTHS], albedo: f32) -> (f32, Curve<LENGTHS>) {
     let depth = |arriving: &Arriving| {
         let left = at_albedo(&arriving.base, albedo) / arriving.entering.max(1e-6);
@@ -300,7 +302,7 @@ fn length(arriving: &[Arriving; LENGTHS], albedo: f32) -> (f32, Curve<LENGTHS>) 
     }
 }
 
-/// Returns Ē and e of a curve through what arrives.
+/// Returns Ē and e, of a curve through `arriving`.
 fn shape(layer: &Layer, arriving: &[Arriving; SHAPES], albedo: f32) -> (f32, Curve<SHAPES>) {
     let ratio =
         |arriving: &Arriving| at_albedo(&arriving.thrown, albedo) / arriving.entering.max(1e-6);
@@ -324,13 +326,13 @@ fn even_point(index: u32) -> [f32; 3] {
     STEPS.map(|step| ((f64::from(index) + 0.5) * step).fract() as f32)
 }
 
-/// Returns the numbers of `n` walks.
+/// Returns the random numbers of `n` walks.
 fn streams(n: u64) -> impl Iterator<Item = SampleStream> {
     let sampler = Sampler::new(SamplerKind::Sobol, 0);
     (0..n).map(move |index| sampler.stream(Domain::Light, 0, index))
 }
 
-/// Returns the direction after scattering of light along `w`, of mean cosine `g`.
+/// Draws the direction of light along `w` after scattering with the mean cosine `g`.
 fn henyey_greenstein(w: Vec3, g: f32, u: Vec2) -> Vec3 {
     let g = g.clamp(-0.999, 0.999);
     let cos = if g.abs() < 1e-3 {

@@ -1,9 +1,8 @@
 //! Transmittance and reflectance of an interface, integrated over its facets once for each material.
 //!
-//! With D_w(m) the density of facets that w sees, F Fresnel's reflectance and G₂/G₁ the part of light
-//! that facets do not shadow on its way out [Walter07, eq. 20 and 21], the part of light from outside
-//! that gets through is T(μ) = ∫ D_w(m) (1 - F) G₂/G₁ dm, where the refracted direction is below.
-//! Smooth: T = 1 - F.
+//! With D_w(m) the density of facets visible from w, F Fresnel's reflectance, and G₂/G₁ the fraction of light that
+//! facets do not shadow on its way out [Walter07, eq. 20 and 21], the transmittance from outside is T(μ) = ∫ D_w(m)
+//! (1 - F) G₂/G₁ dm, over facets whose refracted direction is below. A smooth interface has T = 1 - F.
 
 use super::{Curve, mean, spread_cosine};
 use crate::bsdf::dielectric::refract;
@@ -11,9 +10,9 @@ use crate::bsdf::fresnel;
 use crate::bsdf::microfacet::Ggx;
 use crate::math::{Vec2, Vec3, safe_sqrt, sqr};
 
-/// Points of an integral over facets, in each dimension.
+/// The number of points of an integral over facets, in each dimension.
 pub(super) const FACETS: usize = 72;
-/// Knots of q.
+/// The number of coefficients of q.
 pub(in crate::bsdf) const KNOTS: usize = 10;
 
 /// Facets between the outside and a layer.
@@ -24,17 +23,17 @@ pub(super) struct Interface {
     pub(super) ggx: Ggx,
 }
 
-/// A direction in which light leaves an interface, and the part that does.
+/// A direction in which light leaves an interface, and the fraction that does.
 pub(super) type Ray = (Vec3, f32);
 
-/// The parts of light that a facet reflects and refracts. None: they go to the wrong side.
+/// The light that a facet reflects and refracts. None: it goes to the wrong side.
 pub(super) struct Split {
     pub(super) reflected: Option<Ray>,
     pub(super) refracted: Option<Ray>,
 }
 
 impl Interface {
-    /// Splits light from `w`, on either side, at a facet drawn by `u` of those that `w` sees.
+    /// Splits light from `w`, on either side, at a facet that `u` draws among those visible from `w`.
     #[inline]
     pub(super) fn split(&self, w: Vec3, u: Vec2) -> Split {
         let m = if self.ggx.is_smooth() {
@@ -60,8 +59,8 @@ impl Interface {
         }
     }
 
-    /// Returns the mean of `value` over what `n`² facets do with light of cosine `cos`, from within where it is
-    /// negative.
+    /// Returns the mean of `value` over the splits at `n`² facets, for light of cosine `cos`. It comes from within if
+    /// `cos` is negative.
     pub(super) fn mean(&self, cos: f32, n: usize, value: impl Fn(Split) -> f32) -> f32 {
         let w = Vec3::new(safe_sqrt(1.0 - sqr(cos)), 0.0, cos);
         let n = if self.ggx.is_smooth() { 1 } else { n };
@@ -93,7 +92,7 @@ pub struct Layer {
 }
 
 impl Layer {
-    /// Integrates for an index `eta` and facets of slope `alpha`, the same in all directions.
+    /// Integrates for an index `eta` and isotropic facets of slope `alpha`.
     pub fn new(eta: f32, alpha: f32) -> Self {
         let ggx = Ggx::new(alpha, alpha);
         let interface = Interface { eta, ggx };
@@ -134,7 +133,7 @@ impl Layer {
         self.interface.eta
     }
 
-    /// Interpolates between two layers of one index.
+    /// Interpolates between two layers with the same index.
     #[must_use]
     pub fn lerp(&self, other: &Self, t: f32) -> Self {
         let mix = |a: f32, b: f32| a + (b - a) * t;
@@ -147,7 +146,8 @@ impl Layer {
     }
 }
 
-/// Returns the cosine at which a smooth interface transmits as much: by bisection, since F falls with it.
+/// Returns the cosine at which a smooth interface has this transmittance: by bisection, because F falls with the
+/// cosine.
 fn grazing_cosine(eta: f32, transmittance: f32) -> f32 {
     let (mut low, mut high) = (0.0f32, 1.0);
     for _ in 0..24 {

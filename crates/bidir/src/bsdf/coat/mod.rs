@@ -1,18 +1,18 @@
 //! A dielectric layer over an opaque base: the common part of both coated materials.
 //!
-//! Light that the interface lets through reaches the base along refracted directions, and leaves by
-//! the interface again, so that a base that scatters f_b inside scatters, seen from outside,
+//! Light that the interface lets through reaches the base along refracted directions, and leaves through the
+//! interface again. A base with the BSDF f_b inside the layer has, seen from outside,
 //!
 //! f = T(wo) T(wi) A(wo) A(wi) f_b / η²,
 //!
-//! T the interface's directional transmittance, A = exp(-D ℓ) what the layer leaves of light that
-//! crosses it, and 1/η² the compression of radiance (docs/derivations/layered-materials.md). Each factor
-//! belongs to one direction, so f is symmetric.
+//! with T the directional transmittance of the interface, A = exp(-D ℓ) the fraction of light that the layer does not
+//! absorb in one crossing, and 1/η² the compression of radiance (docs/derivations/layered-materials.md). Each factor
+//! depends on one direction, so f is symmetric.
 //!
-//! T of a rough interface has no closed form. It is (1 - F(μ̂)) q(√μ), where μ̂² = μ² + (1-μ²) g² keeps
-//! Fresnel's equations off the rim as facets do. q and ℓ are polynomials (`Curve`) through values that
-//! were integrated when the material was built: over a diffuse base by [`Layer`] and [`Slab`], over metal
-//! by [`Reflections`]. For a smooth interface g = 0 and q = 1.
+//! T of a rough interface has no closed form. It is (1 - F(μ̂)) q(√μ), where μ̂² = μ² + (1-μ²) g² keeps Fresnel's
+//! equations away from grazing angles, as facets do. q and ℓ are polynomials (`Curve`) through values that were
+//! integrated when the material was built: over a diffuse base by [`Layer`] and [`Slab`], over metal by
+//! [`Reflections`]. For a smooth interface g = 0 and q = 1.
 
 mod curve;
 mod filled;
@@ -32,7 +32,7 @@ use super::microfacet::{Ggx, SMOOTH_ALPHA};
 use crate::math::{Vec2, Vec3, sqr};
 use crate::spectrum::Spectrum;
 
-/// The interface of a layer, and how much the layer leaves of light. Both sides of the surface have it.
+/// The interface of a layer, and the attenuation by the layer. Both sides of the surface have it.
 ///
 /// `R` and `L` are the numbers of coefficients of q and ℓ.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,7 +42,7 @@ pub(super) struct Coat<const R: usize, const L: usize> {
     /// Index of refraction of the layer, divided by that outside.
     eta: f32,
     pub(super) ggx: Ggx,
-    /// g: the cosine that a grazing direction meets facets at.
+    /// g: the cosine at which light of grazing directions meets facets.
     grazing: f32,
     /// q: the factor by which facets shadow the transmitted light.
     ratio: Curve<R>,
@@ -53,15 +53,14 @@ pub(super) struct Coat<const R: usize, const L: usize> {
 /// Reflectance and transmittance of an interface for light along one direction.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Seen {
-    /// About the part of light that the interface reflects; exact where it is smooth.
+    /// The approximate fraction of light that the interface reflects; exact for a smooth interface.
     pub(super) reflected: f32,
-    /// T: the part that the interface lets through to the base.
+    /// T: the fraction that the interface lets through to the base.
     pub(super) through: f32,
 }
 
 impl<const R: usize, const L: usize> Coat<R, L> {
-    /// Makes a coat with facets of `ggx` under the interface of `layer`, which `ratio` gives the
-    /// transmittance.
+    /// Makes a coat with facets of `ggx` and the index of `layer`; `ratio` is q.
     pub(super) fn new(
         layer: &Layer,
         ggx: Ggx,
@@ -90,13 +89,13 @@ impl<const R: usize, const L: usize> Coat<R, L> {
         self.ggx.is_smooth()
     }
 
-    /// Returns the approximate reflectance of the interface for light along `w`; exact where it is smooth.
+    /// Returns the approximate reflectance of the interface for light along `w`; exact if it is smooth.
     #[inline]
     pub(super) fn reflectance(&self, w: Vec3) -> f32 {
         fresnel::dielectric(spread_cosine(w.z, self.grazing).max(1e-7), self.eta)
     }
 
-    /// Returns T(w): the part of light along `w` that the interface lets through to the base.
+    /// Returns T(w), the fraction of light along `w` that the interface lets through to the base.
     #[inline]
     pub(super) fn transmittance(&self, w: Vec3) -> f32 {
         self.interface(w).through
@@ -123,7 +122,7 @@ impl<const R: usize, const L: usize> Coat<R, L> {
         })
     }
 
-    /// Returns the direction within the layer, on the same side, as a smooth interface bends it. None: total
+    /// Returns the direction within the layer, on the same side, after refraction by a smooth interface. None: total
     /// reflection.
     #[inline]
     pub(super) fn refracted(&self, w: Vec3) -> Option<Vec3> {
@@ -132,7 +131,7 @@ impl<const R: usize, const L: usize> Coat<R, L> {
         (cos2 > 0.0).then(|| Vec3::new(x, y, cos2.sqrt().copysign(w.z)))
     }
 
-    /// Returns the direction outside of one within the layer. None: total reflection.
+    /// Returns the direction outside, given the one within the layer. None: total reflection.
     #[inline]
     pub(super) fn emerging(&self, w: Vec3) -> Option<Vec3> {
         let (x, y) = (w.x * self.eta, w.y * self.eta);
@@ -140,7 +139,7 @@ impl<const R: usize, const L: usize> Coat<R, L> {
         (cos2 > 0.0).then(|| Vec3::new(x, y, cos2.sqrt().copysign(w.z)))
     }
 
-    /// Returns A(wo) A(wi): the part of light that the layer leaves after crossing along both.
+    /// Returns A(wo) A(wi), the fraction of light that the layer does not absorb in crossings along both directions.
     #[inline]
     pub(super) fn attenuation(&self, wo: Vec3, wi: Vec3) -> Spectrum {
         if self.depth.is_black() {
@@ -172,7 +171,7 @@ impl<const R: usize, const L: usize> Coat<R, L> {
         (mirror.facets * reflected, mirror.densities)
     }
 
-    /// Draws a direction of the rough interface's reflection. None: below the surface.
+    /// Draws a reflected direction of the rough interface. None: it is below the surface.
     #[inline]
     pub(super) fn sample(&self, wo: Vec3, u: Vec2) -> Option<Vec3> {
         self.ggx.sample_mirror(wo, u)
@@ -185,10 +184,10 @@ fn mean(points: usize, value: impl Fn(f32) -> f32) -> f32 {
     ((0..points).map(at).sum::<f64>() / points as f64) as f32
 }
 
-/// Returns the facets of a metal as they look through those of an interface `coat` of index `eta`.
+/// Returns the facets of a metal as they appear through the facets `coat` of an interface of index `eta`.
 ///
-/// A facet of the interface that is tilted by t bends what it refracts by t (1 - 1/η), twice on the
-/// way; one of the metal, what it reflects by 2t.
+/// A facet of the interface that is tilted by t turns refracted light by t (1 - 1/η), twice on its way; a facet of
+/// the metal turns reflected light by 2t.
 pub(super) fn seen_through(metal: Ggx, coat: Ggx, eta: f32) -> Ggx {
     if coat.is_smooth() {
         return metal;
@@ -208,7 +207,7 @@ fn spread_cosine(cos: f32, grazing: f32) -> f32 {
     (sqr(cos) + (1.0 - sqr(cos)).max(0.0) * sqr(grazing)).sqrt()
 }
 
-/// Returns Σ x^k over all k: light that is thrown back k times. Finite even where a layer keeps all of it.
+/// Returns Σ x^k over all k, for light that is reflected back k times. It is finite even if a layer keeps all light.
 #[inline]
 pub(super) fn all_orders(x: f32) -> f32 {
     1.0 / (1.0 - x.min(0.9999))

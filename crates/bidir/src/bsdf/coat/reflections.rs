@@ -1,13 +1,13 @@
-//! Light that leaves a layer over white metal, after one reflection at the metal and after more.
+//! The light that leaves a layer over white metal, after one reflection at the metal and after more.
 //!
-//! E₁(μ) is the part of light that leaves after exactly one reflection, E(μ) after two or more, and
-//! m_k the share of that which leaves after exactly k, from all directions. They are integrated by
-//! walks between the two surfaces, with facets on both, by numbers that do not depend on the scene.
+//! E₁(μ) is the fraction of light that leaves after exactly one reflection, E(μ) the fraction after two or more, and
+//! m_k the share of E, from all directions, that leaves after exactly k. They come from random walks between the two
+//! surfaces, with facets on both, by random numbers that do not depend on the scene.
 //!
-//! The closed form of one reflection has a factor T = (1 - F(μ̂)) q(√μ) for each direction. Here q is
-//! such that it scatters E₁: a fixed point, which is near after some rounds because the reflected
-//! direction has about the cosine of the other. Walks also measure how far light goes within the layer, and
-//! how steeply it meets the facets of the metal.
+//! The closed form of one reflection has a factor T = (1 - F(μ̂)) q(√μ) for each direction. Here q is chosen so that
+//! this form reflects E₁: a fixed point, which some rounds approach because the reflected direction has about the
+//! same cosine. The walks also measure the length of paths within the layer, and the cosines at the facets of the
+//! metal.
 
 use super::layer::Interface;
 use super::{Coat, Curve, Layer, mean, seen_through};
@@ -17,21 +17,21 @@ use crate::math::{Vec2, Vec3, safe_sqrt, sqr};
 use crate::sampler::{Dimension, Domain, Purpose, SampleStream, Sampler, SamplerKind};
 use crate::spectrum::Spectrum;
 
-/// Walks for each value of a curve.
+/// The number of walks for each value of a curve.
 const WALKS: u64 = 1 << 12;
-/// The part of light that walks are not worth.
+/// The fraction of light below which a walk ends.
 const FAINT: f32 = 3e-4;
 /// The most reflections of a walk; few reach it.
 const MOST: usize = 100;
-/// Orders of reflection that are counted apart; the last holds all higher ones.
+/// The number of orders of reflection that are kept apart; the last stands for all higher ones.
 const ORDERS: usize = 32;
-/// Points of an integral over facets, in each dimension.
+/// The number of points of an integral over facets, in each dimension.
 const FACETS: usize = 32;
-/// Rounds towards the fixed point.
+/// The number of rounds towards the fixed point.
 const ROUNDS: usize = 6;
-/// Coefficients of q and e over metal.
+/// The number of coefficients of q and e over metal.
 pub(in crate::bsdf) const KNOTS: usize = 8;
-/// Coefficients of ℓ over metal.
+/// The number of coefficients of ℓ over metal.
 pub(in crate::bsdf) const LENGTHS: usize = 4;
 
 /// The coat of a metal.
@@ -42,19 +42,19 @@ pub(in crate::bsdf) type MetalCoat = Coat<KNOTS, LENGTHS>;
 pub struct Reflections {
     /// q.
     pub(in crate::bsdf) ratio: Curve<KNOTS>,
-    /// ℓ: half of the way of light that is reflected once, in thicknesses.
+    /// ℓ: half of the path length of light that is reflected once. Unit: thicknesses of the layer.
     pub(in crate::bsdf) length: Curve<LENGTHS>,
     /// e, which E = Ē (1 - F(μ̂)) e defines.
     pub(in crate::bsdf) shape: Curve<KNOTS>,
     /// Ē = ∫ 2μ E dμ.
     pub(in crate::bsdf) mean: f32,
-    /// The way between two reflections, in thicknesses.
+    /// The path length between two reflections. Unit: thicknesses of the layer.
     pub(in crate::bsdf) path: f32,
-    /// Mean and deviation of cosθ at the facets of more than one reflection.
+    /// The mean and the standard deviation of cosθ at the facets of more than one reflection.
     pub(in crate::bsdf) cosine: [f32; 2],
-    /// s: at the facet of one reflection (1 - cosθ)⁵ is larger by s (1-μ)⁵ than in closed form.
+    /// s: at the facet of a single reflection, (1 - cosθ)⁵ is larger by s (1-μ)⁵ than in the closed form.
     pub(in crate::bsdf) steepness: f32,
-    /// m_k, from k = 2.
+    /// m_k, for k from 2 on.
     shares: [f32; ORDERS - 1],
 }
 
@@ -71,20 +71,21 @@ struct Surfaces {
 struct Light {
     w: Vec3,
     part: f32,
-    /// The way so far, in thicknesses.
+    /// The path length so far. Unit: thicknesses of the layer.
     way: f32,
     /// Σ cosθ, Σ cos²θ and Σ (1 - cosθ)⁵ over the facets of the metal.
     cosines: [f32; 3],
 }
 
-/// The parts of the light from one direction that leave.
+/// The fractions of the light from one direction that leave.
 #[derive(Clone, Copy)]
 struct Leaving {
-    /// Sums by the number of reflections, from 1.
+    /// The fractions by the number of reflections, from 1.
     parts: [f32; ORDERS],
-    /// Of `parts[0]`: the part that absorption leaves, and with the weight (1 - cosθ)⁵.
+    /// Of `parts[0]`: the fraction that is not absorbed, and the sum with the weight (1 - cosθ)⁵.
     once: [f32; 2],
-    /// After more: Σ w way, Σ w (reflections - 1), Σ w cosθ, Σ w cos²θ, Σ w reflections.
+    /// After more than one reflection, with weights w: Σ w length, Σ w (reflections - 1), Σ w cosθ, Σ w cos²θ, Σ w
+    /// reflections.
     more: [f32; 5],
 }
 
@@ -106,7 +107,7 @@ impl Leaving {
         let count = reflections as f32;
         self.more[0] += part * way;
         self.more[1] += part * (count - 1.0);
-        // Coloured metals reflect little more often than twice.
+        // The weights decrease with the count: coloured metals reflect little light more than twice.
         let early = part * libm::exp2f(-count);
         self.more[2] += early * cosines[0];
         self.more[3] += early * cosines[1];
@@ -152,7 +153,7 @@ impl Reflections {
         }
     }
 
-    /// Interpolates between two tables of one index.
+    /// Interpolates between two tables with the same index.
     #[must_use]
     pub fn lerp(&self, other: &Self, t: f32) -> Self {
         let mix = |a: f32, b: f32| a + (b - a) * t;
@@ -168,8 +169,8 @@ impl Reflections {
         }
     }
 
-    /// Returns Σ m_k F^k a^(k-1) over k ≥ 2: the part of E for a metal of reflectance `fresnel`, under a layer
-    /// that leaves the part `trip` between two reflections.
+    /// Returns Σ m_k F^k a^(k-1) over k ≥ 2: the fraction of E for a metal of reflectance `fresnel`, with a = `trip`
+    /// the fraction that the layer does not absorb between two reflections.
     #[inline]
     pub(in crate::bsdf) fn remaining(&self, fresnel: f32, trip: f32) -> f32 {
         let x = fresnel * trip;
@@ -184,12 +185,13 @@ fn along(cos: f32) -> Vec3 {
 }
 
 impl Surfaces {
-    /// Returns the way of one reflection, in thicknesses and halved, at the cosines of q.
+    /// Returns half of the path length of one reflection at the cosines of q. Unit: thicknesses of the layer.
     fn crossings(&self, leaving: &[Leaving; KNOTS]) -> [f32; KNOTS] {
         leaving.map(|of| crossing(of.once[0] / of.parts[0].max(1e-6), self.depth))
     }
 
-    /// Returns the coat whose q scatters E₁ in the closed form of one reflection, and whose ℓ absorbs as much.
+    /// Returns the coat whose q reflects E₁ in the closed form of one reflection, and whose ℓ absorbs as much as the
+    /// walks.
     fn fitted_coat(&self, layer: &Layer, leaving: &[Leaving; KNOTS]) -> MetalCoat {
         let ggx = self.coat.ggx;
         let cosines = Curve::<KNOTS>::cosines();
@@ -238,7 +240,7 @@ impl Surfaces {
         (products / squares).clamp(0.0, 1.0)
     }
 
-    /// Returns the part of light with cosine `cos` that leaves.
+    /// Returns the fractions of light with cosine `cos` that leave.
     fn leaving(&self, cos: f32) -> Leaving {
         let wo = along(cos);
         let sampler = Sampler::new(SamplerKind::Sobol, 0);
@@ -261,7 +263,7 @@ impl Surfaces {
         }
     }
 
-    /// Walks from outside; `leaves` gets the light that leaves after each reflection at the metal.
+    /// Walks from outside, and calls `leaves` for the light that leaves after each reflection at the metal.
     fn walk(&self, wo: Vec3, stream: &SampleStream, mut leaves: impl FnMut(usize, Light)) {
         let at = |step| stream.get_2d(Dimension::at(step, Purpose::LightDirection));
         let Some((w, part)) = self.coat.split(wo, at(0)).refracted else {
@@ -297,7 +299,7 @@ impl Surfaces {
         }
     }
 
-    /// Light that comes down, after its reflection at the metal and back at the interface. None: a
+    /// Returns light that comes down, after its reflection at the metal and its way back to the interface. None: a
     /// facet sends it below the surface.
     fn reflected(&self, light: &Light, u: Vec2) -> Option<Light> {
         let v = -light.w;
@@ -318,7 +320,8 @@ impl Surfaces {
     }
 }
 
-/// Returns the way that leaves the part `left` at the optical depth `depth`, in thicknesses and halved.
+/// Returns half of the path length after which the fraction `left` remains at the optical depth `depth`. Unit:
+/// thicknesses of the layer.
 fn crossing(left: f32, depth: f32) -> f32 {
     -libm::logf(left.clamp(1e-9, 1.0)) / (2.0 * depth)
 }
@@ -327,9 +330,9 @@ fn crossing(left: f32, depth: f32) -> f32 {
 #[derive(Default)]
 struct Once {
     part: f32,
-    /// With the weight (1 - cosθ)⁵ at the metal's facets.
+    /// The sum with the weight (1 - cosθ)⁵ at the metal's facets.
     steep: f32,
-    /// Of `part`: the part that absorption leaves.
+    /// Of `part`: the fraction that is not absorbed.
     left: f32,
 }
 
@@ -339,8 +342,8 @@ impl Once {
     }
 }
 
-/// Returns the part of light with cosine `cos` that white metal reflects once under `coat`, as `CoatedConductor` has
-/// it, but for the number of points.
+/// Returns the light with cosine `cos` that white metal reflects once under `coat`, as in `CoatedConductor` except
+/// for the number of points.
 fn once_in_closed_form(coat: &MetalCoat, metal: Ggx, cos: f32) -> Once {
     let wo = along(cos);
     let mut once = Once::default();

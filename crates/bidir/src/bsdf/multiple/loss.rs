@@ -1,24 +1,24 @@
-//! k: what one turn among facets loses of the light along a direction, by fits.
+//! k, the fraction of light along a direction that one scattering event at a facet loses, by fits.
 //!
-//! Light from w that facets of slope α do not shadow arrives in part t = 1 / (1 + 2Λ(w)), which has the cosine and the
-//! slope along it in one; k is a smooth function of t, this slope, and the one across, or the index of an interface.
-//! The slope across a direction askew to the axes is that of facets on both sides of it: a mean of the slope across and of
-//! that among the facets that do not tilt along it.
+//! The fraction of light from w that facets of slope α do not shadow is t = 1 / (1 + 2Λ(w)), which combines the
+//! cosine and the slope along w. k is a smooth function of t, this slope, and the slope across w, or the index of an
+//! interface. If a direction is oblique to the axes, facets on both sides of it contribute to the slope across it: it
+//! is a mean of the slope across and of the slope of those facets that do not tilt along it.
 //!
-//! Each fit is lowered by its largest error, so that no surface gains.
+//! Each fit is lowered by its largest error, so that no surface gains energy.
 
 use super::tables::{MIRRORS, OUTSIDE, Polynomial, WITHIN};
 use crate::bsdf::microfacet::Ggx;
 use crate::math::{Vec3, sqr};
 use glam::Vec4;
 
-/// Largest errors of the fits.
+/// The largest errors of the fits.
 const SLACK_OF_MIRRORS: f32 = 0.0035;
 const SLACK_OUTSIDE: f32 = 0.008;
 const SLACK_WITHIN: f32 = 0.015;
-/// The share of facets that do not tilt along a direction in the slope across it.
+/// The weight, in the slope across a direction, of facets that do not tilt along it.
 const UPRIGHT: f32 = 0.35;
-/// Indices of the fits; k fades out beyond them.
+/// The range of indices of the fits; k fades out beyond it.
 const INDICES: [f32; 2] = [1.2, 3.0];
 
 /// Returns k of facets that reflect all light.
@@ -49,7 +49,7 @@ pub(in crate::bsdf) fn of_interface(ggx: Ggx, across: f32, w: Vec3) -> f32 {
     lost.max(0.0) * within.min(1.0)
 }
 
-/// Slopes along the azimuth of `w` and across it, at most 1.
+/// Returns the slopes α of `ggx` along the azimuth of `w` and across it, each at most 1.
 #[inline]
 fn slopes(ggx: Ggx, w: Vec3) -> [f32; 2] {
     let [x2, y2] = ggx.alphas().map(|alpha| sqr(alpha.min(1.0)));
@@ -57,7 +57,7 @@ fn slopes(ggx: Ggx, w: Vec3) -> [f32; 2] {
         return [x2.sqrt(); 2];
     }
     let [cos2, sin2] = [sqr(w.x), sqr(w.y)];
-    // Along the normal there is no azimuth.
+    // The normal has no azimuth.
     let [cos2, sin2] = [cos2, sin2].map(|part| (part + 1e-6) / (cos2 + sin2 + 2e-6));
     let along = x2 * cos2 + y2 * sin2;
     let upright = x2 * y2 / along;
@@ -65,7 +65,7 @@ fn slopes(ggx: Ggx, w: Vec3) -> [f32; 2] {
     [along.sqrt(), across.sqrt()]
 }
 
-/// Returns the polynomial, of variables between 0 and 1.
+/// Returns the value of the polynomial; variables are between 0 and 1.
 #[inline]
 fn value(table: &Polynomial, variables: [f32; 3]) -> f32 {
     let [t, a, y] = variables.map(|x| 2.0 * x - 1.0);

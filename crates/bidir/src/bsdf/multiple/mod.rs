@@ -1,15 +1,15 @@
 //! Light that facets scatter more than once: f = k(o) k(i) / (π k̄) · part, 1/sr, \[Kulla17\].
 //!
-//! Facets send light on to other facets. Walter's f, which has one of them, loses the part k(w) of the light from w.
-//! Where facets scatter in any number of turns, that light leaves as if it had forgotten where it came from: in
-//! proportion to k itself, with k̄ = ∫ 2μ k dμ. So f is symmetric, and a surface that absorbs nothing scatters
-//! (1 - k) + k = 1. What absorbs takes `part` of each turn.
+//! Facets send light on to other facets. Walter's f, for a single facet, loses the fraction k(w) of the light from w.
+//! If any number of facets scatter, this light leaves as if it had lost its direction: in proportion to k itself,
+//! with k̄ = ∫ 2μ k dμ. So f is symmetric, and a surface that absorbs nothing scatters (1 - k) + k = 1. `part` is the
+//! fraction that absorption leaves.
 //!
-//! [`loss`] has k, a fit; k̄ is integrated when the BSDF is made, at the directions of [`Spread`], by which the lobe is
-//! drawn: it is about k μ, since k falls off where μ is above the slope.
+//! [`loss`] has fits of k. k̄ is integrated when the BSDF is made, at the directions of [`Spread`], by which the lobe
+//! is drawn: their density is about k μ, because k falls off where μ is above the slope.
 //!
-//! An interface has a k on either side. Of the light that one side loses the part x leaves on the other:
-//! x_o / k̄_i = η² x_i / k̄_o by reciprocity, which leaves one x free; x is that of Fresnel's mean reflectance.
+//! An interface has a k on either side. Of the light that one side loses, the fraction x leaves on the other side:
+//! x_o / k̄_i = η² x_i / k̄_o by reciprocity, which leaves one x free; it is chosen by Fresnel's mean reflectance.
 
 mod loss;
 mod tables;
@@ -20,7 +20,7 @@ use super::microfacet::Ggx;
 use crate::math::{INV_PI, PI, Vec2, Vec3, sin_cos, sqr};
 use crate::spectrum::Spectrum;
 
-/// The number of facets that a surface scatters light by.
+/// The number of facets that may scatter light in one scattering event.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FacetScattering {
     /// One: light that would meet another is lost.
@@ -29,12 +29,12 @@ pub enum FacetScattering {
     Multiple,
 }
 
-/// Directions of an integral over cosines.
+/// The number of cosines of an integral over directions.
 const COSINES: u16 = 8;
-/// Azimuths of it in a quarter of the circle, where slopes differ.
+/// The number of azimuths in a quarter of the circle, if slopes differ.
 const AZIMUTHS: u16 = 3;
 
-/// Directions in proportion to 1 / (μ² + c²) about the cosine's own distribution, c near the slope.
+/// A distribution of directions: the cosine distribution times 1 / (μ² + c²), with c near the slope.
 #[derive(Clone, Copy)]
 pub(super) struct Spread {
     c2: f32,
@@ -52,13 +52,13 @@ impl Spread {
         }
     }
 
-    /// Measure: solid angle, 1/sr.
+    /// Returns the density of a direction of cosine `cos`. Measure: solid angle, 1/sr.
     #[inline]
     pub(super) fn pdf(self, cos: f32) -> f32 {
         INV_PI * cos.abs() / (self.range * (sqr(cos) + self.c2))
     }
 
-    /// Returns the cosine above which the part `u` of directions is not: u = ln(1 + μ²/c²) / ln(1 + 1/c²).
+    /// Returns the cosine below which the fraction `u` of directions is: u = ln(1 + μ²/c²) / ln(1 + 1/c²).
     #[inline]
     fn cosine(self, u: f32) -> f32 {
         let squared = self.c2 * (libm::expf(u * self.range) - 1.0);
@@ -72,7 +72,7 @@ impl Spread {
         around(cos.copysign(w.z), 2.0 * PI * u.y)
     }
 
-    /// Returns ∫ 2μ k dμ, the mean over azimuths.
+    /// Returns ∫ 2μ k dμ, averaged over azimuths.
     fn mean(self, azimuths: u16, k: impl Fn(Vec3) -> f32) -> f32 {
         let at = |index: u16| {
             let cos = self.cosine((f32::from(index % COSINES) + 0.5) / f32::from(COSINES));
@@ -102,8 +102,8 @@ pub(super) fn mean_of_mirrors(ggx: Ggx) -> f32 {
     Spread::new(ggx).mean(azimuths(ggx), |w| of_mirrors(ggx, w))
 }
 
-/// Returns the part of the light lost by one facet that leaves after several with the mean reflectance `mean`:
-/// F̄² Ē / (1 - F̄ (1 - Ē)), Ē = 1 - k̄ \[Kulla17\].
+/// Returns the fraction of the light lost by one facet that leaves after several, for a mean reflectance `mean`: F̄²
+/// Ē / (1 - F̄ (1 - Ē)), with Ē = 1 - k̄ \[Kulla17\].
 #[inline]
 pub(super) fn remaining(mean: Spectrum, lost: f32) -> Spectrum {
     mean.map(|f| sqr(f) * (1.0 - lost) / (1.0 - f * lost).max(1e-6))
@@ -115,14 +115,14 @@ pub(super) fn mean_fresnel(fresnel: impl Fn(f32) -> Spectrum) -> Spectrum {
     fresnel(0.355_051_03) * 0.363_917_24 + fresnel(0.844_948_97) * 0.636_082_76
 }
 
-/// k̄ of both sides of an interface: that of the normal, and the other. Zero: light that facets lose is lost.
+/// k̄ on both sides of an interface: the side of the normal, and the other. Zero: light that facets lose is lost.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Sides([f32; 2]);
 
 impl Sides {
     pub(super) const NONE: Self = Self([0.0; 2]);
 
-    /// Returns the factors of an interface of index `eta`, inside over outside.
+    /// Integrates k̄ on both sides of an interface of index `eta`, inside over outside.
     pub(super) fn new(ggx: Ggx, eta: f32) -> Self {
         let spread = Spread::new(ggx);
         let mean = |across| spread.mean(azimuths(ggx), |w| of_interface(ggx, across, w));
@@ -140,12 +140,12 @@ impl Sides {
         self.0[usize::from(w.z < 0.0)]
     }
 
-    /// Returns x: the part of light from the side of `w` that leaves on the other. `across` is the index there over
-    /// that here.
+    /// Returns x, the fraction of light from the side of `w` that leaves on the other side. `across` is the index of
+    /// the other side over that of this side.
     #[inline]
     pub(super) fn crossing(self, w: Vec3, across: f32) -> f32 {
         let (here, there) = (self.of(w), self.of(-w));
-        // From the less dense side, where less is lost: the other x follows, and is at most 1.
+        // The formula is for the less dense side, which loses less; the other x follows, and is at most 1.
         if across >= 1.0 {
             outer_crossing(across, there / here)
         } else {
@@ -154,8 +154,8 @@ impl Sides {
     }
 }
 
-/// Returns x on the less dense side: 1 - F̄ \[Kulla17\], unless the other side's were above 1. `ratio` is k̄ of the
-/// denser side over that of this.
+/// Returns x on the less dense side: 1 - F̄ \[Kulla17\], or less, so that x on the other side is at most 1. `ratio`
+/// is k̄ of the denser side over k̄ of this side.
 #[inline]
 fn outer_crossing(eta: f32, ratio: f32) -> f32 {
     mean_transmittance(eta).min(sqr(eta) * ratio)

@@ -1,10 +1,10 @@
-//! Coefficients of what facets lose: least squares of the largest error, from quadratures over 8192 facets at 16
-//! values of t, 14 of each slope, and 9 indices from 1.2 to 3.
+//! Coefficients of k: fits of the least maximal error to quadratures over 8192 facets at 16 values of t, 14 of each
+//! slope, and 9 indices from 1.2 to 3.
 
 /// Coefficients of tⁱ aʲ yᵏ, by i, j and k; each variable goes from -1 to 1.
 pub(super) type Polynomial = [[[f32; 4]; 4]; 7];
 
-/// Mirrors: t, the slope along, the slope across.
+/// Mirrors, by t, the slope along, and the slope across.
 pub(super) const MIRRORS: Polynomial = [
     [
         [0.24678, 0.17307, 0.05218, -0.03356],
@@ -50,7 +50,7 @@ pub(super) const MIRRORS: Polynomial = [
     ],
 ];
 
-/// An interface from the less dense side: √t, the slope, 1/η.
+/// An interface from the less dense side, by √t, the slope, and 1/η.
 pub(super) const OUTSIDE: Polynomial = [
     [
         [0.14078, 0.02342, 0.01734, 0.01126],
@@ -96,7 +96,7 @@ pub(super) const OUTSIDE: Polynomial = [
     ],
 ];
 
-/// An interface from the denser side: t, the slope, 1/η.
+/// An interface from the denser side, by t, the slope, and 1/η.
 #[expect(
     clippy::approx_constant,
     reason = "a fitted coefficient is near log₁₀ 2 by chance"

@@ -1,5 +1,5 @@
-//! Drawing directions: a lobe by about what it scatters, then a direction from it. The density is the
-//! sum over all lobes.
+//! Draws directions: first a lobe, by its approximate albedo, then a direction from it. The density is the sum over
+//! all lobes.
 
 use super::{Lobe, Principled, Probs, Thickness, coat_fresnel, mirrored_below};
 use crate::bsdf::dielectric::refract;
@@ -47,7 +47,7 @@ impl Principled {
         })
     }
 
-    /// Returns `wi` with value and densities; both directions in the axes of the grain.
+    /// Returns the sample `wi`, with its value and densities; both directions are in the axes of the grain.
     #[inline]
     fn finite_sample(&self, wo: Vec3, wi: Vec3, mode: TransportMode) -> Option<BsdfSample> {
         let along = Self {
@@ -57,7 +57,7 @@ impl Principled {
         BsdfSample::of_value(wi, &along.eval(wo, wi, mode))
     }
 
-    /// Draws a direction from a lobe that is no Dirac distribution. None: it does not leave.
+    /// Draws a direction from a lobe that is not a Dirac distribution. None: the light does not leave.
     #[inline]
     pub(super) fn sample_lobe(&self, lobe: Lobe, wo: Vec3, rest: f32, u: Vec2) -> Option<Vec3> {
         let facing = |wi: Vec3| Vec3::new(wi.x, wi.y, wi.z.copysign(wo.z));
@@ -102,7 +102,7 @@ impl Principled {
         (wi.z != 0.0 && !same_hemisphere(wo, wi)).then_some(wi)
     }
 
-    /// Returns the mirrored direction, by all Dirac lobes that lead there.
+    /// Returns the sample of the mirrored direction, with the sum of all Dirac lobes that lead there.
     #[inline]
     fn mirror(&self, wo: Vec3) -> BsdfSample {
         let (mut reflectance, mut prob) = (Spectrum::ZERO, 0.0);
@@ -124,7 +124,7 @@ impl Principled {
         }
     }
 
-    /// Returns the probabilities that a smooth base is drawn and reflects, and that it lets through.
+    /// Returns the probabilities that the smooth base is drawn and reflects, and that it is drawn and transmits.
     #[inline]
     fn smooth_probs(&self, w: Vec3) -> [f32; 2] {
         let facets = self.probs(w).map_or(0.0, |probs| probs.facets);
@@ -132,7 +132,7 @@ impl Principled {
         [facets * reflects, facets * (1.0 - reflects)]
     }
 
-    /// Draws from a smooth base. None: it lets nothing through.
+    /// Draws from a smooth base. None: it transmits nothing.
     #[inline]
     fn sample_smooth(&self, wo: Vec3, mode: TransportMode, rest: f32) -> Option<BsdfSample> {
         if rest < self.reflection_prob(wo.z)? {
@@ -162,7 +162,7 @@ impl Principled {
 }
 
 impl Probs {
-    /// Returns the lobe of the number `u`, and what of `u` is left to choose by.
+    /// Returns the lobe that the number `u` chooses, and the rest of `u`, uniform in `[0, 1)`.
     #[inline]
     pub(super) fn choose(self, u: f32) -> (Lobe, f32) {
         let lobes = [

@@ -1,18 +1,19 @@
-//! A clear coat whose normal is not that of the base: lobes of two frames, chosen together.
+//! A clear coat whose normal differs from that of the base: lobes in two frames, chosen together.
 //!
-//! Each factor that belongs to the coat and one direction, its lobe and what it leaves of the light, is a function of
-//! the direction in the coat's frame; all else is of the base's. Mirrored directions of the two do not
-//! coincide, so smooth facets become rough ones that are hardly to be told from them, and no lobe is Dirac.
+//! Each factor that depends on the coat and one direction, its lobe and the light that it leaves, is a function of
+//! the direction in the coat's frame; all other factors are functions of the direction in the base's frame. The
+//! mirrored directions of the two do not coincide. Hence smooth facets become slightly rough ones, hardly visibly,
+//! and no lobe is Dirac.
 
 use super::{Lobe, Principled};
 use crate::bsdf::Lobes;
 use crate::bsdf::microfacet::{Ggx, SMOOTH_ALPHA};
 use crate::math::{Vec2, Vec3};
 
-/// The slope of facets that would be smooth.
+/// The slope of facets that would otherwise be smooth.
 const LEAST_ALPHA: f32 = 2.0 * SMOOTH_ALPHA;
 
-/// The normal of a coat in the frame of its base, where they are one.
+/// The normal of a coat, in the frame of its base, if both have one frame.
 pub(super) const UPRIGHT: [i16; 3] = [0, 0, i16::MAX];
 
 /// A layer with a frame of its own.
@@ -25,7 +26,7 @@ pub enum Layer {
 }
 
 impl Principled {
-    /// Returns how its base scatters.
+    /// Returns the kinds of lobes of its base.
     pub(in crate::bsdf) fn lobes(&self) -> Lobes {
         let is_glossy = self.diffuse <= 0.0 && self.through.is_black() && self.sheen.is_black();
         if is_glossy {
@@ -43,7 +44,7 @@ impl Principled {
         (self.coat_normal != UPRIGHT).then(normal)
     }
 
-    /// Gives the coat, if there is one, the normal `n`.
+    /// Sets the normal `n` of the coat, if there is one.
     pub(in crate::bsdf) fn put_coat_normal(&mut self, n: Vec3) {
         let steps = (n * f32::from(i16::MAX)).round().to_array();
         let coat_normal = steps.map(|step| step as i16);
@@ -57,8 +58,8 @@ impl Principled {
         }
     }
 
-    /// Draws a direction as `sample` does, for `wo` in the frames of base and coat; it is in the frame of the layer
-    /// that is returned. Weight and densities are not those of both layers together. None: nothing is scattered.
+    /// Draws a direction like `sample`, for `wo` in the frames of base and coat. The result is in the frame of the
+    /// returned layer. None: nothing is scattered.
     pub(crate) fn sample_layers(
         &self,
         [base, coat]: [Vec3; 2],

@@ -3,16 +3,16 @@
 //!
 //! f = C { S [ F(m) D G₂ / (4 |cosθ_o cosθ_i|) + k(o) k(i) ρ / (π k̄) + T(m) … + turns ] + sheen } + coat, 1/sr, where
 //!
-//! - F = f₀ + (f₉₀ - f₀) (1 - o·m)⁵ \[Schlick94\] of metal and opaque dielectric, plus Fresnel's own
-//!   reflectance for the transparent part, which T takes its rest of: refraction [Walter07, eq. 21],
-//!   or for a thin wall the lobe of F mirrored to the other side;
+//! - F = f₀ + (f₉₀ - f₀) (1 - o·m)⁵ \[Schlick94\] for metal and opaque dielectric, plus Fresnel's reflectance for the
+//!   transparent part. T transmits the rest of that part: by refraction [Walter07, eq. 21], or for a thin wall by the
+//!   lobe of F mirrored to the other side;
 //! - turns is the light that facets scatter more than once (`multiple`);
-//! - k = 1 - Ẽ is what the dielectric's reflection leaves of each direction and k̄ its mean, so that a
-//!   white base under it is white \[Kelemen01\];
-//! - S and C are what sheen and coat leave, the smaller 1 - Ẽ of both directions (`under`).
+//! - k = 1 - Ẽ is the fraction of light from each direction that the dielectric's reflection leaves, and k̄ its mean,
+//!   so that a white base under it is white \[Kelemen01\];
+//! - S and C are the fractions that sheen and coat leave, the smaller 1 - Ẽ of both directions (`under`).
 //!
-//! Each factor belongs to one direction, or is symmetric in both, so f is; and no layer hands on more
-//! than its own lobe leaves, so nothing gains (docs/derivations/principled.md).
+//! Each factor depends on one direction or is symmetric in both, so f is symmetric. No layer passes on more than its
+//! own lobe leaves, so nothing gains energy (docs/derivations/principled.md).
 
 mod draw;
 mod layers;
@@ -39,16 +39,16 @@ const COAT_F0: f32 = 0.04;
 /// The density of an even direction on one side. Unit: 1/sr.
 const EVEN: f32 = 0.5 * INV_PI;
 
-/// Metal, plastic, glass, cloth and lacquer, and what lies between.
+/// Metal, plastic, glass, cloth and lacquer, and mixtures of these.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Principled {
-    /// The base colour: of the diffuse part, and what crossing the surface tints.
+    /// The base colour: of the diffuse part, and of light that crosses the surface.
     tint: Spectrum,
     /// The share of metal, whose f₀ is the base colour.
     metal: f32,
-    /// f₀ of opaque dielectric, with its share.
+    /// f₀ of opaque dielectric, times its share.
     f0: Spectrum,
-    /// f₉₀ of metal and opaque dielectric, with their shares.
+    /// f₉₀ of metal and opaque dielectric, times their shares.
     f90: f32,
     /// The share of the transparent part.
     glass: f32,
@@ -62,25 +62,25 @@ pub struct Principled {
     grain: Vec2,
     /// (share of the diffuse part) / (π k̄).
     diffuse: f32,
-    /// The same of what goes through diffusely, with its colour.
+    /// The share of diffuse transmission / (π k̄), times its colour.
     through: Spectrum,
-    /// f₀ and f₉₀ that k is of.
+    /// The f₀ and f₉₀ that determine k.
     cover: [f32; 2],
-    /// How much of the surface a clear coat covers.
+    /// The fraction of the surface that a clear coat covers.
     coat: f32,
     coat_alpha: f32,
     sheen: Spectrum,
     sheen_alpha: f32,
-    /// k̄ of facets that mirror. Zero: what they send to others is lost.
+    /// k̄ of facets that mirror. Zero: the light that they lose is lost.
     lost: f32,
-    /// k̄ of a transparent solid's facets, likewise.
+    /// k̄ of a transparent solid's facets. Zero: the light that they lose is lost.
     lost_through: Sides,
     thickness: Thickness,
     /// The normal of the coat, in the frame of the base. Unit: 1/[`i16::MAX`].
     coat_normal: [i16; 3],
 }
 
-/// The ways in which light leaves, as they are drawn.
+/// The lobes that are drawn.
 #[derive(Clone, Copy, PartialEq)]
 enum Lobe {
     Coat,
@@ -109,7 +109,7 @@ struct Layers {
 }
 
 impl Layers {
-    /// Returns the part of light that coat and sheen leave for the base.
+    /// Returns the fraction of light that coat and sheen leave for the base.
     #[inline]
     fn below(&self) -> f32 {
         (1.0 - self.coat) * (1.0 - self.sheen)
@@ -117,7 +117,7 @@ impl Layers {
 }
 
 impl Principled {
-    /// Returns the slope that bounds go by.
+    /// Returns the slope that bounds depend on.
     #[inline]
     fn alpha(&self) -> f32 {
         self.ggx.mean_alpha()
@@ -128,7 +128,7 @@ impl Principled {
         Ggx::new(self.coat_alpha, self.coat_alpha)
     }
 
-    /// Returns true where no coat and no sheen lies on the side of `w`: within a solid.
+    /// Returns true if no coat and no sheen is on the side of `w`: within a solid.
     #[inline]
     fn is_bare(&self, w: Vec3) -> bool {
         self.thickness == Thickness::Solid && w.z < 0.0
@@ -159,7 +159,7 @@ impl Principled {
         self.layers_between([w; 2])
     }
 
-    /// Returns the albedos of the layers for light along a direction, which base and coat see in frames of their own.
+    /// Returns the albedos of the layers for light along a direction, given in the frames of base and coat.
     #[inline]
     fn layers_between(&self, [base, coat]: [Vec3; 2]) -> Layers {
         Layers {
@@ -169,7 +169,7 @@ impl Principled {
         }
     }
 
-    /// Returns k: the part that the dielectric's reflection leaves for a diffuse base.
+    /// Returns k, the fraction that the dielectric's reflection leaves for a diffuse base.
     #[inline]
     fn uncovered(&self, seen: &Layers) -> f32 {
         let [f0, f90] = self.cover;
@@ -196,7 +196,7 @@ impl Principled {
         self.tint * self.metal + self.f0
     }
 
-    /// Returns F, where light meets facets at the cosine `cos` and Schlick's weight is `weight`.
+    /// Returns F for light that meets facets at the cosine `cos`, with Schlick's weight `weight`.
     #[inline]
     fn reflectance(&self, cos: f32, weight: f32) -> Spectrum {
         let opaque = self
@@ -219,7 +219,7 @@ impl Principled {
         (reflected, self.tint * crossing)
     }
 
-    /// Returns the probability that a facet met at `cos` reflects, where it is drawn. None: it is black.
+    /// Returns the probability that a drawn facet reflects light that meets it at `cos`. None: the facet is black.
     #[inline]
     fn reflection_prob(&self, cos: f32) -> Option<f32> {
         let (reflected, crossing) = self.facet(cos);
@@ -231,7 +231,7 @@ impl Principled {
     #[inline]
     fn shares(&self, w: Vec3, seen: &Layers) -> [Spectrum; 4] {
         let (_, crossing) = self.facet(w.z);
-        // Facets tilted away from `w` reflect where the bound is zero.
+        // Facets that are tilted away from `w` reflect even if the bound is zero.
         let tilted = 0.01 * self.f90.max(self.glass);
         let facets = self.reflectance(w.z, seen.weight) + crossing + Spectrum::splat(tilted);
         let diffuse = self.tint * self.diffuse + self.through;
@@ -243,8 +243,8 @@ impl Principled {
         ]
     }
 
-    /// Returns the probabilities of drawing from each lobe, for light along `w`; they depend on |cosθ| and the side
-    /// alone. None: nothing is scattered.
+    /// Returns the probabilities of drawing from each lobe, for light along `w`; they depend only on |cosθ| and the
+    /// side. None: nothing is scattered.
     #[inline]
     fn probs(&self, w: Vec3) -> Option<Probs> {
         self.probs_of(&self.shares(w, &self.layers(w)))
@@ -294,7 +294,7 @@ impl Principled {
         (*coat + *facets + *diffuse + *sheen).map(|lane| lane.clamp(0.0, 1.0))
     }
 
-    /// Returns a direction in the axes of the grain.
+    /// Converts a direction to the axes of the grain.
     #[inline]
     fn along_grain(&self, w: Vec3) -> Vec3 {
         let Vec2 { x: cos, y: sin } = self.grain;
@@ -307,7 +307,7 @@ impl Principled {
         Vec3::new(w.x * cos - w.y * sin, w.y * cos + w.x * sin, w.z)
     }
 
-    /// Returns the transparent part alone.
+    /// Returns only the transparent part.
     #[inline]
     fn interface(&self) -> Dielectric {
         Dielectric {

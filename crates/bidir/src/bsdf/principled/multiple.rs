@@ -1,6 +1,6 @@
-//! Light that the facets of the base scatter more than once, as in [`multiple`]: metal and what
-//! else reflects much on the side it comes from, a solid's transparent part on both sides, and a thin wall's, which
-//! mirrors either way, in proportion to Fresnel's mean reflectance. What crosses takes the base colour once.
+//! Light that the facets of the base scatter more than once, as in [`multiple`]. It leaves metal and other strong
+//! reflectors on the side it comes from, a transparent solid on both sides, and a thin wall, whose facets mirror
+//! either way, in proportion to Fresnel's mean reflectance. Light that crosses takes the base colour once.
 
 use super::value::LobeValue;
 use super::{Principled, Thickness};
@@ -9,10 +9,11 @@ use crate::bsdf::{TransportMode, same_hemisphere};
 use crate::math::{INV_PI, Vec3};
 use crate::spectrum::Spectrum;
 
-/// Opaque dielectrics that reflect less than this along the normal reflect next to nothing twice.
+/// The least reflectance along the normal of opaque dielectrics with multiple scattering: below it they reflect next
+/// to nothing twice.
 pub(super) const LEAST_REFLECTANCE: f32 = 0.2;
 
-/// Parts of the light along one direction.
+/// The fractions of the light along one direction that facets lose.
 #[derive(Clone, Copy)]
 struct Lost {
     /// k of facets that mirror.
@@ -22,7 +23,7 @@ struct Lost {
 }
 
 impl Principled {
-    /// Returns false where light between facets is lost.
+    /// Returns false if light between facets is lost.
     #[inline]
     pub(super) fn is_multiple(&self) -> bool {
         self.lost > 0.0 || !self.lost_through.is_none()
@@ -44,7 +45,7 @@ impl Principled {
         }
     }
 
-    /// Returns the part of light lost by one opaque facet that others reflect.
+    /// Returns the fraction of light lost by one opaque facet that leaves after more reflections.
     #[inline]
     fn opaque_remaining(&self) -> Spectrum {
         let mean = |f0: Spectrum, f90: f32| f0.map(|f0| f0 + (f90 - f0) / 21.0);
@@ -58,7 +59,7 @@ impl Principled {
         multiple::mean_transmittance(self.eta.max(1.0 / self.eta))
     }
 
-    /// Returns the part of the surface that is a transparent thin wall.
+    /// Returns the share of the surface that is a transparent thin wall.
     #[inline]
     fn pane(&self) -> f32 {
         if self.thickness == Thickness::ThinWalled {
@@ -68,14 +69,14 @@ impl Principled {
         }
     }
 
-    /// Returns the part of the surface that is a transparent solid, as far as its facets reflect as Fresnel's equations
-    /// say: what refraction alone would lose is not known, so that the rest keeps its loss.
+    /// Returns the share of the surface that is a transparent solid, with facets that reflect by Fresnel's equations.
+    /// The loss of refraction alone is unknown, so that the rest keeps its loss.
     #[inline]
     fn solid(&self) -> f32 {
         (self.glass - self.pane()) * self.specular
     }
 
-    /// Returns the parts of the light that mirroring facets lose which leave on its side, and on the other.
+    /// Returns the fractions of the light lost by mirroring facets that leave on their side, and on the other.
     #[inline]
     fn mirrored_parts(&self) -> [Spectrum; 2] {
         let (pane, crossing) = (self.pane(), self.pane_crossing());
@@ -83,8 +84,8 @@ impl Principled {
         [stays, self.tint * (pane * crossing)]
     }
 
-    /// Returns the probabilities, where facets are drawn, that light along `w` leaves after more than one, on its side
-    /// and on the other.
+    /// Returns the probabilities, if facets are drawn, that light along `w` leaves after more than one of them, on
+    /// its side and on the other.
     #[inline]
     pub(super) fn multiple_probs(&self, w: Vec3) -> [f32; 2] {
         let lost = self.lost_of(w);

@@ -11,7 +11,7 @@ use crate::spectrum::Spectrum;
 /// The medium behind a transparent surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Thickness {
-    /// The same as before it: light goes on without being bent.
+    /// The medium before it: light goes straight on.
     ThinWalled,
     /// The inside of a solid.
     Solid,
@@ -20,7 +20,7 @@ pub enum Thickness {
 /// A clear coat of index 1.5.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Coat {
-    /// How much of the surface it covers. Range: `[0, 1]`.
+    /// The fraction of the surface that it covers. Range: `[0, 1]`.
     pub cover: f32,
     /// Its slope.
     pub alpha: f32,
@@ -41,15 +41,15 @@ pub struct PrincipledParameters {
     pub ior: f32,
     /// The factor of the dielectric's reflectance, at all angles.
     pub specular: f32,
-    /// A further factor of its reflectance along the normal.
+    /// A further factor of the dielectric's reflectance along the normal.
     pub specular_color: Spectrum,
     /// The share of the dielectric that is transparent.
     pub transmission: f32,
     /// The medium behind the surface.
     pub thickness: Thickness,
-    /// The share of the rest that lets light through diffusely.
+    /// The share of the opaque rest that transmits light diffusely.
     pub diffuse_transmission: f32,
-    /// The colour of that.
+    /// The colour of diffuse transmission.
     pub diffuse_transmission_color: Spectrum,
     /// The coat.
     pub coat: Coat,
@@ -84,7 +84,8 @@ impl PrincipledParameters {
     }
 }
 
-/// Returns the thickness of a surface of this relative index. Indices closer to 1 bend nothing that could be seen.
+/// Returns the thickness of a surface of this relative index. An index closer to 1 bends nothing visibly: the surface
+/// is thin-walled.
 fn thickness(described: Thickness, eta: f32) -> Thickness {
     const LEAST_BEND: f32 = 1e-3;
     if (eta - 1.0).abs() > LEAST_BEND && eta > 0.0 {
@@ -95,7 +96,7 @@ fn thickness(described: Thickness, eta: f32) -> Thickness {
 }
 
 impl Principled {
-    /// Returns the scattering of what `parameters` describe.
+    /// Makes the BSDF that `parameters` describe.
     pub fn new(parameters: &PrincipledParameters) -> Self {
         let p = parameters;
         let dielectric = 1.0 - p.metallic;
@@ -111,7 +112,7 @@ impl Principled {
         let cover = [f0.max_lane(), p.specular];
         let alpha = p.ggx.mean_alpha();
         let mean_cover = cover[0] + (cover[1] - cover[0]) * under::mean_facet_weight(alpha);
-        // Under a layer that reflects everything there is nothing to see.
+        // A base under a layer that reflects everything is invisible.
         let base = if mean_cover < 0.999 {
             opaque * INV_PI / (1.0 - mean_cover)
         } else {

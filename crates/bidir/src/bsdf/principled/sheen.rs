@@ -1,7 +1,7 @@
 //! Sheen, the light on fibres of cloth: D / (4 |cosθ_o cosθ_i| (1 + Λ(o) + Λ(i))) with
 //! D(m) = (2 + 1/α) sin^{1/α} θ_m / (2π) and a fitted Λ \[Conty17\]. Unit: 1/sr.
 //!
-//! Below a slope of 0.1 the fit lets more light leave than arrives, so slopes end there.
+//! The least slope is 0.1: below it, the fit lets more light leave than arrives.
 
 use crate::math::{PI, Vec3, sqr};
 
@@ -17,7 +17,7 @@ const FITS: [[f32; 5]; 2] = [
 /// Returns f of white fibres for directions on one side.
 #[inline]
 pub(super) fn eval(wo: Vec3, wi: Vec3, alpha: f32) -> f32 {
-    // Λ is finite at the rim, where its fit was not made: cosines end where f is at its largest.
+    // The fit of Λ does not include grazing angles, where Λ is finite: cosines are limited at the largest f.
     let (cos_o, cos_i) = (wo.z.abs().max(1e-3), wi.z.abs().max(1e-3));
     let sin2 = (1.0 - sqr((wo + wi).normalize().z)).max(0.0);
     let d = (2.0 + 1.0 / alpha) * libm::powf(sin2, 0.5 / alpha) / (2.0 * PI);

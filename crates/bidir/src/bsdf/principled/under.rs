@@ -1,9 +1,9 @@
 //! The light that a layer leaves for the lobes under it: bounds of directional albedos in closed form.
 //!
-//! A lobe on top reflects E(μ) of the light from a direction of cosine μ. The lobe below is scaled
-//! by 1 - Ẽ(μ) for each of its two directions, Ẽ ≥ E, so that both together never gain. The bounds
-//! were fitted to quadratures, as docs/derivations/principled.md describes; they are at most 0.08 above
-//! the true values where α > 0.05.
+//! A lobe on top reflects the fraction E(μ) of the light from a direction of cosine μ. The lobe below is scaled by 1
+//! - Ẽ(μ) for each of its two directions, Ẽ ≥ E, so that both together never gain energy. The bounds were fitted to
+//! quadratures, as docs/derivations/principled.md describes; they are at most 0.08 above the true values for α >
+//! 0.05.
 
 use crate::bsdf::fresnel;
 use crate::math::sqr;
@@ -18,7 +18,7 @@ pub(super) fn facet_weight(cos: f32, alpha: f32) -> f32 {
     smooth / (1.0 + smooth * spread) + tail
 }
 
-/// Returns a bound from below of ∫ 2μ W̃(μ) dμ.
+/// Returns a lower bound of ∫ 2μ W̃(μ) dμ.
 #[inline]
 pub(super) fn mean_facet_weight(alpha: f32) -> f32 {
     let alpha = alpha.clamp(0.0, 1.0);

@@ -25,7 +25,7 @@ impl Principled {
         self.eval_layers([[wo; 2], [wi; 2]], [1.0; 2], mode)
     }
 
-    /// Evaluates base and coat for directions in frames of their own, f of each times its ratio.
+    /// Evaluates base and coat for directions in their own frames; f of each is multiplied by its ratio.
     #[inline]
     pub(crate) fn eval_layers(
         &self,
