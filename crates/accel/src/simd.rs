@@ -24,7 +24,7 @@ pub(crate) trait F32x4:
 {
     /// Returns all lanes equal to `value`.
     fn splat(value: f32) -> Self;
-    /// Lanes from memory.
+    /// Reads the lanes from memory.
     fn load(values: &[f32; 4]) -> Self;
     /// Writes the lanes to memory.
     fn to_array(self) -> [f32; 4];
@@ -54,7 +54,7 @@ pub(crate) trait F32x8: Copy {
 
     /// Returns all lanes equal to `value`.
     fn splat(value: f32) -> Self;
-    /// Lanes from memory.
+    /// Reads the lanes from memory.
     fn load(values: &[f32; WIDTH]) -> Self;
     /// Returns the smaller number; if both are negative, either. Not for NaN.
     fn min(self, other: Self) -> Self;

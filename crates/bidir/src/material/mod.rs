@@ -129,7 +129,7 @@ pub enum Material {
         index: ConductorIndex,
         /// Its roughness.
         roughness: Roughness,
-        /// How many facets scatter light.
+        /// The number of facets that may scatter light.
         scattering: FacetScattering,
     },
     /// A transparent medium's surface.
@@ -138,7 +138,7 @@ pub enum Material {
         eta: f32,
         /// Its roughness.
         roughness: Roughness,
-        /// How many facets scatter light.
+        /// The number of facets that may scatter light.
         scattering: FacetScattering,
     },
     /// A pane.

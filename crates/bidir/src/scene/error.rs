@@ -1,9 +1,9 @@
-//! Why a scene cannot be built.
+//! The errors of building a scene.
 
 use crate::medium::MediumId;
 use thiserror::Error;
 
-/// Why a scene cannot be built.
+/// The reasons why a scene cannot be built.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum SceneError {
     /// A triangle refers to a vertex that its mesh does not have.

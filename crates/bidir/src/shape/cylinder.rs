@@ -1,12 +1,12 @@
-//! Cylinders without caps and parts of them, under any affine map. Points are drawn evenly over local
-//! area, 1 / (φ_max r (z_max - z_min)), divided by the stretch of the map: area measure, 1/m².
+//! Cylinders without caps, and parts of them, under any affine map. Points are drawn uniformly over local area, with
+//! density 1 / (φ_max r (z_max - z_min)), divided by the stretch of the map. Measure: area, 1/m².
 
 use super::{
     Differentials, Orientation, Placement, ShapeSample, SurfacePoint, WorldFromObject, azimuth_part,
 };
 use crate::math::{Affine3A, PI, Vec2, Vec3, sin_cos};
 
-/// The points at a distance from the z axis with z in `[z_min, z_max]` and azimuth below `phi_max`, in
+/// The points at the distance `radius` from the z axis with z in `[z_min, z_max]` and azimuth below `phi_max`, in
 /// their own space, under an affine map to the world. The front is the outside.
 #[derive(Clone, Copy, Debug)]
 pub struct Cylinder {
@@ -20,7 +20,7 @@ pub struct Cylinder {
 }
 
 impl Cylinder {
-    /// Returns the part of a cylinder of `radius` within `limits`: `z_min`, `z_max` and `phi_max` (radians).
+    /// Makes the part of a cylinder of `radius` within `limits`: `z_min`, `z_max` and `phi_max` (radians).
     pub fn new(
         world_from_local: Affine3A,
         radius: f32,
@@ -55,7 +55,7 @@ impl Cylinder {
         self.local_area() * mean as f32
     }
 
-    /// Returns the local normal where the first parameter is `u`.
+    /// Returns the local normal at the first parameter `u`.
     #[inline]
     fn normal(&self, u: f32) -> Vec3 {
         let (sin, cos) = sin_cos(self.phi_max * u);
@@ -77,7 +77,7 @@ impl Cylinder {
         self.area
     }
 
-    /// Returns the cylinder of an object in the world, with the densities of the object.
+    /// Returns the cylinder of an object, placed in the world. Its densities are still those of the object.
     #[inline]
     pub(super) fn at(&self, to_world: &WorldFromObject) -> Self {
         Self {
@@ -86,7 +86,7 @@ impl Cylinder {
         }
     }
 
-    /// Returns a bound of the coordinates of its points.
+    /// Returns a bound of the absolute coordinates of its points.
     #[inline]
     pub(super) fn magnitude(&self) -> f32 {
         let height = self.z_min.abs().max(self.z_max.abs());
@@ -113,7 +113,7 @@ impl Cylinder {
         Vec2::new(azimuth_part(local, self.phi_max), upwards.clamp(0.0, 1.0))
     }
 
-    /// Returns the derivatives along azimuth, and upwards.
+    /// Returns the derivatives along azimuth and along z.
     pub(super) fn differentials(&self, point: Vec3) -> Differentials {
         let local = self.placement.local_from_world.transform_point3(point);
         let normal = local.with_z(0.0).normalize_or(Vec3::X);

@@ -1,5 +1,5 @@
-//! How a surface changes along its parameters: tangents (metres per unit of the parameter) and the
-//! change of the normal. Only surfaces that are textured by pixels' widths or have relief ask.
+//! Derivatives of a surface along its parameters: tangents (metres per unit of the parameter) and the change of the
+//! normal. Only surfaces with relief, or with textures that depend on the width of a pixel, need them.
 
 use super::{Orientation, Placement};
 use crate::math::{Frame, Vec3, sqr};
@@ -18,8 +18,8 @@ pub struct Differentials {
 }
 
 impl Differentials {
-    /// Returns the differentials of a flat surface. If the tangents span nothing, some unit tangents around `normal`
-    /// stand for them.
+    /// Returns the differentials of a flat surface. If the tangents are parallel or zero, arbitrary unit tangents
+    /// around `normal` replace them.
     pub(super) fn flat(normal: Vec3, [dp_du, dp_dv]: [Vec3; 2]) -> Self {
         let area2 = dp_du.cross(dp_dv).length_squared();
         let spans = area2 > 1e-12 * dp_du.length_squared() * dp_dv.length_squared();
@@ -37,8 +37,8 @@ impl Differentials {
         }
     }
 
-    /// Returns ∇u and ∇v: by how much the parameters change along a step on the surface. Unit: 1/m. Zero
-    /// where the tangents are too nearly parallel.
+    /// Returns ∇u and ∇v, the change of the parameters along a step on the surface. They are zero if the tangents are
+    /// nearly parallel. Unit: 1/m.
     pub fn gradients(&self) -> [Vec3; 2] {
         let (e, f, g) = (
             self.dp_du.length_squared(),

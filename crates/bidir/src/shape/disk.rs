@@ -1,5 +1,5 @@
-//! A flat ring or a part of one. An affine map scales all of its area alike, so that points are
-//! drawn with the constant density 1/area (1/m²), from wherever they are looked at.
+//! Disks: flat rings and parts of them. An affine map scales all of their area by the same factor, so that points are
+//! drawn with the constant density 1/area (1/m²) for any receiver.
 
 use super::{
     Differentials, Orientation, Placement, ShapeSample, SurfacePoint, WorldFromObject, azimuth_part,
@@ -55,7 +55,7 @@ impl Disk {
         local * self.placement.area_scale(Vec3::Z)
     }
 
-    /// Returns the disk of an object in the world, with the densities of the object.
+    /// Returns the disk of an object, placed in the world. Its densities are still those of the object.
     #[inline]
     pub(super) fn at(&self, to_world: &WorldFromObject) -> Self {
         Self {
@@ -64,7 +64,7 @@ impl Disk {
         }
     }
 
-    /// Returns a bound of the coordinates of its points.
+    /// Returns a bound of the absolute coordinates of its points.
     #[inline]
     pub(super) fn magnitude(&self) -> f32 {
         self.placement.magnitude(self.radius.max(self.height.abs()))
@@ -90,7 +90,7 @@ impl Disk {
         Vec2::new(azimuth_part(local, self.phi_max), inwards.clamp(0.0, 1.0))
     }
 
-    /// Returns the derivatives along azimuth, and inwards.
+    /// Returns the derivatives along azimuth and inwards.
     pub(super) fn differentials(&self, point: Vec3) -> Differentials {
         let local = self.placement.local_from_world.transform_point3(point);
         let along = Vec3::new(-local.y, local.x, 0.0) * self.phi_max;
@@ -101,7 +101,7 @@ impl Disk {
             .differentials([along, inwards], Vec3::Z, unchanged, self.orientation)
     }
 
-    /// Draws a point evenly over the area: azimuth, then the square of the radius.
+    /// Draws a point uniformly over the area: the azimuth, and the square of the radius.
     #[inline]
     pub(super) fn sample(&self, u: Vec2) -> ShapeSample {
         let (outer2, inner2) = (sqr(self.radius), sqr(self.inner_radius));

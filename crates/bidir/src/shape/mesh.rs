@@ -1,8 +1,7 @@
-//! Triangles: points are drawn evenly on each, with density 1/area (1/m²), from wherever they are
-//! looked at. Which triangle is drawn is the light's choice, not the mesh's.
+//! Meshes of triangles. Points are drawn uniformly on each triangle, with density 1/area (1/m²), for any receiver.
+//! The light chooses the triangle, not the mesh.
 //!
-//! Normals and parameters are interpolated linearly. Shading normals change the frame, never the
-//! point.
+//! Normals and parameters are interpolated linearly. Shading normals change the frame, but not the point.
 
 use super::differentials::normal_derivative;
 use super::{
@@ -15,17 +14,16 @@ use crate::math::{Frame, Vec2, Vec3, warp};
 pub struct Mesh {
     /// Vertex positions.
     pub positions: Vec<Vec3>,
-    /// Shading normals per vertex; empty: the surface is faceted.
+    /// The shading normal of each vertex; empty: the surface is faceted.
     pub normals: Vec<Vec3>,
-    /// The direction of the shading frame's x, per vertex; empty: along ∂p/∂u. Of any length; the part
-    /// along the normal has no effect.
+    /// The direction of the shading frame's x at each vertex; empty: along ∂p/∂u. Only the part perpendicular to the
+    /// normal matters, at any length.
     pub tangents: Vec<Vec3>,
-    /// Parameters per vertex; empty: each triangle has (0,0), (1,0), (1,1).
+    /// The parameters of each vertex; empty: each triangle has (0,0), (1,0), (1,1).
     pub uvs: Vec<Vec2>,
-    /// Three vertices per triangle.
+    /// The indices of the three vertices of each triangle.
     pub triangles: Vec<[u32; 3]>,
-    /// Which side of the winding (p1 - p0) × (p2 - p0) is the front. If there are normals,
-    /// they decide.
+    /// The side of the winding (p1 - p0) × (p2 - p0) that is the front. If there are normals, they decide.
     pub orientation: Orientation,
 }
 
@@ -41,7 +39,7 @@ impl Mesh {
         self.triangles[i].map(|vertex| self.positions[vertex as usize])
     }
 
-    /// Returns the weights of the second and third corner of triangle `i` at the point `p` of its plane.
+    /// Returns the barycentric weights of the second and third corner of triangle `i` at the point `p` of its plane.
     pub(super) fn barycentric(&self, i: usize, p: Vec3) -> Vec2 {
         let [a, b, c] = self.triangle(i);
         let n = (b - a).cross(c - a);
@@ -54,7 +52,7 @@ impl Mesh {
         self.corners(i).area()
     }
 
-    /// Returns the geometric normals of triangle `i`, which follow the shading normals' side.
+    /// Returns the geometric normals of triangle `i`, on the side of the shading normals.
     pub(super) fn triangle_normals(&self, i: usize) -> Normals {
         let corners = self.corners(i);
         let [p0, p1, p2] = corners.positions;
@@ -69,7 +67,7 @@ impl Mesh {
         }
     }
 
-    /// Returns the normal of the front of triangle `i` by its winding alone, of any length.
+    /// Returns the normal of the front of triangle `i`, of any length, given only by its winding.
     #[inline]
     pub(crate) fn front(&self, to_world: Option<&WorldFromObject>, i: usize) -> Vec3 {
         let own = self.corners(i);
@@ -81,7 +79,7 @@ impl Mesh {
         (b - a).cross(c - a) * corners.winding_sign
     }
 
-    /// Returns the volume within a closed mesh, negative where its front is within. Unit: m³.
+    /// Returns the volume that a closed mesh encloses, negative if its front is inside. Unit: m³.
     pub(super) fn enclosed(&self) -> f64 {
         let corners = (0..self.triangle_count()).map(|i| self.triangle(i).map(Vec3::as_dvec3));
         let sum: f64 = corners.map(|[a, b, c]| a.dot(b.cross(c))).sum();
@@ -93,21 +91,21 @@ impl Mesh {
         let corners = self.corners(i);
         let error = position_error(corners.magnitude());
         ShapeSample {
-            // Nobody asks where the tangent of a light point is.
+            // The tangent of a light point is not used.
             surface: corners.surface_point_in(warp::triangle(u), error, Frame::from_z),
             pdf: 1.0 / corners.area(),
         }
     }
 
-    /// Returns the geometry at barycentric coordinates `b` of vertices 1 and 2.
+    /// Returns the surface point at the barycentric coordinates `b` of vertices 1 and 2.
     #[inline]
     pub(super) fn surface_point(&self, i: usize, b: Vec2) -> SurfacePoint {
         let corners = self.corners(i);
         corners.surface_point(b, position_error(corners.magnitude()))
     }
 
-    /// Returns the surface point of an object's mesh under `to_world`: that of a mesh of moved vertices,
-    /// with the error of the map added.
+    /// Returns the surface point of an object's mesh under `to_world`: the point of a mesh with mapped vertices, with
+    /// the error of the map added.
     #[inline]
     pub(super) fn surface_point_at(
         &self,
@@ -167,19 +165,19 @@ struct Corners {
     normals: Option<[Vec3; 3]>,
     tangents: Option<[Vec3; 3]>,
     uvs: [Vec2; 3],
-    /// -1 where the front is not on the winding's side.
+    /// -1 if the front is not on the side of the winding, else 1.
     winding_sign: f32,
 }
 
 impl Corners {
-    /// Returns the largest coordinate.
+    /// Returns the largest absolute coordinate.
     #[inline]
     fn magnitude(&self) -> f32 {
         let [p0, p1, p2] = self.positions;
         p0.abs().max(p1.abs()).max(p2.abs()).max_element()
     }
 
-    /// Returns the corners in the world. A mirroring map turns the winding, not the front.
+    /// Returns the corners in the world. A mirroring map flips the winding, not the front.
     #[inline]
     fn at(&self, to_world: &WorldFromObject) -> Self {
         Self {
@@ -200,7 +198,7 @@ impl Corners {
     fn area(&self) -> f32 {
         let [a, b, c] = self.positions;
         let area = (b - a).cross(c - a).length() / 2.0;
-        // Beyond these its square leaves the normal numbers of `f32`.
+        // Outside this range, the square of the area is not a normal `f32`.
         if area > 1e-18 && area < 1e18 {
             area
         } else {
@@ -221,7 +219,7 @@ impl Corners {
         self.surface_point_in(b, error, |n_s| Frame::from_z_and_tangent(n_s, tangent))
     }
 
-    /// Returns the geometry with the shading frame that `frame` makes of the shading normal.
+    /// Returns the surface point; `frame` makes the shading frame from the shading normal.
     #[inline]
     fn surface_point_in(
         &self,
@@ -244,7 +242,8 @@ impl Corners {
         }
     }
 
-    /// Positions and normals change linearly over the triangle; the unit normal follows.
+    /// Returns the derivatives along the parameters. Positions and normals change linearly over the triangle, and the
+    /// unit normal follows from them.
     fn differentials(&self, b: Vec2) -> Differentials {
         let [uv0, uv1, uv2] = self.uvs;
         let (duv1, duv2) = (uv1 - uv0, uv2 - uv0);
@@ -278,7 +277,7 @@ impl Corners {
         (n0 * b0 + n1 * b.x + n2 * b.y).try_normalize()
     }
 
-    /// Returns the interpolated tangent, else ∂p/∂u up to scale.
+    /// Returns the interpolated tangent, or ∂p/∂u up to scale if there are no tangents.
     #[inline]
     fn tangent(&self, b0: f32, b: Vec2) -> Vec3 {
         match self.tangents {

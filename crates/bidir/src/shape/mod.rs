@@ -1,8 +1,8 @@
-//! Surfaces: where rays meet them, and how points are drawn on them.
+//! Surfaces: hits by rays, and points drawn on them.
 //!
-//! All geometry is in world space, but for shapes of shared objects, which a [`WorldFromObject`] takes there. A shape gives its primitives to [`accel`], turns a hit into a
-//! [`SurfacePoint`], and, where it is a light, draws points by area. Densities are **area
-//! measure**, 1/m².
+//! All geometry is in world space, except for the shapes of objects, which a [`WorldFromObject`] maps to it. A shape
+//! gives its primitives to [`accel`], turns a hit into a [`SurfacePoint`], and, if it is a light, draws points by
+//! area. Densities are in **area measure**, 1/m².
 //!
 //! The geometric normal `n_g` points to the front: the side that a one-sided light emits
 //! to, and the outside of a dielectric. It is always on the side of the shading normal `n_s`.
@@ -35,8 +35,7 @@ use crate::math::{Affine3A, Frame, PI, Vec2, Vec3};
 pub struct SurfacePoint {
     /// The point.
     pub point: Vec3,
-    /// A bound of the distance between `point` and the surface that the intersector sees: the
-    /// offset of ray origins.
+    /// A bound of the distance between `point` and the surface of the intersector, by which ray origins are offset.
     pub error: f32,
     /// The geometric normal, unit, towards the front.
     pub n_g: Vec3,
@@ -57,7 +56,7 @@ impl SurfacePoint {
 /// A point drawn on a shape.
 #[derive(Clone, Copy, Debug)]
 pub struct ShapeSample {
-    /// The point. Of a triangle the shading frame's x is anywhere.
+    /// The point. On a triangle, the x of the shading frame is arbitrary.
     pub surface: SurfacePoint,
     /// Its density. Measure: area, 1/m².
     pub pdf: f32,
@@ -66,11 +65,11 @@ pub struct ShapeSample {
 /// The geometric normals of a primitive.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Normals {
-    /// The same everywhere.
+    /// One normal for all points.
     One(Vec3),
-    /// This one and its opposite: shading normals lie on both sides.
+    /// This normal or its opposite: shading normals are on both sides.
     Opposite(Vec3),
-    /// The surface is curved.
+    /// Any normal: the surface is curved.
     Any,
 }
 
@@ -116,8 +115,8 @@ impl Shape {
         }
     }
 
-    /// Returns the local geometry where primitive `i` was hit at parameters `uv` of the intersector;
-    /// `point` is the hit as the ray computed it.
+    /// Returns the surface point of a hit of primitive `i`; `uv` are the intersector's parameters, and `point` is the
+    /// hit as the ray computed it.
     #[inline]
     pub fn surface_point(&self, i: usize, uv: Vec2, point: Vec3) -> SurfacePoint {
         match self {
@@ -138,7 +137,7 @@ impl Shape {
         }
     }
 
-    /// Returns the surface's parameters alone at such a hit.
+    /// Returns only the surface's parameters of such a hit.
     #[inline]
     pub fn uv(&self, i: usize, uv: Vec2) -> Vec2 {
         match self {
@@ -147,8 +146,8 @@ impl Shape {
         }
     }
 
-    /// Returns the geometry of an object's shape under `to_world`, in world space; `point` too is in
-    /// world space.
+    /// Returns the surface point of an object's shape under `to_world`, in world space; `point` is in world space,
+    /// too.
     #[inline]
     pub fn surface_point_at(
         &self,
@@ -174,7 +173,7 @@ impl Shape {
     }
 
     /// Returns the derivatives along the parameters at such a hit, of a shape of the world or of an object under
-    /// `to_world`; `surface` is what [`surface_point`](Self::surface_point) gave.
+    /// `to_world`; `surface` is its [`surface_point`](Self::surface_point).
     pub fn differentials(
         &self,
         to_world: Option<&WorldFromObject>,
@@ -213,7 +212,7 @@ impl Shape {
         [all.min, all.max]
     }
 
-    /// Returns the volume that the shape encloses by itself; 0 for pieces that do not. Unit: m³.
+    /// Returns the volume that the shape itself encloses; 0 if it is not closed. Unit: m³.
     pub fn enclosed(&self) -> f64 {
         match self {
             Self::Mesh(mesh) => mesh.enclosed(),
@@ -231,7 +230,7 @@ impl Shape {
         }
     }
 
-    /// Draws a point of primitive `i`, evenly over its area where it can be done.
+    /// Draws a point of primitive `i`, uniformly over its area unless a map stretches it unevenly.
     #[inline]
     pub fn sample(&self, i: usize, u: Vec2) -> ShapeSample {
         match self {
@@ -253,7 +252,7 @@ impl Shape {
         }
     }
 
-    /// Draws a point of primitive `i` that `reference` is likely to see.
+    /// Draws a point of primitive `i` that is likely to be visible from `reference`.
     #[inline]
     pub fn sample_from(&self, i: usize, reference: Vec3, u: Vec2) -> ShapeSample {
         match self {
@@ -273,7 +272,7 @@ impl Shape {
     }
 }
 
-/// Returns the azimuth of a local point, as part of `phi_max`.
+/// Returns the azimuth of a local point, as a fraction of `phi_max`.
 #[inline]
 fn azimuth_part(local: Vec3, phi_max: f32) -> f32 {
     let angle = libm::atan2f(local.y, local.x);
@@ -281,7 +280,7 @@ fn azimuth_part(local: Vec3, phi_max: f32) -> f32 {
     (phi / phi_max).min(1.0)
 }
 
-/// Which side of a surface is the front.
+/// The side of a surface that is the front.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Orientation {
     /// The side of the shape's own parametrisation or winding.
@@ -292,7 +291,7 @@ pub enum Orientation {
 }
 
 impl Orientation {
-    /// Returns 1, or -1 where reversed.
+    /// Returns 1, or -1 if reversed.
     #[inline]
     pub fn sign(self) -> f32 {
         match self {
@@ -327,13 +326,13 @@ impl Placement {
         }
     }
 
-    /// Returns the placement in the world, for a quadric of an object.
+    /// Returns the placement in the world of a quadric of an object.
     #[inline]
     fn at(&self, to_world: &WorldFromObject) -> Self {
         Self::new(to_world.compose(&self.world_from_local))
     }
 
-    /// Returns a bound of the coordinates of points up to `distance` from the local origin.
+    /// Returns a bound of the absolute world coordinates of points up to `distance` from the local origin.
     #[inline]
     fn magnitude(&self, distance: f32) -> f32 {
         let m = self.world_from_local.matrix3;
@@ -341,7 +340,7 @@ impl Placement {
         (self.world_from_local.translation.abs() + reach).max_element()
     }
 
-    /// Returns the inverse transpose applied to a local normal: not normalised.
+    /// Returns the world normal of a local one, by the inverse transpose; not normalised.
     #[inline]
     fn normal(&self, local: Vec3) -> Vec3 {
         self.local_from_world.matrix3.transpose() * local

@@ -1,8 +1,8 @@
 //! Spheres and parts of spheres, under any affine map. Densities are area measure, 1/m²:
 //!
-//! - evenly over local area: 1 / (φ_max r (z_max - z_min)), divided by the stretch of the map;
-//! - for a receiver outside a whole, undistorted sphere, evenly in the cone that it is seen in:
-//!   cosθ / (d² 2π (1 - cosθ_max)) [PBRT4, §6.2.4]. All others are drawn by area.
+//! - uniformly over local area: 1 / (φ_max r (z_max - z_min)), divided by the stretch of the map;
+//! - for a receiver outside a whole, undistorted sphere, uniformly in the cone in which it sees the sphere: cosθ /
+//!   (d² 2π (1 - cosθ_max)) [PBRT4, §6.2.4]. For other receivers and spheres by area.
 
 use super::{
     Differentials, Orientation, Placement, ShapeSample, SurfacePoint, WorldFromObject, azimuth_part,
@@ -20,8 +20,8 @@ pub struct Sphere {
     phi_max: f32,
     orientation: Orientation,
     area: f32,
-    /// Centre and radius in the world, where this is a whole, undistorted sphere: the case in which
-    /// directions can be drawn in the cone that it is seen in.
+    /// The centre and the radius in the world. None: it is not a whole, undistorted sphere, and directions cannot be
+    /// drawn in a cone.
     ball: Option<(Vec3, f32)>,
 }
 
@@ -32,7 +32,7 @@ impl Sphere {
         Self::partial(world_from_local, radius, whole, orientation)
     }
 
-    /// Returns the part of a sphere within `limits`: `z_min`, `z_max` and `phi_max` (radians).
+    /// Makes the part of a sphere within `limits`: `z_min`, `z_max` and `phi_max` (radians).
     pub fn partial(
         world_from_local: Affine3A,
         radius: f32,
@@ -60,7 +60,7 @@ impl Sphere {
         self.phi_max * self.radius * (self.z_max - self.z_min)
     }
 
-    /// Returns the world area by the midpoint rule over (z, φ), in which local area is even.
+    /// Returns the world area by the midpoint rule over (z, φ), in which local area is uniform.
     fn integrate_area(&self) -> f32 {
         let n = 64;
         let scale = |i: i32| {
@@ -76,7 +76,7 @@ impl Sphere {
         self.z_min <= -self.radius && self.z_max >= self.radius && self.phi_max >= 2.0 * PI - 1e-6
     }
 
-    /// Returns the volume within, negative where the front is; 0 for parts. Unit: m³.
+    /// Returns the enclosed volume, negative if the front is inside; 0 for parts of a sphere. Unit: m³.
     pub(super) fn enclosed(&self) -> f64 {
         let [radius, scale] = [self.radius, self.placement.volume_scale].map(f64::from);
         let ball = 4.0 / 3.0 * std::f64::consts::PI * radius * radius * radius * scale;
@@ -116,7 +116,7 @@ impl Sphere {
         self.area
     }
 
-    /// Returns the sphere of an object in the world, with the densities of the object.
+    /// Returns the sphere of an object, placed in the world. Its densities are still those of the object.
     #[inline]
     pub(super) fn at(&self, to_world: &WorldFromObject) -> Self {
         Self {
@@ -125,7 +125,7 @@ impl Sphere {
         }
     }
 
-    /// Returns a bound of the coordinates of its points.
+    /// Returns a bound of the absolute coordinates of its points.
     #[inline]
     pub(super) fn magnitude(&self) -> f32 {
         self.placement.magnitude(self.radius)
@@ -143,7 +143,7 @@ impl Sphere {
             .surface_point(n * self.radius, n, self.orientation, uv)
     }
 
-    /// Returns the derivatives along azimuth, and up from z_min.
+    /// Returns the derivatives along azimuth and upwards from z_min.
     pub(super) fn differentials(&self, point: Vec3) -> Differentials {
         let local = self.placement.local_from_world.transform_point3(point);
         let n = local.normalize_or(Vec3::Z);
@@ -159,7 +159,7 @@ impl Sphere {
             .differentials(tangents, n, changes, self.orientation)
     }
 
-    /// Returns the local point with even local area over the unit square.
+    /// Returns the local point for `u`, uniform over local area if `u` is uniform over the unit square.
     #[inline]
     fn local_point(&self, u: Vec2) -> Vec3 {
         let z = self.z_min + (self.z_max - self.z_min) * u.x;
@@ -185,9 +185,10 @@ impl Sphere {
         1.0 / (self.local_area() * self.placement.area_scale(n))
     }
 
-    /// Returns 1 - cosθ of the cone in which `reference` sees the ball, the distance, and the ball.
+    /// Returns 1 - cosθ of the cone in which `reference` sees the ball, the distance of the centre, the centre, and
+    /// the radius.
     ///
-    /// None: this is no ball, or the reference is within it or too near.
+    /// None: this is not a ball, or the reference is inside or too near.
     #[inline]
     fn cone(&self, reference: Vec3) -> Option<(f32, f32, Vec3, f32)> {
         let (centre, radius) = self.ball?;

@@ -1,7 +1,7 @@
 //! The affine map of an instance, from the space of its object to the world.
 //!
-//! Points and tangents go by the map, normals by its inverse transpose, in `f64`. Neither asks whether the map
-//! mirrors: the front of a surface stays the front.
+//! Points and tangents are mapped by the map, normals by its inverse transpose, in `f64`. Mirroring maps need no
+//! exception: the front of a surface stays the front.
 
 use super::position_error;
 use crate::math::{Affine3A, DAffine3, Vec3};
@@ -13,19 +13,19 @@ use glam::{DMat3, DVec3};
 pub struct WorldFromObject(pub DAffine3);
 
 impl WorldFromObject {
-    /// Returns a point of the object in the world.
+    /// Maps a point of the object to the world.
     #[inline]
     pub(super) fn point(&self, p: Vec3) -> Vec3 {
         self.0.transform_point3(p.as_dvec3()).as_vec3()
     }
 
-    /// Returns a vector of the object in the world.
+    /// Maps a vector of the object to the world.
     #[inline]
     pub(super) fn vector(&self, v: Vec3) -> Vec3 {
         self.0.transform_vector3(v.as_dvec3()).as_vec3()
     }
 
-    /// Returns a normal of the object in the world, unit length; zero where there is none.
+    /// Maps a normal of the object to the world. The result has unit length, or is zero if it is undefined.
     #[inline]
     pub(super) fn normal(&self, n: Vec3) -> Vec3 {
         (self.cofactors() * n.as_dvec3())
@@ -41,7 +41,7 @@ impl WorldFromObject {
         DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y))
     }
 
-    /// Returns 1, or -1 where the map mirrors.
+    /// Returns 1, or -1 if the map mirrors.
     #[inline]
     pub(super) fn sign(&self) -> f32 {
         let [x, y, z] = self.columns();
@@ -70,8 +70,7 @@ impl WorldFromObject {
         [m.x_axis, m.y_axis, m.z_axis]
     }
 
-    /// Returns a bound of the error in the world of a point in the object's space, with coordinates up to
-    /// `magnitude`.
+    /// Returns a bound of the world error of a point whose coordinates in the object's space are at most `magnitude`.
     #[inline]
     pub(super) fn error(&self, magnitude: f32) -> f32 {
         let [x, y, z] = self.columns();

@@ -1,4 +1,4 @@
-//! Rectangles of texels in linear values, with smaller copies for where a pixel covers many.
+//! Images: rectangles of linear texels, with smaller copies for pixels that cover many texels.
 
 /// A rectangle of texels with `N` linear channels; row 0 is the top.
 #[derive(Clone, Debug, PartialEq)]
@@ -6,14 +6,15 @@ pub struct Image<const N: usize> {
     width: usize,
     height: usize,
     texels: Vec<[f32; N]>,
-    /// The least and the most of each channel.
+    /// The smallest and the largest value of each channel.
     bounds: [[f32; N]; 2],
-    /// Each about half as wide and high as the one before, down to one texel; none unless asked for.
+    /// The smaller copies, each about half as wide and high as the one before, down to one texel; empty unless asked
+    /// for.
     smaller: Vec<Self>,
 }
 
 impl<const N: usize> Image<N> {
-    /// Makes an image of `texels.len() / width` rows. None: empty, or no whole number of rows.
+    /// Makes an image of `texels.len() / width` rows. None: it is empty, or the last row is not complete.
     pub fn new(width: usize, texels: Vec<[f32; N]>) -> Option<Self> {
         let whole = width > 0 && !texels.is_empty() && texels.len().is_multiple_of(width);
         whole.then(|| Self {
@@ -27,8 +28,8 @@ impl<const N: usize> Image<N> {
 
     /// Adds smaller copies of the image, which take a third of its memory.
     ///
-    /// A texel of a copy is the mean of the texels below it, by the areas that it shares with them:
-    /// every copy has the mean of the image.
+    /// A texel of a copy is the mean of the texels that it covers, weighted by the covered area: every copy has the
+    /// mean of the image.
     #[must_use]
     pub fn with_copies(mut self) -> Self {
         self.smaller.clear();
@@ -57,12 +58,12 @@ impl<const N: usize> Image<N> {
         }
     }
 
-    /// Texels in a row.
+    /// Returns the number of texels in a row.
     pub fn width(&self) -> usize {
         self.width
     }
 
-    /// Rows.
+    /// Returns the number of rows.
     pub fn height(&self) -> usize {
         self.height
     }
@@ -72,7 +73,7 @@ impl<const N: usize> Image<N> {
         &self.texels
     }
 
-    /// Returns the least and the most of each channel.
+    /// Returns the smallest and the largest value of each channel.
     pub fn bounds(&self) -> [[f32; N]; 2] {
         self.bounds
     }
@@ -110,7 +111,8 @@ impl<const N: usize> Image<N> {
     }
 }
 
-/// Returns the least and the most of each channel; NaN becomes any number, by what is done with it.
+/// Returns the smallest and the largest value of each channel. A NaN makes both unbounded, because later operations
+/// may turn it into any number.
 fn bounds<const N: usize>(texels: &[[f32; N]]) -> [[f32; N]; 2] {
     let empty = [[f32::INFINITY; N], [f32::NEG_INFINITY; N]];
     let or = |value: f32, bound: f32| if value.is_nan() { bound } else { value };
@@ -122,8 +124,8 @@ fn bounds<const N: usize>(texels: &[[f32; N]]) -> [[f32; N]; 2] {
     })
 }
 
-/// The texels of a row that make one of a row half as long: the first index, and the weights of it
-/// and of the next two.
+/// The texels of a row that are averaged for one texel of a row half as long: the first index, and the weights of
+/// this texel and the next two.
 struct Shares {
     first: usize,
     weights: [f64; 3],
@@ -136,7 +138,7 @@ impl Shares {
     }
 }
 
-/// Returns the shares of each texel of a row that is half as long as one of `n`, rounded up.
+/// Returns the shares of each texel of a row half as long as one of `n` texels, rounded up.
 fn shares(n: usize) -> Vec<Shares> {
     let short = n.div_ceil(2);
     // Lengths are in units of 1 / (n · short) of the row: all borders are whole numbers.

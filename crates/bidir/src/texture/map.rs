@@ -1,5 +1,5 @@
-//! Images laid over a surface: the texel at the point, or four around it interpolated, in linear
-//! values; or as much of it as a pixel covers, from a smaller copy.
+//! Image textures: the texel at the point, or the interpolation of the four around it, in linear values; or the mean
+//! of the texels that a pixel covers, from a smaller copy.
 
 use super::{Image, Mapping, RequiredInputs, TexturePoint};
 use crate::math::{Vec2, Vec3, sqr};
@@ -8,14 +8,13 @@ use std::sync::Arc;
 /// The values beyond an image's borders.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Wrap {
-    /// Beyond the borders that s crosses, and beyond those that t crosses.
+    /// The values beyond the borders of s, and of t.
     Axes([Beyond; 2]),
-    /// The neighbours on a sphere that the image is the octahedral map of: the other half of the
-    /// same border, mirrored.
+    /// The neighbours on the sphere, for an octahedral map: the other half of the same border, mirrored.
     OctahedralSphere,
 }
 
-/// The values beyond the borders that one coordinate crosses.
+/// The values beyond the borders of one coordinate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Beyond {
     /// The image again.
@@ -29,25 +28,25 @@ pub enum Beyond {
 }
 
 impl Wrap {
-    /// Treats all borders alike.
+    /// Makes the same choice for all borders.
     pub const fn all(beyond: Beyond) -> Self {
         Self::Axes([beyond; 2])
     }
 }
 
-/// How texels become a function.
+/// The interpolation of texels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ImageFilter {
     /// The texel that the point lies in.
     Point,
     /// Interpolation between the four nearest texel centres.
     Bilinear,
-    /// The same between the two smaller copies of the image whose texels are about as wide as a
-    /// pixel; the image itself where it has none.
+    /// Bilinear interpolation in the two smaller copies whose texels are about as wide as a pixel, and between them;
+    /// in the image itself if it has no copies.
     Trilinear,
 }
 
-/// A change of values that were looked up.
+/// A change of the values of texels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Change {
     /// Texels are multiplied by the scale.
@@ -63,7 +62,7 @@ pub struct ImageMap<const N: usize> {
     pub image: Arc<Image<N>>,
     /// The values beyond the border.
     pub wrap: Wrap,
-    /// How texels are interpolated.
+    /// The interpolation of texels.
     pub filter: ImageFilter,
     /// The change of values.
     pub change: Change,
@@ -102,15 +101,15 @@ impl<const N: usize> ImageMap<N> {
         }
     }
 
-    /// Returns the copy whose texels are as wide as a pixel, as a real number.
+    /// Returns the level of the copy whose texels are as wide as a pixel, as a real number.
     ///
-    /// If texels are not square on the surface, this is measured across their longer side: the texture
-    /// is never coarser than a pixel. The pixel's samples average the rest.
+    /// If texels are not square on the surface, their longer side counts, so that the texture is never coarser than a
+    /// pixel. The pixel's samples average the rest.
     fn level(&self, at: &TexturePoint) -> f32 {
         let [s, t] = self.mapping.gradients(at);
         let texels = size(&self.image) * at.footprint.width;
         let least = least_stretch2(s * texels.x, t * texels.y);
-        // Not for one texel or less, nor where the gradients are not known.
+        // The image itself is used for one texel or less, or if the gradients are unknown.
         if least > 1.0 {
             0.5 * libm::log2f(least)
         } else {
@@ -162,7 +161,7 @@ impl<const N: usize> ImageMap<N> {
 }
 
 impl Beyond {
-    /// Returns the one of `count` texels in a row that lies at `i`. None: zero does.
+    /// Returns the index, among `count` texels of a row, of the texel at `i`. None: the value is zero.
     #[inline]
     fn index(self, i: i64, count: i64) -> Option<i64> {
         match self {
@@ -182,14 +181,14 @@ fn size<const N: usize>(image: &Image<N>) -> Vec2 {
     Vec2::new(image.width() as f32, image.height() as f32)
 }
 
-/// Places among texels that whole numbers can count, with room for sums.
+/// Clamps a position among texels, so that whole numbers can count it, with room for sums.
 #[inline]
 fn countable(place: Vec2) -> Vec2 {
     place.clamp(Vec2::splat(-1e15), Vec2::splat(1e15))
 }
 
-/// Returns the texel of an octahedral map that lies at (`x`, `y`): a step over a border mirrors the
-/// coordinate along the border, and goes on inwards. Two such steps along an axis lead back.
+/// Returns the texel of an octahedral map at (`x`, `y`). A step over a border mirrors the coordinate along the
+/// border, and continues inwards. Two such steps along an axis lead back.
 fn octahedral([x, y]: [i64; 2], [width, height]: [i64; 2]) -> (i64, i64) {
     let crossings = x.div_euclid(width) + y.div_euclid(height);
     let (x, y) = (x.rem_euclid(width), y.rem_euclid(height));
@@ -200,11 +199,11 @@ fn octahedral([x, y]: [i64; 2], [width, height]: [i64; 2]) -> (i64, i64) {
     }
 }
 
-/// Returns the square of the smaller singular value of the matrix with rows `s` and `t`: by how much the map
-/// stretches the direction that it stretches least.
+/// Returns the square of the smaller singular value of the matrix with rows `s` and `t`: the stretch along the
+/// direction that it stretches least.
 fn least_stretch2(s: Vec3, t: Vec3) -> f32 {
     let (a, b, c) = (s.length_squared(), s.dot(t), t.length_squared());
     let spread = (sqr(a - c) + 4.0 * sqr(b)).sqrt();
-    // Both singular values together are the area; the larger one loses no digits.
+    // The product of both singular values is the area; the larger one loses no digits.
     s.cross(t).length_squared() / ((a + c + spread) / 2.0)
 }

@@ -1,7 +1,7 @@
-//! From points of a surface to the plane or space that a texture is defined in.
+//! Mappings from points of a surface to the plane or space in which a texture is defined.
 //!
-//! Texture space is that of the `Texture` directive in a scene file; here is the map to it from
-//! the world. Points of shared objects are mapped where they stand in the world.
+//! Texture space is the space of the `Texture` directive in a scene file; the map to it from the world is here.
+//! Points of objects are mapped from their position in the world.
 
 use super::{Footprint, RequiredInputs, TexturePoint};
 use crate::math::{Affine2, Affine3A, PI, Vec2, Vec3, sqr};
@@ -21,7 +21,7 @@ impl TextureSpace {
         stretch: 1.0,
     };
 
-    /// Returns the space that `from_world` leads to.
+    /// Makes the space with the map `from_world`.
     pub fn new(from_world: Affine3A) -> Self {
         let m = from_world.matrix3;
         let columns = [m.x_axis, m.y_axis, m.z_axis].map(|axis| Vec3::from(axis).length());
@@ -37,20 +37,20 @@ impl TextureSpace {
         self.from_world.transform_point3(at.point)
     }
 
-    /// Returns how wide a pixel is in this space, at most.
+    /// Returns an upper bound of the width of a pixel in this space.
     #[inline]
     pub fn width(&self, at: &TexturePoint) -> f32 {
         self.stretch * at.footprint.width
     }
 
-    /// Returns the gradient over the world of a function with this gradient here.
+    /// Converts a gradient in this space to the world.
     #[inline]
     fn gradient(&self, local: Vec3) -> Vec3 {
         self.from_world.matrix3.transpose() * local
     }
 }
 
-/// From a surface to the (s, t) of a texture.
+/// A mapping from a surface to the (s, t) of a texture.
 #[derive(Clone, Copy, Debug)]
 pub enum Mapping {
     /// `scale`·(u, v) + `offset`.
@@ -60,7 +60,7 @@ pub enum Mapping {
         /// Offsets of s and t.
         offset: Vec2,
     },
-    /// An affine map of (u, v), which may turn them.
+    /// An affine map of (u, v), possibly with a rotation.
     Affine(Affine2),
     /// s = θ/π from +z, t = φ/2π from +x toward +y, as seen from the origin of texture space.
     Spherical(TextureSpace),
@@ -78,13 +78,13 @@ pub enum Mapping {
 }
 
 impl Mapping {
-    /// The parameters as they are.
+    /// The mapping (s, t) = (u, v).
     pub const IDENTITY: Self = Self::Parameters {
         scale: Vec2::ONE,
         offset: Vec2::ZERO,
     };
 
-    /// Returns (p·`s`, p·`t`) + `offset` with p in the space that `from_world` leads to.
+    /// Makes the mapping (p·`s`, p·`t`) + `offset`, with p in the space with the map `from_world`.
     pub fn planar(from_world: &Affine3A, [s, t]: [Vec3; 2], offset: Vec2) -> Self {
         let space = TextureSpace::new(*from_world);
         let origin = Vec3::from(from_world.translation);
@@ -127,7 +127,7 @@ impl Mapping {
         }
     }
 
-    /// Returns ∇s and ∇t over the surface. Unit: 1/m. Zero where they are not known.
+    /// Returns ∇s and ∇t over the surface, zero if they are unknown. Unit: 1/m.
     pub(super) fn gradients(&self, at: &TexturePoint) -> [Vec3; 2] {
         let Footprint {
             gradient_u,

@@ -1,9 +1,8 @@
-//! Quantities that vary over a surface.
+//! Textures: quantities that vary over a surface.
 //!
-//! A texture is a function of the point, its normal and its parameters, and of how wide a pixel is
-//! there for the camera ([`TexturePoint`]); it never depends on how a walk arrived, so the integrand
-//! stays one function of the path. Colours are linear Rec. 709; the material that asks chooses the
-//! [`Lanes`](crate::spectrum::Lanes) conversion they go through.
+//! A texture is a function of the point, its normal, its parameters, and the width of a pixel there for the camera
+//! ([`TexturePoint`]). It never depends on the walk that reached the point, so that the integrand stays a function of
+//! the path. Colours are linear Rec. 709; the material chooses the [`Lanes`](crate::spectrum::Lanes) conversion.
 //!
 //! Numbers and colours share one implementation over [`Value`]. Evaluation allocates nothing, and
 //! takes time in proportion to [`Texture::size`].
@@ -19,7 +18,7 @@ mod pattern;
 mod point;
 mod range;
 
-/// Returns a texture's number as α.
+/// Converts a texture's number to α: clamps it to 0 to 1, and NaN to 1.
 #[inline]
 pub(crate) fn clamped_alpha(alpha: f32) -> f32 {
     if alpha < 1.0 { alpha.max(0.0) } else { 1.0 }
@@ -50,17 +49,17 @@ pub trait Value: Copy + Debug {
     #[must_use]
     fn lerp(self, other: Self, t: f32) -> Self;
 
-    /// Returns the product with a number.
+    /// Returns the product of the value and `factor`.
     #[must_use]
     fn scaled(self, factor: f32) -> Self;
 
     /// Returns the value of an image.
     fn look_up(map: &Self::Map, at: &TexturePoint) -> Self;
 
-    /// Returns the dependences of a look-up.
+    /// Returns the inputs that a look-up needs besides the parameters.
     fn needs(map: &Self::Map) -> RequiredInputs;
 
-    /// Returns the colour as such a value: a number is the mean of its channels.
+    /// Converts a colour to this type; to a number by the mean of its channels.
     fn of_color(color: Rgb) -> Self;
 }
 
@@ -130,17 +129,17 @@ pub type FloatTexture = Texture<f32>;
 pub enum Texture<T: Value> {
     /// The same everywhere.
     Constant(T),
-    /// Looked up in an image.
+    /// The values of an image.
     Image(Arc<T::Map>),
     /// A texture times a number.
     Scale(Arc<Scale<T>>),
     /// A mixture of two textures.
     Mix(Arc<Mix<T>>),
-    /// A mixture by the surface's direction.
+    /// A mixture that depends on the direction of the normal.
     DirectionMix(Arc<DirectionMix<T>>),
-    /// Between four corners.
+    /// Interpolation between four corners.
     Bilerp(Arc<Bilerp<T>>),
-    /// Two textures in turn.
+    /// Two textures in alternating cells.
     Checkerboard(Arc<Checkerboard<T>>),
     /// Dots in some cells of a grid.
     Dots(Arc<Dots<T>>),
@@ -164,7 +163,7 @@ pub struct Scale<T: Value> {
 pub struct Mix<T: Value> {
     /// The textures to be mixed.
     pub textures: [Texture<T>; 2],
-    /// The part of the second.
+    /// The weight of the second.
     pub amount: FloatTexture,
 }
 
@@ -204,7 +203,7 @@ impl<T: Value> Texture<T> {
         }
     }
 
-    /// Returns the dependences of its values beside the parameters (u, v).
+    /// Returns the inputs that its values need besides the parameters (u, v).
     pub fn needs(&self) -> RequiredInputs {
         let own = match self {
             Self::Image(map) => T::needs(map),
@@ -220,7 +219,7 @@ impl<T: Value> Texture<T> {
         self.number().map_or(all, |number| all.and(number.needs()))
     }
 
-    /// Returns how many textures it is made of, itself included; one that is used twice counts twice.
+    /// Returns the number of textures that it is made of, including itself; one that is used twice counts twice.
     pub fn size(&self) -> usize {
         let parts: usize = self.parts().iter().map(Self::size).sum();
         1 + parts + self.number().map_or(0, Texture::size)
@@ -256,7 +255,7 @@ impl<T: Value> Mix<T> {
     fn eval(&self, at: &TexturePoint) -> T {
         let amount = self.amount.eval(at);
         let [first, second] = &self.textures;
-        // Textures of weight 0 are not looked up: that saves time, and keeps values that are not finite out.
+        // Textures of weight 0 are not looked up: this saves time, and excludes values that are not finite.
         if amount == 0.0 {
             first.eval(at)
         } else if 1.0 - amount == 0.0 {
@@ -275,17 +274,17 @@ impl<T: Value> DirectionMix<T> {
     }
 }
 
-/// The dependences of a texture beside the parameters (u, v).
+/// The inputs that a texture needs besides the parameters (u, v).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RequiredInputs {
-    /// True where the point or the normal matters.
+    /// True if it needs the point or the normal.
     pub surface: bool,
-    /// True where it matters how wide a pixel is, or where parameters lead.
+    /// True if it needs the width of a pixel, or the directions of the parameters.
     pub footprint: bool,
 }
 
 impl RequiredInputs {
-    /// The parameters alone.
+    /// Only the parameters.
     pub const NOTHING: Self = Self {
         surface: false,
         footprint: false,
@@ -301,7 +300,7 @@ impl RequiredInputs {
         footprint: true,
     };
 
-    /// Returns the dependences of two textures together.
+    /// Returns the inputs that either needs.
     #[must_use]
     pub fn and(self, other: Self) -> Self {
         Self {

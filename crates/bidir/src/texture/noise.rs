@@ -1,7 +1,7 @@
-//! Noise of lattice gradients \[Perlin02\], sums of it over octaves, and marble.
+//! Gradient noise on a lattice \[Perlin02\], its sums over octaves, and marble.
 //!
-//! Constants are pbrt-v4's: its scenes were made by looking at what they give. Octaves that are
-//! finer than a pixel are left out, the last by degrees.
+//! The constants are those of pbrt-v4, whose scenes were made with them. Octaves finer than a pixel are left out; the
+//! last one fades out.
 
 use super::{TexturePoint, TextureSpace};
 use crate::math::{Vec3, sin_cos};
@@ -24,7 +24,7 @@ const PERMUTATION: [u8; 256] = [
     128, 195, 78, 66, 215, 61, 156, 180,
 ];
 
-/// The gradients at lattice points: to the middles of a cube's edges, some of them twice.
+/// The gradients at lattice points: they point to the middles of a cube's edges, some of them twice.
 const GRADIENTS: [Vec3; 16] = [
     Vec3::new(1.0, 1.0, 0.0),
     Vec3::new(-1.0, 1.0, 0.0),
@@ -48,7 +48,7 @@ const GRADIENTS: [Vec3; 16] = [
 pub(super) fn noise(p: Vec3) -> f32 {
     let cell = p.floor();
     let within = p - cell;
-    // Whole numbers, of which the last eight bits count; infinity and NaN become some number.
+    // Only the last eight bits of these whole numbers matter; infinity and NaN become some number.
     let corner = [cell.x, cell.y, cell.z].map(|x| x as i64);
     let permuted = |x: i64| i64::from(PERMUTATION[(x & 255) as usize]);
     let gradient = |offset: [i64; 3]| {
@@ -68,10 +68,10 @@ fn lerp(a: f32, b: f32, t: f32) -> f32 {
     a * (1.0 - t) + b * t
 }
 
-/// How much each octave is finer than the one before.
+/// The ratio of the frequencies of successive octaves, λ.
 const LACUNARITY: f32 = 1.99;
 
-/// Octaves of noise, each weaker by a factor than the one before.
+/// Octaves of noise. The amplitude of each is `gain` times that of the one before.
 #[derive(Clone, Copy, Debug)]
 struct Octaves {
     count: u32,
@@ -79,7 +79,7 @@ struct Octaves {
 }
 
 impl Octaves {
-    /// Returns Σ gain^i · `shape`(noise(λ^i p)), where a pixel is `width` wide. An octave left out counts
+    /// Returns Σ gain^i · `shape`(noise(λ^i p)) for a pixel of width `width`. An octave that is left out counts as
     /// `mean`.
     fn sum(self, p: Vec3, width: f32, mean: f32, shape: impl Fn(f32) -> f32) -> f32 {
         let most = self.count as f32;
@@ -104,14 +104,14 @@ impl Octaves {
     }
 }
 
-/// Rises smoothly from 0 below 0.3 to 1 above 0.7.
+/// Returns a function that rises smoothly from 0 below 0.3 to 1 above 0.7.
 #[inline]
 fn smoothstep(x: f32) -> f32 {
     let t = ((x - 0.3) / 0.4).clamp(0.0, 1.0);
     t * t * (3.0 - 2.0 * t)
 }
 
-/// Returns Σ ωⁱ noise(λⁱ p) over `octaves`, with ω = `roughness`, in every detail.
+/// Returns Σ ωⁱ noise(λⁱ p) over all `octaves`, with ω = `roughness`.
 pub fn fractal_noise(p: Vec3, octaves: u32, roughness: f32) -> f32 {
     let octaves = Octaves {
         count: octaves,
@@ -141,7 +141,7 @@ pub enum NoiseKind {
         /// ω.
         roughness: f32,
     },
-    /// Waves whose height changes from place to place.
+    /// Waves whose height varies in space.
     Windy,
 }
 
@@ -181,13 +181,13 @@ pub struct Marble {
     pub roughness: f32,
     /// The factor of the point.
     pub scale: f32,
-    /// How strong the noise is.
+    /// The strength of the noise.
     pub variation: f32,
     /// The space in which it is defined.
     pub space: TextureSpace,
 }
 
-/// The points that the colour curve of marble goes by.
+/// The control points of the colour curve of marble.
 const VEINS: [Rgb; 9] = [
     [0.58, 0.58, 0.6],
     [0.58, 0.58, 0.6],
@@ -217,7 +217,7 @@ impl Marble {
     }
 }
 
-/// Returns the cubic Bézier curve, by repeated interpolation.
+/// Returns the point at `t` of a cubic Bézier curve, by repeated interpolation.
 fn bezier([a, b, c, d]: [f32; 4], t: f32) -> f32 {
     let (ab, bc, cd) = (lerp(a, b, t), lerp(b, c, t), lerp(c, d, t));
     lerp(lerp(ab, bc, t), lerp(bc, cd, t), t)

@@ -6,12 +6,12 @@ use super::noise::noise;
 use super::{Mapping, RequiredInputs, Texture, TexturePoint, TextureSpace, Value};
 use crate::math::{Vec2, Vec3};
 
-/// Values at the corners of the unit square of (s, t), and between them.
+/// Values at the corners of the unit square of (s, t), interpolated between them.
 #[derive(Clone, Copy, Debug)]
 pub struct Bilerp<T> {
-    /// At (0, 0), (1, 0), (0, 1) and (1, 1).
+    /// The values at (0, 0), (1, 0), (0, 1) and (1, 1).
     pub corners: [T; 4],
-    /// The square.
+    /// The mapping to the square.
     pub mapping: Mapping,
 }
 
@@ -23,7 +23,7 @@ impl<T: Value> Bilerp<T> {
     }
 }
 
-/// The cells of a checkerboard; each is one wide.
+/// The cells of a checkerboard, of width 1.
 #[derive(Clone, Copy, Debug)]
 pub enum Cells {
     /// Squares.
@@ -32,7 +32,7 @@ pub enum Cells {
     Space(TextureSpace),
 }
 
-/// Two textures in turn; the cell from the origin on has the first.
+/// Two textures in alternating cells; the cell that begins at the origin has the first.
 #[derive(Clone, Debug)]
 pub struct Checkerboard<T: Value> {
     /// The textures of the cells.
@@ -66,12 +66,12 @@ impl<T: Value> Checkerboard<T> {
     }
 }
 
-/// Round dots in about half of the cells of a grid, each somewhere in its cell.
+/// Round dots in about half of the cells of a grid, each at a random position in its cell.
 #[derive(Clone, Debug)]
 pub struct Dots<T: Value> {
-    /// Outside of the dots, and inside.
+    /// The texture outside of the dots, and the one inside.
     pub textures: [Texture<T>; 2],
-    /// The grid, whose cells are one wide and centred at whole numbers.
+    /// The mapping to the grid, whose cells have width 1 and are centred at whole numbers.
     pub mapping: Mapping,
 }
 
@@ -83,7 +83,7 @@ impl<T: Value> Dots<T> {
         let st = self.mapping.st(at);
         let cell = (st + 0.5).floor();
         let number = |x: f32, y: f32| noise(Vec3::new(cell.x + x, cell.y + y, 0.5));
-        // The offsets into the noise are pbrt-v4's, so that dots are where they are there.
+        // The offsets into the noise are pbrt-v4's, so that dots have the same positions.
         let has_dot = number(0.5, 0.5) > 0.0;
         let shift = Vec2::new(number(1.5, 2.8), number(4.5, 9.8)) * (0.5 - RADIUS);
         let is_inside = (st - cell - shift).length_squared() < RADIUS * RADIUS;

@@ -3,7 +3,7 @@
 use crate::math::{Vec2, Vec3};
 use crate::shape::{Differentials, SurfacePoint};
 
-/// A point that a texture is asked for, in world space.
+/// A point at which a texture is evaluated, in world space.
 #[derive(Clone, Copy, Debug)]
 pub struct TexturePoint {
     /// The surface's parameters.
@@ -14,11 +14,11 @@ pub struct TexturePoint {
     pub normal: Vec3,
     /// The footprint of a pixel.
     pub footprint: Footprint,
-    /// The side of the surface's second parameter; right-handed where it is not known.
+    /// The side of the surface's second parameter; right-handed if it is unknown.
     pub handedness: Handedness,
 }
 
-/// The side of the normal's left that ∂p/∂v is on, seen along ∂p/∂u.
+/// The side of ∂p/∂v, seen along ∂p/∂u with the normal up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Handedness {
     /// ∂p/∂u, ∂p/∂v and the normal are right-handed.
@@ -28,7 +28,7 @@ pub enum Handedness {
 }
 
 impl Handedness {
-    /// Returns the sides of these differentials around a normal.
+    /// Returns the handedness of these differentials around a normal.
     #[inline]
     pub fn of(differentials: &Differentials, normal: Vec3) -> Self {
         let turn = differentials.dp_du.cross(differentials.dp_dv);
@@ -39,7 +39,7 @@ impl Handedness {
         }
     }
 
-    /// Returns 1, or -1 for left-handed ones.
+    /// Returns 1, or -1 if left-handed.
     #[inline]
     pub fn sign(self) -> f32 {
         match self {
@@ -52,16 +52,16 @@ impl Handedness {
 /// The part of a surface that a pixel covers: a function of the point and the camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Footprint {
-    /// How wide it is; 0: textures are as fine as they can be. Unit: m.
+    /// Its width; 0: textures are not filtered. Unit: m.
     pub width: f32,
-    /// ∇u over the surface; zero where it is not known. Unit: 1/m.
+    /// ∇u over the surface; zero if it is unknown. Unit: 1/m.
     pub gradient_u: Vec3,
-    /// ∇v.
+    /// ∇v over the surface; zero if it is unknown. Unit: 1/m.
     pub gradient_v: Vec3,
 }
 
 impl Footprint {
-    /// No extent.
+    /// A footprint without extent.
     pub const POINT: Self = Self {
         width: 0.0,
         gradient_u: Vec3::ZERO,
@@ -70,7 +70,7 @@ impl Footprint {
 }
 
 impl TexturePoint {
-    /// Makes a point of a surface, without an extent.
+    /// Makes a point of a surface, without a footprint.
     #[inline]
     pub fn new(surface: &SurfacePoint) -> Self {
         Self {
@@ -94,7 +94,7 @@ impl TexturePoint {
         }
     }
 
-    /// Returns the point where a pixel is `width` wide, with the sides of its parameters.
+    /// Returns the point with a pixel width of `width`, and with the gradients and the handedness of its parameters.
     #[inline]
     #[must_use]
     pub fn seen(self, width: f32, differentials: &Differentials) -> Self {

@@ -1,5 +1,5 @@
-//! Bounds of the numbers that a texture gives. Points alone cannot give them, as between any of them
-//! it may be another number.
+//! Bounds of the values of a number texture. Samples at points cannot give them, because the texture may have other
+//! values between them.
 
 use super::map::{Change, ImageMap, Wrap};
 use super::{Beyond, Bilerp, FloatTexture, Mix, Texture};
@@ -7,9 +7,9 @@ use super::{Beyond, Bilerp, FloatTexture, Mix, Texture};
 /// Numbers between two bounds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Range {
-    /// None is less.
+    /// The lower bound.
     pub least: f32,
-    /// None is more.
+    /// The upper bound.
     pub most: f32,
 }
 
@@ -20,7 +20,7 @@ impl Range {
         most: f32::MAX,
     };
 
-    /// One number.
+    /// Makes the range of one number.
     pub const fn of(value: f32) -> Self {
         Self {
             least: value,
@@ -28,7 +28,7 @@ impl Range {
         }
     }
 
-    /// All numbers of these; there is one at the least.
+    /// Makes the smallest range around these numbers, of which there is at least one.
     fn around(values: impl IntoIterator<Item = f32>) -> Self {
         let empty = Self {
             least: f32::INFINITY,
@@ -40,12 +40,12 @@ impl Range {
         })
     }
 
-    /// Returns the numbers in either, and between them.
+    /// Returns the smallest range around both.
     fn and(self, other: Self) -> Self {
         Self::around([self.least, self.most, other.least, other.most])
     }
 
-    /// Returns the products of its numbers and those of the other.
+    /// Returns the range of the products of numbers in both ranges.
     #[must_use]
     pub fn times(self, other: Self) -> Self {
         let [a, b] = [self.least, self.most];
@@ -64,7 +64,7 @@ impl Range {
 }
 
 impl FloatTexture {
-    /// Returns the bounds of its values at all points, not always the closest ones.
+    /// Returns bounds of its values at all points, not always the tightest.
     pub fn range(&self) -> Range {
         match self {
             Self::Constant(value) => Range::of(*value),
@@ -91,7 +91,7 @@ impl Mix<f32> {
             return Range::ALL;
         }
         let [first, second] = self.textures.each_ref().map(Texture::range);
-        // Linear in the amount: the ends are at its ends.
+        // The mixture is linear in the amount: its bounds are at the ends.
         let with = |amount: f32| Range {
             least: first.least * (1.0 - amount) + second.least * amount,
             most: first.most * (1.0 - amount) + second.most * amount,
@@ -101,7 +101,7 @@ impl Mix<f32> {
 }
 
 impl Bilerp<f32> {
-    /// Beyond the unit square there are no bounds, unless all corners are the same.
+    /// Returns bounds. Outside the unit square there are none, unless all corners are equal.
     fn range(&self) -> Range {
         let corners = Range::around(self.corners);
         if corners.least < corners.most {
@@ -113,7 +113,8 @@ impl Bilerp<f32> {
 }
 
 impl ImageMap<1> {
-    /// Smaller copies are means of texels, and what is interpolated lies between some.
+    /// Returns bounds by the texels: texels of smaller copies are means of these, and interpolated values are between
+    /// them.
     fn range(&self) -> Range {
         let [[least], [most]] = self.image.bounds();
         let mut texels = Range { least, most };
