@@ -80,7 +80,7 @@ type LastUnits = [u16; 1 + Cells::NAMES];
 pub struct PairSums {
     /// κ_c.
     pub light_vertices: Vec<f64>,
-    /// Σ X² of each pair, in the order of [`Cells::pair`]. Unit: squared luminance, of any scale.
+    /// Σ X² of each pair, in the order of `Cells::pair`. Unit: squared luminance, of any scale.
     pub squares: Vec<f64>,
     /// For each pair, the number of connections that were traced, and the number of those that were visible.
     pub arrived: Vec<[u32; 2]>,
