@@ -1,5 +1,5 @@
-//! Light paths that estimators miss: those that none of their strategies makes, and those that only
-//! chance finds.
+//! Light paths that estimators miss: paths that none of their strategies makes, and paths that only hits by chance
+//! find.
 //!
 //! In Heckbert's words, with S for a Dirac scattering, D for any other, L for a light and E for the
 //! camera \[Heckbert90\]: a connection needs two neighbours without S. A light that no ray can hit, a
@@ -26,20 +26,20 @@ pub enum BlindSpot {
     Caustics,
     /// L S+ E and L S+ D S+ E of lights that no ray hits.
     CausticsSeenBySpecular,
-    /// S E: whatever is seen in mirrors or through clear glass.
+    /// S E: light that is seen in mirrors or through clear glass.
     SeenBySpecular,
-    /// L E of a sky that parallel rays see.
+    /// L E of a sky, seen by an orthographic camera.
     Sky,
-    /// Media without an end that glow.
+    /// Endless media that emit.
     EndlessGlow,
-    /// L S+ D of lights that rays hit: by hits alone.
+    /// L S+ D of lights that rays can hit, only by hits.
     ChanceCaustics,
-    /// L S+ D S+ E of lights that rays hit: by hits alone.
+    /// L S+ D S+ E of lights that rays can hit, only by hits.
     ChanceCausticsSeenBySpecular,
 }
 
 impl BlindSpot {
-    /// Returns true where the light is missing from pictures, and not only noisy.
+    /// Returns true if the light is missing from pictures, not only noisy.
     pub const fn is_missing(self) -> bool {
         match self {
             Self::Caustics
@@ -51,7 +51,7 @@ impl BlindSpot {
         }
     }
 
-    /// Returns true where it is light of `light` that is not made.
+    /// Returns true if the missing paths may begin on `light`.
     pub fn concerns(self, light: &Light) -> bool {
         match self {
             Self::Caustics | Self::CausticsSeenBySpecular => light.is_delta(),
@@ -62,7 +62,7 @@ impl BlindSpot {
         }
     }
 
-    /// Returns the fewest vertices of these paths.
+    /// Returns the least number of vertices of these paths.
     const fn shortest(self) -> usize {
         match self {
             Self::Sky | Self::EndlessGlow => 2,

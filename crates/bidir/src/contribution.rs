@@ -57,7 +57,7 @@ impl Contribution {
 
     /// Returns C v / π: the value without the weight. None: no film can sum it, though it can sum the value.
     ///
-    /// Zero where the weight is zero, as not all such terms are traced.
+    /// It is zero if the weight is zero, because such terms are not all traced.
     pub fn unweighted(&self) -> Option<Spectrum> {
         if self.term.weight == 0.0 {
             return Some(Spectrum::ZERO);

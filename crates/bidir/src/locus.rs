@@ -1,27 +1,27 @@
-//! Places that paths go through: points of surfaces and in space, and directions to infinity.
+//! Loci: the points that paths go through, on surfaces, in space, or at infinity.
 
 use crate::math::Vec3;
 use crate::medium::{MediumId, MediumSides};
 
-/// The kind of a place.
+/// The kind of a locus.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LocusKind {
     /// A point of a surface or of a lens, which has a normal.
     Surface,
     /// A point in space.
     Space,
-    /// A point in space where a medium scatters or glows.
+    /// A point in space at which a medium scatters or emits.
     Medium,
-    /// A place at infinity.
+    /// A direction to infinity.
     Infinity,
 }
 
-/// A place that a path goes through.
+/// A point that a path goes through.
 #[derive(Clone, Copy, Debug)]
 pub struct Locus {
-    /// The point; for a place at infinity the unit direction towards it.
+    /// The point; at infinity, the unit direction towards it.
     pub point: Vec3,
-    /// The geometric normal, unit; zero where there is no surface.
+    /// The geometric normal, unit; zero without a surface.
     pub n_g: Vec3,
     /// A bound of the distance between `point` and the surface that the intersector sees.
     pub error: f32,
@@ -56,7 +56,7 @@ impl Locus {
         }
     }
 
-    /// Makes a point where `medium` scatters or glows.
+    /// Makes a point at which `medium` scatters or emits.
     #[inline]
     pub fn in_medium(point: Vec3, medium: MediumId) -> Self {
         Self {
@@ -65,20 +65,20 @@ impl Locus {
         }
     }
 
-    /// Puts the place between these media.
+    /// Returns the locus with these media on its sides.
     #[inline]
     #[must_use]
     pub fn within(self, media: MediumSides) -> Self {
         Self { media, ..self }
     }
 
-    /// Returns the medium that a ray along `w` leaves through.
+    /// Returns the medium on the side to which a ray along `w` leaves.
     #[inline]
     pub fn medium_toward(&self, w: Vec3) -> MediumId {
         self.media.toward(self.n_g.dot(w))
     }
 
-    /// Returns the place at infinity that the unit `direction` points to.
+    /// Makes the locus at infinity in the unit `direction`.
     #[inline]
     pub fn at_infinity(direction: Vec3) -> Self {
         Self {
@@ -87,13 +87,13 @@ impl Locus {
         }
     }
 
-    /// Returns true for a place at infinity.
+    /// Returns true for a locus at infinity.
     #[inline]
     pub fn is_infinite(&self) -> bool {
         self.kind == LocusKind::Infinity
     }
 
-    /// Returns |cosθ| between the normal and `w`; 1 where there is no surface.
+    /// Returns |cosθ| between the normal and `w`; 1 without a surface.
     #[inline]
     pub fn abs_cos(&self, w: Vec3) -> f32 {
         match self.kind {
@@ -102,16 +102,17 @@ impl Locus {
         }
     }
 
-    /// Returns the origin of a ray along `w` that does not meet the surface of this place: pushed off by the error
-    /// to the side that `w` leaves to.
+    /// Returns the origin of a ray along `w` that does not hit the surface of this locus: the point, offset by its
+    /// error to the side to which `w` leaves.
     #[inline]
     pub fn ray_origin(&self, w: Vec3) -> Vec3 {
         self.pushed_off(w, Vec3::splat(self.error))
     }
 
-    /// Returns the end of a ray from the point `from` that does not meet the surface of this place: pushed off by the
-    /// error and by what a ray of that length adds. Its direction, the corners as its origin sees them and the `t` of a
-    /// hit are rounded, each by at most half an epsilon of the way; another half is room.
+    /// Returns the end of a ray from the point `from` that does not hit the surface of this locus: the point, offset
+    /// by its error and by the error of a ray of this length. The ray's direction, the corners as seen from its
+    /// origin and the `t` of a hit are rounded, each by at most half an epsilon of the length; another half is
+    /// reserve.
     #[inline]
     pub fn ray_end(&self, from: Vec3) -> Vec3 {
         let back = from - self.point;
@@ -121,14 +122,15 @@ impl Locus {
         )
     }
 
-    /// Returns the point on the side that `w` leaves to, off the surface by errors up to these in its coordinates.
+    /// Returns the point offset from the surface, to the side to which `w` leaves, by errors up to these in its
+    /// coordinates.
     #[inline]
     fn pushed_off(&self, w: Vec3, errors: Vec3) -> Vec3 {
         let distance = self.n_g.abs().dot(errors);
         self.point + self.n_g * distance.copysign(self.n_g.dot(w))
     }
 
-    /// Returns the direction to this place from the point `from`, of any length.
+    /// Returns the direction to this locus from the point `from`, of any length.
     #[inline]
     pub fn direction_from(&self, from: Vec3) -> Vec3 {
         if self.is_infinite() {

@@ -1,9 +1,9 @@
-//! Values that people name: on the command line, in files and in Python.
+//! Values with names: on the command line, in files and in Python.
 
 use std::fmt::Display;
 use std::str::FromStr;
 
-/// A name that no value has.
+/// The error of a name that no value has.
 #[derive(Clone, Debug, thiserror::Error, PartialEq, Eq)]
 #[error("unknown name `{given}`: {hint}")]
 pub struct UnknownName {
@@ -12,7 +12,7 @@ pub struct UnknownName {
 }
 
 impl UnknownName {
-    /// Returns `given`, where names are those of `known`.
+    /// Makes the error of the name `given`; `known` are the names that exist.
     pub fn new(given: &str, known: &[&str]) -> Self {
         let hint = nearest(given, known.iter().copied()).map_or_else(
             || format!("expected {}", known.join(", ")),
@@ -25,15 +25,15 @@ impl UnknownName {
     }
 }
 
-/// A name with more letters has nothing near.
+/// The most letters of a name that is compared with others.
 const LONGEST_NAME: usize = 100;
 
 /// Returns the name that `name` was probably meant to be. None: nothing is near.
 pub fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
-    // A third of the letters may be wrong; two words of three letters are not each other.
+    // At most a third of the letters may be wrong, so that two words of three letters do not match.
     let letters = name.chars().count();
     let allowed = letters.div_ceil(3).min(4);
-    // Comparing takes the product of the lengths.
+    // A comparison takes time in proportion to the product of the lengths.
     let is_comparable = |known: &&str| {
         letters <= LONGEST_NAME && known.chars().count().abs_diff(letters) <= allowed
     };
@@ -50,7 +50,7 @@ fn distance(a: &str, b: &str) -> usize {
     strsim::osa_distance(&a.to_ascii_lowercase(), &b.to_ascii_lowercase())
 }
 
-/// Gives every variant of an enum without fields its name, by which it is read and written.
+/// Defines a name for every variant of an enum without fields, by which it is read and written.
 macro_rules! named {
     ($kind:ident { $($name:literal => $variant:ident),+ $(,)? }) => {
         impl $kind {
@@ -99,8 +99,7 @@ macro_rules! named {
 }
 pub(crate) use named;
 
-/// Lets serde read and write values as the text that they are read from and written as. Whole numbers are
-/// read, too.
+/// Implements serde for values as their text. Whole numbers are read, too.
 macro_rules! as_text {
     ($kind:ident $(<$inner:ident>)?) => {
         impl $(<$inner: std::fmt::Display>)? serde::Serialize for $kind $(<$inner>)? {

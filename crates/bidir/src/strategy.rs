@@ -1,4 +1,4 @@
-//! Strategies (s, t) by name: which way a path is made, and which ways take part.
+//! Strategies (s, t): the ways to make a path, and sets of them.
 
 use crate::names::as_text;
 use serde::{Serialize, Serializer};
@@ -45,7 +45,7 @@ impl Serialize for Strategy {
     }
 }
 
-/// Adds or removes the strategies that match it; a missing number matches all.
+/// A rule that adds or removes the strategies that match it; a missing number matches all.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Rule {
     enable: bool,
@@ -61,18 +61,18 @@ impl Rule {
     };
 }
 
-/// A set of strategies: a list of rules, of which the last that matches decides.
+/// A set of strategies: a list of rules, of which the last match decides.
 ///
 /// Written as a comma-separated list: `all`, `-s0` (without s = 0), `-t1`, `s2t3` or `+s2t3` (with
 /// this one). A list that begins with a removal begins with all, any other with none.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Strategies {
     rules: Vec<Rule>,
-    /// Bit t of number s is the answer for (s, t), because every weight asks.
+    /// The answers for short subpaths, for speed: bit t of element s is the answer for (s, t).
     short: [u64; SHORT],
 }
 
-/// Subpaths of fewer vertices are looked up; there is a bit for each.
+/// The number of vertices from which a subpath is not in `short`, which has a bit for each number.
 const SHORT: usize = u64::BITS as usize;
 
 impl Default for Strategies {
@@ -90,13 +90,13 @@ impl Strategies {
         }
     }
 
-    /// Returns true where the last rule is `all`: every strategy takes part.
+    /// Returns true if the last rule is `all`: every strategy takes part.
     #[inline]
     pub(crate) fn is_all(&self) -> bool {
         self.rules.last() == Some(&Rule::ALL)
     }
 
-    /// Returns true where the list adds a strategy for paths of more than `most` vertices alone.
+    /// Returns true if the list adds a strategy only for paths of more than `most` vertices.
     pub(crate) fn has_longer_than(&self, most: usize) -> bool {
         self.rules.iter().any(|rule| {
             let (s, t): (usize, usize) = (rule.s.unwrap_or(0).into(), rule.t.unwrap_or(1).into());
@@ -104,7 +104,7 @@ impl Strategies {
         })
     }
 
-    /// Returns true where strategy (s, t) takes part.
+    /// Returns true if strategy (s, t) takes part.
     #[inline]
     pub fn contains(&self, s: usize, t: usize) -> bool {
         match self.short.get(s) {
@@ -114,7 +114,7 @@ impl Strategies {
     }
 }
 
-/// Returns the last rule that matches (s, t); false where none does.
+/// Returns the decision of the last rule that matches (s, t); false if none does.
 fn decide(rules: &[Rule], s: usize, t: usize) -> bool {
     let matches = |rule: &&Rule| {
         rule.s.is_none_or(|only| usize::from(only) == s)
@@ -127,7 +127,7 @@ fn decide(rules: &[Rule], s: usize, t: usize) -> bool {
         .is_some_and(|rule| rule.enable)
 }
 
-/// Why a list of strategies cannot be read.
+/// The error of a list of strategies that cannot be read.
 #[derive(Clone, Debug, thiserror::Error, PartialEq, Eq)]
 #[error("`{0}` is not a strategy: expected `all`, or parts like `-s0`, `-t1`, `s2t3`")]
 pub struct StrategiesError(String);

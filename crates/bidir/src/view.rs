@@ -1,5 +1,5 @@
-//! A view of a scene: the camera that sees it and the film that keeps what it sees. Scene and view do not
-//! know each other, so that one scene serves many views.
+//! A view of a scene: a camera and its film. Scene and view do not refer to each other, so that one scene can have
+//! many views.
 
 use crate::camera::Camera;
 use crate::film::FilmSettings;
@@ -9,18 +9,18 @@ use thiserror::Error;
 /// The textures that are averaged over the footprint of a pixel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum TextureFiltering {
-    /// The textures that ask for it.
+    /// The textures with a filter that asks for it.
     #[default]
     AsAsked,
     /// No texture: a pixel's samples average them.
     Disabled,
 }
 
-/// The part of a pixel that textures are averaged over: its samples and its filter average too, and
-/// pbrt-v4 takes as much where a pixel has four samples.
+/// The fraction of a pixel's width that textures are averaged over. It is below 1, because samples and pixel filter
+/// average, too; pbrt-v4 uses the same for four samples per pixel.
 const FILTERED_PART: f32 = 0.5;
 
-/// The part of the film that is rendered is empty or outside it.
+/// The error of a crop that is empty, or outside of the film.
 #[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
 #[error("the crop is empty or outside of the film")]
 pub struct EmptyCrop;
@@ -50,13 +50,13 @@ impl View {
         })
     }
 
-    /// Takes another filtering of textures.
+    /// Returns the view with another filtering of textures.
     #[must_use]
     pub fn with_filtering(self, filtering: TextureFiltering) -> Self {
         Self { filtering, ..self }
     }
 
-    /// Takes another camera and another film.
+    /// Returns the view with another camera and another film.
     ///
     /// Errors: the film's crop is empty or outside of it.
     pub fn moved(&self, camera: Camera, film: FilmSettings) -> Result<Self, EmptyCrop> {
@@ -75,8 +75,8 @@ impl View {
         &self.film
     }
 
-    /// Returns the width that textures are averaged over at the point `p`: a function of the point and the view,
-    /// however a path came there. Unit: m.
+    /// Returns the width that textures are averaged over at the point `p`. It depends only on the point and the view,
+    /// not on the path. Unit: m.
     #[inline]
     pub fn footprint(&self, p: Vec3) -> f32 {
         match self.filtering {

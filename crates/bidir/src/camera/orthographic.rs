@@ -1,9 +1,8 @@
 //! W_e = dx/dA · δ(ω - forward): parallel rays that start on a plane. Densities are raster area per
 //! area of the plane, 1/m²; the direction is a Dirac distribution, whose coefficient counts 1.
 //!
-//! On a path such a camera is what a distant light is at the other end: a vertex at infinity. Its
-//! "point" is the direction towards it, and the next vertex's density is raster area per area of a
-//! surface, dx/dA |cosθ|.
+//! On a path, such a camera is like a distant light at the other end: a vertex at infinity. Its "point" is the
+//! direction towards it, and the density of the next vertex is raster area per area of a surface, dx/dA |cosθ|.
 
 use super::pose::Pose;
 use super::{CameraRay, LensSample};
@@ -26,8 +25,8 @@ pub struct OrthographicSettings {
 #[derive(Clone, Copy, Debug)]
 pub struct Orthographic {
     pub(super) pose: Pose,
-    /// Place on the plane = `screen_origin` + raster · `screen_per_raster` + (raster.y · `skew`, 0), in the
-    /// world's unit.
+    /// Position on the plane = `screen_origin` + raster · `screen_per_raster` + (raster.y · `skew`, 0), in the unit
+    /// of the world.
     screen_origin: Vec2,
     screen_per_raster: Vec2,
     skew: f32,
@@ -36,7 +35,7 @@ pub struct Orthographic {
 }
 
 impl Orthographic {
-    /// Returns the camera. None: its map is flat, or the screen has no area.
+    /// Makes the camera. None: its map is flat, or the screen has no area.
     pub fn new(settings: &OrthographicSettings) -> Option<Self> {
         let (pose, stretch) = Pose::new(&across(&settings.world_from_camera))?;
         let screen = settings.screen.map(|corner| corner * stretch.unit);

@@ -41,7 +41,7 @@ pub struct Perspective {
 }
 
 impl Perspective {
-    /// Returns the camera. None: its map is flat, or a size is not finite and positive where it must be.
+    /// Makes the camera. None: its map is flat, or a size is not finite and positive where it must be.
     pub fn new(settings: &PerspectiveSettings) -> Option<Self> {
         let (pose, stretch) = Pose::new(&settings.world_from_camera)?;
         let per_raster = (settings.screen[1] - settings.screen[0]) / settings.resolution;

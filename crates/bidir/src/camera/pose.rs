@@ -7,15 +7,15 @@ use crate::math::{Affine3A, Mat3, PI, Vec2, Vec3, sin_cos, sqr};
 /// change places. Unit: radians.
 const STEEPEST: f32 = 89.0 / 180.0 * PI;
 
-/// A camera's place: x right, y up, z forward, all of unit length. Mirrored cameras have a
+/// The position and the axes of a camera: x right, y up, z forward, all of unit length. Mirrored cameras have a
 /// left-handed frame in the world.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose {
     /// Its position.
     pub origin: Vec3,
-    /// The picture's right.
+    /// The direction to the right of the picture. Unit length.
     pub right: Vec3,
-    /// The picture's up.
+    /// The upward direction of the picture. Unit length.
     pub up: Vec3,
     /// The optical axis.
     pub forward: Vec3,
@@ -64,9 +64,9 @@ impl Stretch {
 /// A change of the direction in which a camera looks. Unit: radians.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rotation {
-    /// Towards the picture's right.
+    /// The angle towards the right of the picture.
     pub right: f32,
-    /// Towards the vertical.
+    /// The angle towards the vertical.
     pub up: f32,
 }
 
@@ -101,13 +101,13 @@ impl Pose {
         is_place.then_some((pose, stretch))
     }
 
-    /// Returns a world vector in the camera's axes.
+    /// Converts a vector from the world to the camera's axes.
     #[inline]
     pub fn to_local(self, v: Vec3) -> Vec3 {
         Vec3::new(self.right.dot(v), self.up.dot(v), self.forward.dot(v))
     }
 
-    /// Returns the world vector of one in the camera's axes.
+    /// Converts a vector from the camera's axes to the world.
     #[inline]
     pub fn to_world(self, v: Vec3) -> Vec3 {
         self.right * v.x + self.up * v.y + self.forward * v.z

@@ -4,15 +4,15 @@
 //! Two maps from the film to directions, y being up: by **longitude and latitude**, where
 //! dx/dω = A / (2π² sinθ) of a film of area A, and by **equal areas**, where it is A / 4π.
 //!
-//! Beyond the film's edge lies its other edge, which a pixel filter knows nothing of: it has to stay
-//! within its pixel.
+//! The film's opposite edge continues the image beyond an edge, but pixel filters do not know that: a filter must not
+//! be wider than its pixel.
 
 use super::pose::Pose;
 use super::{CameraRay, LensSample};
 use crate::locus::Locus;
 use crate::math::{Affine3A, Mat3, PI, Vec2, Vec3, direction_to_square, square_to_direction};
 
-/// How directions lie on the film of a [`Spherical`] camera.
+/// The map from directions to the film of a [`Spherical`] camera.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SphericalMapping {
     /// Longitude to the right, from the camera's right side over the front; latitude down, from
@@ -88,7 +88,7 @@ impl Spherical {
         }
     }
 
-    /// Returns a direction of the world in camera space, and dω_camera/dω_world = |det S⁻¹| / |S⁻¹ω|³.
+    /// Converts a direction from the world to camera space. Returns it with dω_camera/dω_world = |det S⁻¹| / |S⁻¹ω|³.
     #[inline]
     fn in_camera(&self, w: Vec3) -> (Vec3, f32) {
         let local = self.pose.to_local(w);
@@ -122,7 +122,7 @@ impl Spherical {
         p.distance(self.pose.origin)
     }
 
-    /// Returns distance times the width of a pixel, at the horizon where they are wider than elsewhere.
+    /// Returns the width of a pixel at a point. It is that at the horizon, where pixels are widest.
     #[inline]
     pub(super) fn pixel_width(&self, p: Vec3) -> f32 {
         let area = self.resolution.x * self.resolution.y;

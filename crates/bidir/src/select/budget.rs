@@ -6,10 +6,10 @@ use super::{Candidate, Chosen, Draws, Selector};
 /// Traces at most `rays` candidates: π = min(1, g_c / δ) with Σ π = `rays`, and one systematic
 /// draw for all.
 ///
-/// With one ray this is one per pair. With more it mostly has less variance than as many single
-/// choices: large candidates are certain, and one uniform number places evenly spaced pointers over
-/// the rest, so that neighbours are not chosen together. It has more where visibility changes with
-/// the period of the pointers. This is the threshold sampling of \[Cohen09\].
+/// With one ray this is one per pair. With more it usually has less variance than as many single choices: large
+/// candidates are certain, and one uniform number places evenly spaced pointers over the rest, so that neighbours are
+/// not chosen together. It has more variance if visibility changes with the period of the pointers. This is the
+/// threshold sampling of \[Cohen09\].
 #[derive(Clone, Copy, Debug)]
 pub struct Budget {
     /// The expected number of rays.
@@ -23,8 +23,8 @@ impl Budget {
         if candidates.len() <= self.rays as usize {
             return None;
         }
-        // Scores at or above δ count one ray each; the others share what is left. δ falls from one
-        // round to the next, and no round changes nothing more often than there are candidates.
+        // Candidates with scores of δ or more count one ray each; the others share the remaining rays. δ falls from
+        // round to round, and the number of rounds is at most that of candidates.
         let mut threshold = f64::INFINITY;
         loop {
             let (mut certain, mut rest) = (0u32, 0.0);
@@ -36,7 +36,7 @@ impl Budget {
                     rest += score;
                 }
             }
-            // As many certain ones as rays: the remainder is lost in rounding.
+            // With as many certain candidates as rays, the remainder is lost in rounding.
             if certain >= self.rays || rest <= 0.0 {
                 return Some(threshold);
             }
@@ -49,7 +49,7 @@ impl Budget {
     }
 }
 
-/// Returns min(1, g_c / δ); 1 where there is no δ.
+/// Returns min(1, g_c / δ), or 1 without a δ.
 #[inline]
 fn prob(candidate: &Candidate, threshold: Option<f64>) -> f64 {
     threshold.map_or(1.0, |delta| (f64::from(candidate.score) / delta).min(1.0))

@@ -6,9 +6,9 @@ use super::{Candidate, Chosen, Draws, Selector};
 /// The property that candidates have in common within a group.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Group {
-    /// The light vertex. For s = 1 with fresh light points: the row of next-event estimates, each
-    /// with a light point of its own. Of a light cache: the vertex, not its place along its subpath;
-    /// camera vertices seldom share one, so that most groups are one candidate.
+    /// The light vertex. For s = 1 with fresh light points: all next-event estimates, each with its own light point.
+    /// For a light cache: the vertex, not its index along its subpath; camera vertices seldom share one, so that most
+    /// groups have one candidate.
     LightVertex,
     /// The camera vertex.
     CameraVertex,
@@ -20,12 +20,12 @@ pub enum Group {
 /// [Lafortune95, §3].
 #[derive(Clone, Copy, Debug)]
 pub struct OnePerGroup {
-    /// How candidates are grouped.
+    /// The property by which candidates are grouped.
     pub group: Group,
 }
 
 impl OnePerGroup {
-    /// Returns the number of a candidate's group, which is that of its draw, too.
+    /// Returns the number of a candidate's group, which is also the number of the group's draw.
     #[inline]
     fn number(self, candidate: &Candidate) -> u32 {
         match self.group {
@@ -35,7 +35,7 @@ impl OnePerGroup {
         }
     }
 
-    /// Appends all candidates, those of a group beside each other, with no probabilities yet.
+    /// Appends all candidates, sorted by group, without probabilities.
     #[inline]
     fn append_sorted(self, candidates: &[Candidate], members: &mut Vec<Chosen>) {
         let begin = members.len();
@@ -49,7 +49,7 @@ impl OnePerGroup {
         });
     }
 
-    /// Returns the members of each group, where all are sorted.
+    /// Returns the members of each group of sorted candidates.
     #[inline]
     fn groups<'a>(
         self,
@@ -70,14 +70,14 @@ impl Chosen {
     }
 }
 
-/// Returns Σ g of a group. In f64: scores of one group span ten orders of magnitude.
+/// Returns Σ g of a group. It is f64, because scores of one group span ten orders of magnitude.
 #[inline]
 fn sum(candidates: &[Candidate], group: &[Chosen]) -> f64 {
     let scores = group.iter().map(|c| f64::from(c.of(candidates).score));
     scores.sum()
 }
 
-/// Returns g_c / Σ g, `sum` being that of the candidate's group.
+/// Returns g_c / Σ g; `sum` is Σ g of the candidate's group.
 #[inline]
 fn prob(candidate: &Candidate, sum: f64) -> f64 {
     f64::from(candidate.score) / sum
@@ -92,7 +92,7 @@ fn pick(candidates: &[Candidate], group: &[Chosen], u: f64) -> Chosen {
         rest -= f64::from(member.of(candidates).score);
         rest < 0.0
     };
-    // If rounding leaves a rest, the last member is it.
+    // If rounding leaves a rest, the last member is chosen.
     let found = group.iter().find(is_it);
     let picked = *found.unwrap_or(&group[group.len() - 1]);
     Chosen {

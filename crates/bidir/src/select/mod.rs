@@ -1,4 +1,4 @@
-//! Choosing the shadow rays that are traced.
+//! The choice of the shadow rays that are traced.
 //!
 //! All connections of a sample are [`Candidate`]s: their terms, before visibility. A
 //! [`Selector`] gives each an inclusion probability π and draws; the chosen ones are traced and
@@ -33,12 +33,12 @@ use std::str::FromStr;
 pub struct Candidate {
     /// Its term; s ≥ 1 and t ≥ 2.
     pub term: Term,
-    /// The score that candidates are compared by: the mean of the lanes of C w, times a guess at that of T, times
-    /// the estimated root of the chance that nothing opaque is in the way. Positive.
+    /// The score that candidates are compared by: the mean of the lanes of C w, times an estimate of the mean of T,
+    /// times the square root of the estimated visibility. Positive.
     pub score: f32,
     /// The numbers of its light vertex and of its camera vertex among those of a batch.
     pub vertices: [u32; 2],
-    /// The number of its light vertex in the sample, by which `per-light-vertex` groups: 0 for all light points of
+    /// The number of its light vertex in the sample, by which `per-light-vertex` groups; 0 for all light points of
     /// next-event estimation.
     pub light_vertex: u32,
 }
@@ -46,13 +46,13 @@ pub struct Candidate {
 const _: () = assert!(size_of::<Candidate>() == 48);
 
 impl Candidate {
-    /// Keeps an estimate away from zero: every candidate has a chance to be chosen.
+    /// Raises an estimate to a positive minimum, so that every candidate may be chosen.
     #[inline]
     pub fn score(estimate: f32) -> f32 {
         estimate.max(f32::MIN_POSITIVE)
     }
 
-    /// Returns the ends of its shadow ray, where `light` and `camera` have its vertices.
+    /// Returns the ends of its shadow ray; `light` and `camera` have its vertices.
     #[inline]
     pub(crate) fn ends(&self, light: &Subpaths, camera: &Subpaths) -> [Locus; 2] {
         let [z, y] = self.vertices.map(|vertex| vertex as usize);
@@ -85,11 +85,10 @@ impl Draws<'_> {
 
 /// A rule that chooses shadow rays. One call serves a whole sample.
 pub trait Selector: Sync + Send {
-    /// Appends the chosen ones of `candidates` to `chosen`, each with its inclusion probability.
-    /// Each is appended at most once.
+    /// Appends the chosen `candidates` to `chosen`, each at most once, with its inclusion probability.
     fn select(&self, candidates: &[Candidate], draws: Draws<'_>, chosen: &mut Vec<Chosen>);
 
-    /// Returns π of every one of `candidates`, chosen or not, for those who look into a selection.
+    /// Returns π of each of `candidates`, chosen or not, to inspect a selection.
     fn probabilities(&self, candidates: &[Candidate]) -> Vec<f64>;
 }
 
@@ -99,25 +98,25 @@ pub enum ShadowRays {
     /// Every candidate.
     #[default]
     All,
-    /// One for each light vertex: optimisation 1 of \[Lafortune95\]. Vertices of a light cache are
-    /// seldom drawn twice in a sample, so that nearly all of their candidates are traced.
+    /// One candidate of each light vertex: optimisation 1 of \[Lafortune95\]. Vertices of a light cache are seldom
+    /// drawn twice in a sample, so that nearly all of their candidates are traced.
     PerLightVertex,
-    /// One for each camera vertex: optimisation 2 of \[Lafortune95\].
+    /// One candidate of each camera vertex: optimisation 2 of \[Lafortune95\].
     PerCameraVertex,
-    /// One for each pair of subpaths: optimisation 3 of \[Lafortune95\].
+    /// One candidate of each pair of subpaths: optimisation 3 of \[Lafortune95\].
     PerPair,
-    /// Independent coins, against a threshold that is this part of the image's mean luminance,
-    /// which a training render finds [Veach97, §10.4.1].
+    /// Russian roulette for each candidate, with a threshold that is this fraction of the image's mean luminance,
+    /// which training estimates [Veach97, §10.4.1].
     RayRoulette(f32),
     /// This many rays for each pair of subpaths.
     Budget(u32),
 }
 
 impl ShadowRays {
-    /// The threshold of `ray-roulette` where none is given.
+    /// The default threshold of `ray-roulette`, as a fraction of the mean luminance.
     pub const DEFAULT_ROULETTE: f32 = 0.1;
 
-    /// Returns the rule, given the image's mean luminance where [`needs_mean`](Self::needs_mean).
+    /// Makes the rule; it uses the image's mean luminance only if it [`needs_mean`](Self::needs_mean).
     pub fn selector(self, mean_luminance: f32) -> Box<dyn Selector> {
         match self {
             Self::All => Box::new(All),
@@ -133,8 +132,8 @@ impl ShadowRays {
         }
     }
 
-    /// Returns the score from which on `ray-roulette` is sure to trace a candidate, given the image's mean
-    /// luminance. None: another rule.
+    /// Returns the least score at which `ray-roulette` always traces a candidate, given the image's mean luminance.
+    /// None: it is another rule.
     pub fn threshold(self, mean_luminance: f32) -> Option<f32> {
         match self {
             Self::RayRoulette(part) => Some(RayRoulette::new(part, mean_luminance).threshold),
@@ -163,7 +162,7 @@ impl fmt::Display for ShadowRays {
     }
 }
 
-/// Why a rule cannot be read.
+/// The reasons why a rule cannot be read.
 #[derive(Clone, Debug, thiserror::Error, PartialEq, Eq)]
 pub enum ShadowRaysError {
     /// There is no such rule.

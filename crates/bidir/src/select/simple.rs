@@ -1,5 +1,5 @@
-//! Rules that look at one candidate at a time: π = 1, and π = min(1, score / threshold) [Veach97,
-//! §10.4.1]. The number of rays is not bounded but by the number of candidates.
+//! Rules that treat each candidate on its own: π = 1, and π = min(1, score / threshold) [Veach97, §10.4.1]. Only the
+//! number of candidates bounds the number of rays.
 
 use super::{Candidate, Chosen, Draws, Selector};
 
@@ -20,17 +20,16 @@ impl Selector for All {
     }
 }
 
-/// Keeps each candidate by a coin of its own: π = min(1, score / threshold)
-/// [Veach97, §10.4.1].
+/// Keeps each candidate by a random number of its own: π = min(1, score / threshold) [Veach97, §10.4.1].
 #[derive(Clone, Copy, Debug)]
 pub struct RayRoulette {
-    /// The score from which on a candidate is always traced.
+    /// The least score at which a candidate is always traced.
     pub threshold: f32,
 }
 
 impl RayRoulette {
-    /// Makes a roulette with this part of the image's mean luminance as its threshold; filters with negative lobes
-    /// may have a negative mean, by which everything is traced.
+    /// Makes a roulette whose threshold is this fraction of the image's mean luminance. Filters with negative lobes
+    /// may make the mean negative; then everything is traced.
     pub fn new(part: f32, mean_luminance: f32) -> Self {
         Self {
             threshold: (part * mean_luminance).max(0.0),
