@@ -22,7 +22,7 @@ impl Survey {
             MisHeuristic::Balance => dot(work.diffuse, counts.connections),
             _ => 0.0,
         };
-        // `ray-roulette` and `all` may trace every candidate.
+        // The other rules may trace every candidate.
         let most = match settings.shadow_rays {
             _ if !settings.integrator.has_candidates() => f64::INFINITY,
             ShadowRays::Budget(rays) => f64::from(rays) * work.connected,
