@@ -19,8 +19,9 @@ pub(crate) struct FileBytes {
     pub(crate) stored: u64,
 }
 
-/// Does the same as [`read`], but reads standard input for the name [`STDIN`]. For names given by the
-/// user: names within files must not wait for typed input.
+/// Reads a file as [`read`] does, or standard input for the name [`STDIN`].
+///
+/// Only for names that the user gives: a name in a file must not wait for typed input.
 pub(crate) fn read_or_stdin(path: &Path, limit: u64) -> Result<FileBytes> {
     if path.as_os_str() == STDIN {
         return read_plain(std::io::stdin().lock(), path, limit);
@@ -54,7 +55,7 @@ pub(crate) fn read(path: &Path, limit: u64) -> Result<FileBytes> {
     }
 }
 
-/// Does the same as [`read`] for a file with the bytes `stored`.
+/// Unpacks `stored`, the bytes of the file `path`, as [`read`] does.
 pub(crate) fn read_stored(stored: &[u8], path: &Path, limit: u64) -> Result<FileBytes> {
     if is_packed(path) {
         unpack(stored, path, limit)

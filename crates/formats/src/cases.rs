@@ -1,4 +1,4 @@
-//! Cases of tests in text files: inputs, each with what comes of it.
+//! Test cases in text files: inputs, each with its outcome.
 //!
 //! Empty lines separate cases. Lines after `=> ` are the outcome of a case, which `UPDATE_EXPECT=1` writes anew; blocks
 //! that begin with `##` are headings.
@@ -31,7 +31,7 @@ pub(crate) fn check(file: &ExpectFile, outcome: impl Fn(&str) -> String) {
     file.assert_eq(&(blocks.join("\n\n") + "\n"));
 }
 
-/// Returns the outcome of reading: its error with the kind, or the warnings.
+/// Returns the outcome of reading as text: the error with its kind, or the warnings.
 pub(crate) fn of_reading(read: Result<Vec<String>>) -> String {
     match read {
         Err(error) => format!("{:?}: {error}", error.kind()),
@@ -40,12 +40,12 @@ pub(crate) fn of_reading(read: Result<Vec<String>>) -> String {
     }
 }
 
-/// Returns a line with its escapes, those of JSON, replaced by the characters that they stand for.
+/// Replaces the JSON escapes of a line by the characters they stand for.
 pub(crate) fn unescaped(line: &str) -> String {
     serde_json::from_str(&format!("\"{line}\"")).unwrap()
 }
 
-/// Returns a file that is written as `NAME: CONTENT`, with escapes: its name, and a byte for each character.
+/// Parses `NAME: CONTENT`, with escapes, and returns the name of the file and its bytes, one for each character.
 pub(crate) fn file(line: &str) -> (&str, Vec<u8>) {
     let (name, content) = line.split_once(": ").unwrap();
     let content = unescaped(content);

@@ -22,9 +22,9 @@ struct Details {
     hint: Option<String>,
     file: Option<PathBuf>,
     place: Option<Place>,
-    /// The way to the value that is at fault, in a file of values.
+    /// The path of the invalid value in a JSON file, such as `meshes[3]`.
     value: Option<String>,
-    /// True where the message has the file's name in it, which then does not stand before it.
+    /// True if the message contains the file's name, so that the text does not begin with it.
     names_file: bool,
 }
 
@@ -54,7 +54,7 @@ pub(crate) struct Place {
     pub(crate) line: usize,
     /// The column in characters, counted from 1.
     pub(crate) column: usize,
-    /// The lines around it, if they are shown.
+    /// The lines around the place. None: they are not shown.
     pub(crate) excerpt: Option<Excerpt>,
 }
 
@@ -95,7 +95,7 @@ impl Error {
         }))
     }
 
-    /// Returns the error that the system refused this many bytes of memory for `what`.
+    /// Returns the error for `what` if the system refuses it `bytes` bytes of memory.
     pub(crate) fn memory(what: &str, bytes: u64) -> Self {
         let message =
             format!("{what} needs {bytes} bytes of memory, which the system does not have");
@@ -173,7 +173,7 @@ impl Error {
         self.0.place.is_some() || self.0.value.is_some()
     }
 
-    /// The line, counted from 1. None: for binary files and where the whole file is at fault.
+    /// Returns the line, counted from 1. None: the file is binary, or the error is about the whole file.
     pub fn line(&self) -> Option<usize> {
         self.0.place.as_ref().map(|place| place.line)
     }

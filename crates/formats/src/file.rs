@@ -1,12 +1,12 @@
-//! Replaces files atomically: at any time, a name stands for all of the old bytes or all of the new.
+//! Replaces files atomically: at any time, a file has all of the old bytes or all of the new ones.
 //!
 //! The new bytes go to a temporary file in the same folder, as a rename between file systems is not
 //! atomic. They are synced to the disk before the rename, as a power cut could otherwise leave an empty
 //! file; then the folder is synced, so that the rename persists.
 //!
-//! The temporary file of `NAME` is called `.NAME.bidir-RANDOM.tmp`, so that no two writers share one, on
-//! whatever machines they run, and so that a leftover of a killed process shows its file. The next writer
-//! of `NAME` removes those that nobody has written to for an hour.
+//! The temporary file of `NAME` is called `.NAME.bidir-RANDOM.tmp`. So no two writers share one, even on
+//! different machines, and the leftover of a killed process shows which file it belongs to. The next writer
+//! of `NAME` removes temporary files that nobody has written to for an hour.
 
 use crate::error::{Error, Result};
 use bidir::names::nearest;
@@ -17,14 +17,14 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 use tempfile::NamedTempFile;
 
-/// Time without a change after which a temporary file is a leftover: no write pauses as long.
+/// Time without a change after which a temporary file is a leftover: no write pauses for so long.
 const OLD: Duration = Duration::from_secs(60 * 60);
-/// Maximum length of the part of a name in a temporary file's name. Unit: bytes; file systems allow 255.
+/// Maximum length of NAME in the name of a temporary file. Unit: bytes; file systems allow 255 in all.
 const LONGEST_NAME: usize = 128;
 
 /// Replaces or creates a file. Readers that have it open keep the old bytes.
 ///
-/// Of a link, the target is replaced. A device or a pipe is written to.
+/// Replaces the target of a link. Writes to a device or a pipe.
 pub fn replace(path: &Path, bytes: &[u8]) -> Result<()> {
     replace_with(path, bytes, |_| Ok(()))
 }
@@ -78,8 +78,8 @@ fn is_special(path: &Path) -> bool {
         .is_ok_and(|metadata| !metadata.is_file() && !metadata.is_dir())
 }
 
-/// Checks that [`replace`] can create its temporary file. Leaves nothing behind; on file systems with
-/// unnamed files not even if the process is killed here.
+/// Checks that [`replace`] can create its temporary file. Leaves no file behind, on file systems with
+/// unnamed files not even if the process is killed during the check.
 pub fn check_replaceable(path: &Path) -> Result<()> {
     let target = target_of(path);
     if is_special(&target) {
@@ -126,7 +126,7 @@ fn nearest_folder(folder: &Path) -> Option<PathBuf> {
     Some(parent.join(near))
 }
 
-/// Returns the name nearest to `name` among those of a folder's entries that are wanted.
+/// Returns the name nearest to `name` among the entries of a folder for which `is_wanted` is true.
 fn nearest_entry(
     folder: Option<&Path>,
     name: &OsStr,
@@ -141,7 +141,7 @@ fn nearest_entry(
     Some(near.to_owned())
 }
 
-/// Removes the temporary files of `path` that nobody has written to for so long. Errors are ignored.
+/// Removes the temporary files of `path` that nobody has written to for at least `age`. Ignores errors.
 pub fn remove_leftovers(path: &Path, age: Duration) {
     let target = target_of(path);
     let Some(prefix) = target.file_name().map(prefix) else {
@@ -156,7 +156,7 @@ pub fn remove_leftovers(path: &Path, age: Duration) {
     }
 }
 
-/// Returns true if a file exists and was last written to so long ago, or in the future of this machine.
+/// Returns true if a file exists and was last written to at least `age` ago, or in the future by this machine's clock.
 fn is_older(path: &Path, age: Duration) -> bool {
     let changed = path.metadata().and_then(|metadata| metadata.modified());
     changed.is_ok_and(|changed| changed.elapsed().unwrap_or_default() >= age)

@@ -11,9 +11,8 @@ pub type InMemory = BTreeMap<PathBuf, Arc<[u8]>>;
 
 /// The files of a scene, from memory or the disk. The default is the disk.
 ///
-/// A scene whose files are all in memory is the same on any machine, which is how scenes are sent. Names
-/// that share one [`Arc`] are names of one file. Bytes are as on the disk: those of a name that ends in
-/// `.gz` are packed.
+/// Scenes are sent with all of their files in memory: such a scene is the same on any machine. Names that
+/// share one [`Arc`] are names of one file. Bytes are as on the disk: packed, if the name ends in `.gz`.
 ///
 /// ```
 /// use bidir_formats::scene::{Files, LoadOptions, load_from};
@@ -75,7 +74,7 @@ impl Files {
         }
     }
 
-    /// Does the same as [`read`](Self::read), but reads standard input for `-` unless it is in memory.
+    /// Reads a file as [`read`](Self::read) does, or standard input for `-` unless that name is in memory.
     pub(crate) fn read_or_stdin(&self, path: &Path, limit: u64) -> Result<FileBytes> {
         let is_stdin = path.as_os_str() == bytes::STDIN && self.others == Others::OnDisk;
         if is_stdin && !self.memory.contains_key(path) {

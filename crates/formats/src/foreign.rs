@@ -1,8 +1,8 @@
-//! Recognises files that are no scenes, or scenes with the ending of another format, so that messages
-//! name them and how to import them.
+//! Recognises files that are not scenes, and scenes with the ending of another format, so that messages can
+//! name the format and say how to import the file.
 //!
-//! The bytes take precedence, then a word of the expected format, then the ending: a scene with an
-//! unusual ending is still read.
+//! First the bytes decide, then a word of the expected format, then the ending: a scene with an unusual
+//! ending is still read.
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::files::Files;
@@ -16,8 +16,8 @@ const TEXT_HEAD: usize = 1 << 12;
 
 /// A kind of file: its name with an article, the hint how to import it, and its signs.
 ///
-/// A sign is an ending with its dot, or the begin of the file, each character for a byte. `BEGIN…PART`
-/// asks for `PART` somewhere behind it, too. Packed files have no begin of their own.
+/// A sign is an ending with its dot, or the first bytes of the file, one for each character. `BEGIN…PART` also
+/// requires `PART` somewhere after them. Packed formats are recognised only by their endings.
 type Kind = (&'static str, &'static str, &'static [&'static str]);
 
 const FORMATS: &str = "bidir reads pbrt-v4 (.pbrt) and glTF 2.0 (.gltf, .glb)";
@@ -27,7 +27,7 @@ const MESH: &str = "name it in a scene: Shape \"plymesh\" \"string filename\" \"
 const IMAGES: &str =
     "`bidir view`, `info` and `render` take scenes; `tonemap` and `compare` take images";
 
-/// All kinds that have signs. The first whose begin fits is that of a file, else the first whose ending does.
+/// All kinds that have signs. A file is of the first kind whose first bytes fit, else of the first whose ending fits.
 #[rustfmt::skip]
 const KINDS: &[Kind] = &[
     ("a binary glTF file", "give it a name that ends in .glb", &["glTF"]),
@@ -68,7 +68,7 @@ const NOT_GLTF: Kind = (
     &[],
 );
 
-/// Refuses a folder in the place of a scene, and suggests a scene in it.
+/// Refuses a folder instead of a scene file, and suggests a scene in the folder.
 pub(crate) fn check_folder(path: &Path, files: &Files) -> Result<()> {
     if !files.is_folder(path) {
         return Ok(());
@@ -139,7 +139,7 @@ fn kind_of(has: impl Fn(&str) -> bool) -> Option<Kind> {
     KINDS.iter().find(of_file).copied()
 }
 
-/// The begin of a file, each byte as a character.
+/// The first bytes of a file, each as a character.
 struct Head(String);
 
 impl Head {

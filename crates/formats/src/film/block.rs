@@ -1,4 +1,4 @@
-//! Blocks of pixels: packed planes of the bytes of sums.
+//! Blocks of pixels, packed by planes: plane b of sum k holds byte b of sum k of every pixel.
 
 use flate2::{Compression, Crc, read::DeflateDecoder, write::DeflateEncoder};
 use std::io::{Read, Write};
@@ -8,7 +8,7 @@ use std::iter;
 pub(super) const PIXELS: usize = 4096;
 /// Size of a sum. Unit: bytes.
 const BYTES: usize = size_of::<i128>();
-/// Approximate number of bytes of a plane that are sampled to decide how to pack it.
+/// Approximate number of bytes that are sampled from a plane to decide how to pack it.
 const PROBED: usize = 256;
 
 /// Computes the CRC-32 of `bytes`.
@@ -43,8 +43,8 @@ pub(super) fn least_bytes(numbers: usize) -> usize {
     numbers * BYTES * 2
 }
 
-/// Packs a block of pixels with `numbers` sums each: length and checksum of the packed bytes, and the
-/// bytes.
+/// Packs a block of pixels with `numbers` sums each. Returns the length of the packed bytes, their checksum,
+/// and the bytes.
 pub(super) fn write(sums: &[i128], numbers: usize) -> Vec<u8> {
     let (mut kinds, mut plain) = (Vec::with_capacity(least_bytes(numbers)), Vec::new());
     let mut deflated = DeflateEncoder::new(Vec::new(), Compression::fast());
@@ -112,7 +112,7 @@ fn plane(sums: &[i128], numbers: usize, k: usize, b: usize) -> impl Iterator<Ite
     of_number.map(move |sum| (sum >> (8 * b)) as u8)
 }
 
-/// Sets byte `b` of sum `k` of every pixel, which has to be 0.
+/// Sets byte `b` of sum `k` of every pixel to a byte of `bytes`. The bytes in `sums` have to be 0.
 fn set_plane<'a>(
     sums: &mut [i128],
     numbers: usize,

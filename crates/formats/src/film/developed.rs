@@ -23,9 +23,9 @@ impl Developed {
         }
     }
 
-    /// Writes an image of the kind that its name says: layers and attributes to EXR alone.
+    /// Writes an image in the format of its name's ending. Only EXR gets layers and attributes.
     ///
-    /// Errors: it is of another kind, or cannot be written.
+    /// Errors: the ending is of another format, or the file cannot be written.
     pub fn write(
         &self,
         path: &Path,

@@ -14,11 +14,11 @@ use std::path::Path;
 /// The first part of a film file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FilmHeader {
-    /// The program that wrote it, with its version.
+    /// The program that wrote the file, with its version.
     pub program: String,
     /// The name of the scene file as it was given.
     pub scene: String,
-    /// Hash of everything except the passes that the picture's bits depend on. Films with equal hashes can be
+    /// Hash of everything that the picture's bits depend on, except the passes. Films with equal hashes can be
     /// merged.
     pub identity: String,
     /// The settings that the identity is a hash of, by name. They explain a difference of two identities.
@@ -44,8 +44,8 @@ pub struct FilmHeader {
 }
 
 impl FilmHeader {
-    /// Returns the header of an empty film. The identity is a hash of `settings`, which must contain
-    /// everything except the passes that the picture's bits depend on.
+    /// Returns the header of an empty film. Its identity is the hash of `settings`, which must contain
+    /// everything that the picture's bits depend on, except the passes.
     pub fn new(program: &str, scene: String, settings: BTreeMap<String, String>) -> Self {
         let mut hash = Sha256::new();
         for text in settings.iter().flat_map(|(name, value)| [name, value]) {
@@ -150,7 +150,7 @@ impl FilmHeader {
         self.difference_between(other, ["here", "there"])
     }
 
-    /// Does the same as [`Self::difference`] with phrases for both places, such as `in the film`.
+    /// Describes a difference as [`Self::difference`] does, with phrases for the two headers, such as `in the film`.
     pub fn difference_between(&self, other: &Self, [here, there]: [&str; 2]) -> Option<String> {
         if self.identity == other.identity {
             return None;
@@ -174,7 +174,7 @@ impl FilmHeader {
     }
 }
 
-/// Adds numbers, in objects key by key; of other values, keeps the first.
+/// Adds numbers, and objects key by key. Of two other values, returns `a`.
 fn sum(a: &Value, b: &Value) -> Value {
     match (a, b) {
         (Value::Null, other) | (other, Value::Null) => other.clone(),

@@ -1,4 +1,4 @@
-//! The identity of a film: the description of its render in film files and in attributes of images.
+//! The identity of a film: a description of its render, for film files and for the attributes of images.
 //!
 //! Names are those of flags: `light-point`, not `light_point`.
 
@@ -19,12 +19,12 @@ use std::sync::Arc;
 const VERSION: &str = env!("CARGO_PKG_VERSION");
 /// A setting that is known only after training.
 const TRAINED_MEAN: &str = "trained-mean";
-/// The number of samples of training, present only if there was no time for all that it wanted.
+/// The number of training samples. Present only if the time did not suffice for all of them.
 const TRAINING: &str = "training";
 /// The plan of `auto`, known only after training.
 const PLAN: &str = "plan";
 
-/// A scene that is rendered, with the view of it.
+/// A scene to render, and the view of it.
 #[derive(Clone, Debug)]
 pub struct Subject {
     /// The name of the scene file as it was given.
@@ -44,7 +44,7 @@ impl Subject {
         new(&self.name, self.all_settings(settings, training))
     }
 
-    /// Returns everything except the passes that the bits of the picture depend on, by name.
+    /// Returns everything that the bits of the picture depend on, except the passes, by name.
     fn all_settings(
         &self,
         settings: &Settings,
@@ -86,7 +86,7 @@ pub(super) fn new(name: &str, settings: BTreeMap<String, String>) -> FilmHeader 
     FilmHeader::new(&program(), name.to_owned(), settings)
 }
 
-/// Returns the number of samples that the training of the render was limited to. None: it had all.
+/// Returns the number of samples that training was limited to. None: it was not limited.
 pub(super) fn training_samples(header: &FilmHeader) -> Option<u64> {
     header.settings.get(TRAINING)?.parse().ok()
 }
@@ -142,8 +142,8 @@ fn flatten(name: String, value: &Value, counts: &mut Vec<(String, String)>) {
     }
 }
 
-/// Returns the attributes of an image of the film with this header: those of pbrt where they exist, else
-/// our own. Time and counts are those of all runs.
+/// Returns the attributes of an image of the film with this header, by pbrt's names where pbrt has one.
+/// Time and counts are sums over all runs.
 pub fn metadata(header: &FilmHeader) -> Vec<(String, MetadataValue)> {
     let passes = i32::try_from(header.passes.len()).unwrap_or(i32::MAX);
     let seconds = header.seconds as f32;

@@ -28,7 +28,7 @@ impl LayerNames {
         *self == Self::default()
     }
 
-    /// Returns the layers of these names. None: a name is unknown, or the order is wrong.
+    /// Returns the layers with these names. None: a name is unknown, or the names are not in order.
     pub(super) fn layers(&self) -> Option<Layers> {
         let find = |name: &String| Aov::NAMES.iter().find(|(known, _)| known == name);
         let aovs = self.aovs.iter().map(|name| Some(find(name)?.1));

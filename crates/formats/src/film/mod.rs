@@ -2,7 +2,7 @@
 //!
 //! A file is one header and the sums of all pixels in row order:
 //!
-//! | bytes | what |
+//! | bytes | content |
 //! |---|---|
 //! | 8 | `BIDIRFLM` |
 //! | 4 | version of the format, 3 |
@@ -71,15 +71,15 @@ const PREAMBLE: usize = 16;
 pub struct FilmFile {
     /// The description of the render.
     pub header: FilmHeader,
-    /// The sums, with the header's geometry and passes. The filter is the default one: only other films can
-    /// be added.
+    /// The sums, with the header's geometry and passes. Its filter is the default one, so that films can be
+    /// added to it, but no samples.
     pub film: Film,
 }
 
 impl FilmFile {
     /// Adds a film of the same render with other passes.
     ///
-    /// Errors: it belongs to another render, or has passes that are here already.
+    /// Errors: `other` belongs to another render, or has passes that this film has already.
     pub fn merge(&mut self, other: &Self) -> std::result::Result<(), OpenError> {
         if let Some(difference) = other.header.difference(&self.header) {
             return Err(OpenError::OtherRender(difference));
@@ -99,7 +99,7 @@ pub fn write(path: &Path, header: &FilmHeader, film: &Film) -> Result<()> {
     file::replace(path, &encode(header, film)?)
 }
 
-/// Does the same as [`write()`], and renames an existing file to `previous`.
+/// Writes a film file as [`write()`] does, and renames an existing one to `previous`.
 pub fn write_keeping(path: &Path, previous: &Path, header: &FilmHeader, film: &Film) -> Result<()> {
     file::replace_keeping(path, previous, &encode(header, film)?)
 }
@@ -188,7 +188,7 @@ pub fn decode(bytes: &[u8]) -> Result<FilmFile> {
     Ok(FilmFile { header, film })
 }
 
-/// Unpacks the blocks of `area` pixels, on all threads.
+/// Takes the blocks of `area` pixels from `rest`, and unpacks them on all threads.
 fn take_sums(rest: &mut &[u8], area: u64, layers: &Layers) -> Result<Vec<i128>> {
     let blocks = (0..area.div_ceil(block::PIXELS as u64)).map(|_| take_block(rest));
     let blocks = blocks.collect::<Result<Vec<_>>>()?;

@@ -1,13 +1,12 @@
 //! A render: its session, its time, and the film that it continues.
 //!
-//! All hosts, which are the command, the laboratory, references, the viewer and the Python package, render by the
-//! same contract.
+//! All hosts (the command, the laboratory, references, the viewer and the Python package) render by one contract.
 //!
 //! A host gives
 //!
 //! - a [`Subject`], and settings with every request applied;
-//! - itself as [`Progress`]: its clock, by which all time is measured, and its stop, which gives up training or the
-//!   running pass. [`Watch`] is one without further wishes;
+//! - itself as [`Progress`]: its clock, which measures all time, and its stop, which ends training or the
+//!   running pass. A [`Watch`] is a host that has only these two;
 //! - a [`Budget`], and a film to continue, if there is one.
 //!
 //! [`Subject::open`] refuses a film that does not belong to the render, trains, and adds the film.
@@ -15,8 +14,8 @@
 //! look, save, show, and end the run. A host with an order of its own calls [`Render::step`] instead.
 //!
 //! A host gets the film with its [`header`](Render::header): time and counts of all runs, and the rule that ended
-//! the last one. A pass that was given up leaves no trace, so that the bits depend on settings and passes alone:
-//! not on threads, interruptions, or the parts that a render was made in.
+//! the last one. An interrupted pass adds nothing to the film. So the bits depend only on settings and passes, not on
+//! threads, on interruptions, or on the number of runs.
 
 use super::identity::{counts, new, training_samples, untrained};
 use super::{FilmFile, FilmHeader, Subject};
@@ -29,13 +28,13 @@ use std::ops::Range;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// A session with the header of its film, which has time and counts of all runs.
+/// A session, and the header of its film with the time and counts of all runs.
 pub struct Render {
     /// The session.
     pub session: Session<'static>,
     /// The passes and the time of this run so far.
     pub spent: Spent,
-    /// The rule that ends the run: that of [`Self::reached`], or of a host that steps.
+    /// The rule that ends the run. [`Self::reached`] sets it, or a host that calls [`Self::step`].
     pub stopping: Stopping,
     /// The header of an empty film.
     header: FilmHeader,
@@ -45,7 +44,7 @@ pub struct Render {
     is_training_counted: bool,
 }
 
-/// A host that has a stop and a clock, and no interest in progress.
+/// A host that has a stop and a clock, and ignores progress.
 #[derive(Clone, Copy, Debug)]
 pub struct Watch<'a> {
     /// Its stop.
@@ -66,12 +65,14 @@ impl Progress for Watch<'_> {
     }
 }
 
-/// The limits of training. The number of passes is none, so that parts of a render have the training of the whole.
+/// The limits of training. They do not depend on the number of passes, so that a part of a render is trained as the
+/// whole.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TrainingLimits {
     /// The maximum number of samples.
     pub samples: u64,
-    /// The time of the render, of which training gets a part ([`Effort::PART`]). None: it gets what it wants.
+    /// The time of the render, of which training gets the part [`Effort::PART`]. None: the time of training has no
+    /// limit.
     pub time: Option<Duration>,
 }
 
@@ -82,7 +83,8 @@ impl TrainingLimits {
         time: None,
     };
 
-    /// Returns the limits of a render with this time. One that continues the film of `earlier` repeats its training.
+    /// Returns the training limits of a render with this time. A render that continues a film repeats the training of
+    /// its header `earlier`.
     pub fn new(time: Option<Duration>, earlier: Option<&FilmHeader>) -> Self {
         match earlier {
             None => Self { time, ..Self::NONE },
@@ -97,11 +99,11 @@ impl TrainingLimits {
 /// The reason why a render cannot begin or continue a film.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum OpenError {
-    /// It is the film of another render, with this difference.
+    /// The film belongs to another render, with this difference.
     OtherRender(String),
-    /// The film has these passes, which are not asked for.
+    /// The film has these passes, which the budget does not have.
     Beyond(PassSet),
-    /// Its sums cannot be added.
+    /// The sums of the film cannot be added.
     Merge(MergeError),
     /// The session cannot begin.
     Session(SessionError),
@@ -206,14 +208,14 @@ impl Render {
         self
     }
 
-    /// Returns the identity of its films.
+    /// Returns the identity of the render's films.
     pub fn identity(&self) -> &str {
         &self.header.identity
     }
 
     /// Adds a film of the same render, whose passes are not rendered again.
     ///
-    /// Errors: it belongs to another render, or has passes that are here already.
+    /// Errors: the film belongs to another render, or has passes that this one has already.
     pub fn add(&mut self, file: FilmFile) -> Result<(), OpenError> {
         let FilmFile { header, film } = file;
         check_same(&self.header, &header)?;
@@ -226,12 +228,13 @@ impl Render {
         Ok(())
     }
 
-    /// Renders the next pass. False: the host asked to stop, and the pass is forgotten.
+    /// Renders the next pass. Returns false if the host asked to stop; then the film does not get the pass.
     pub fn step(&mut self, host: &dyn Progress) -> bool {
         self.pass(&mut host.nanoseconds(), host)
     }
 
-    /// Renders the next pass, and counts the time since a reading of the host's clock, which becomes that of its end.
+    /// Renders the next pass, adds the time since `last`, a reading of the host's clock, and sets `last` to the reading
+    /// after the pass.
     fn pass(&mut self, last: &mut u64, host: &dyn Progress) -> bool {
         let is_done = self.session.step(host);
         let time = since(*last, host);
@@ -281,8 +284,8 @@ impl Render {
         earlier.is_some_and(|earlier| earlier.passes == *passes)
     }
 
-    /// Returns the header of the film so far. That of a film without a further pass stays as it was, so that its file
-    /// does.
+    /// Returns the header of the film so far. If no pass was added, returns the header that was read, so that the
+    /// file of the film does not change.
     pub fn header(&self) -> FilmHeader {
         let all = match &self.earlier {
             Some(earlier) if self.is_unchanged() => return earlier.clone(),
@@ -293,7 +296,7 @@ impl Render {
         FilmHeader { stopping, ..all }.of(self.session.film())
     }
 
-    /// Returns the header with time and counts of this run alone.
+    /// Returns the header with the time and counts of only this run.
     fn of_run(&self) -> FilmHeader {
         let training = self.session.training();
         let training = training.filter(|_| !self.is_training_counted);
@@ -315,9 +318,9 @@ impl Render {
         })
     }
 
-    /// Takes the film; the session goes on with an empty one, and does not count its training again.
+    /// Takes the film, and leaves an empty one, whose counts will not contain the training again.
     ///
-    /// Errors: the system does not have the memory of another film; the render is as before.
+    /// Errors: the system does not have the memory of another film. Then the render is unchanged.
     pub fn take(&mut self) -> Result<FilmFile, FilmError> {
         let header = self.header();
         let (film, _) = self.session.take_film()?;

@@ -67,7 +67,7 @@ impl Component {
     }
 }
 
-/// Elements per value of a type, by its name.
+/// The types of values by name, each with its number of components.
 const KINDS: [(&str, usize); 7] = [
     ("SCALAR", 1),
     ("VEC2", 2),
@@ -277,7 +277,7 @@ impl Document {
         Ok(values.as_chunks::<N>().0.iter().map(vector).collect())
     }
 
-    /// Reads an accessor of vectors, whose components have to be finite.
+    /// Reads an accessor of vectors with `N` components. Errors: a component is not finite.
     pub(super) fn finite_vectors<const N: usize>(
         &self,
         index: usize,

@@ -1,4 +1,4 @@
-//! From the structures of a file to a scene.
+//! Builds a scene from the structures of a file.
 
 use super::document::{Context, Document};
 use super::material::{Built as BuiltMaterial, Materials};
@@ -27,30 +27,31 @@ pub(super) struct Builder<'a> {
     nodes: Nodes,
     assembly: Assembly,
     materials: Materials,
-    /// Of all shapes.
+    /// The extent of all shapes.
     extent: Extent,
-    /// Places of meshes.
+    /// Number of instances of meshes so far.
     places: u64,
-    /// Lights of the file that are no surfaces.
+    /// Number of lights of KHR_lights_punctual.
     punctual: usize,
-    /// Families of shapes that close each other's openings: those of a mesh in one place.
+    /// Number of families so far. A family is the shapes of one instance of a mesh, which may enclose a volume only
+    /// together.
     families: usize,
 }
 
-/// A mesh of the file where a scene has it.
+/// A mesh of the file with one set of morph weights, and all instances of it.
 struct MeshUse<'a> {
-    /// The places in the world.
+    /// The transforms of the instances, from the mesh to the render space.
     places: Vec<DAffine3>,
-    /// That of its first node.
+    /// The place in the file of the first node that has the mesh.
     node: Place,
     weights: &'a [f32],
 }
 
-/// The key of uses of a mesh that are the same: the mesh, and weights of morph targets.
+/// The key of a [`MeshUse`]: the index of the mesh, and the bits of the morph weights.
 type MeshKey = (usize, Vec<u32>);
 
 impl<'a> Builder<'a> {
-    /// Reads everything and puts it in its place, with the defaults of `outlook`. Notes those that it `needs`.
+    /// Reads and places everything, with the defaults of `outlook`. Sets `needs` to the defaults that the file needs.
     pub(super) fn gather(
         context: &mut Context<'a>,
         outlook: &Outlook,
@@ -91,7 +92,7 @@ impl<'a> Builder<'a> {
         Ok((assembly, view))
     }
 
-    /// Adds all meshes: those with joints where these put them, all others by their uses.
+    /// Adds all meshes: each skinned node by its joints, each other mesh once with all of its instances.
     fn add_meshes(&mut self, context: &mut Context<'_>) -> Result<(), GltfFault> {
         let document = self.document;
         let mut uses: BTreeMap<MeshKey, MeshUse<'a>> = BTreeMap::new();
@@ -130,7 +131,7 @@ impl<'a> Builder<'a> {
         Ok(())
     }
 
-    /// The places of a node's mesh, but for those that leave nothing of it.
+    /// Returns the transforms of a node's mesh to the render space. Leaves out singular ones, with a warning.
     fn world_places(
         &self,
         context: &mut Context<'_>,
@@ -150,7 +151,8 @@ impl<'a> Builder<'a> {
         Ok(places)
     }
 
-    /// Adds a mesh at all its places: as an object where there are several, but for its lamps.
+    /// Adds a mesh with all its instances: copies of primitives that emit; of all others an object, if there are
+    /// several.
     fn add_mesh(
         &mut self,
         context: &mut Context<'_>,
@@ -193,7 +195,7 @@ impl<'a> Builder<'a> {
         Ok(())
     }
 
-    /// The primitives of a mesh that have triangles, each with its material.
+    /// Reads the primitives of a mesh that have triangles, each with its material and its place in the file.
     fn surfaces(
         &mut self,
         context: &mut Context<'_>,
@@ -270,7 +272,7 @@ impl<'a> Builder<'a> {
         self.assembly.count(context, size, place)
     }
 
-    /// Widens the extent by a shape at each place.
+    /// Adds a shape to the extent, at each of `places`.
     fn include(&mut self, shape: &Mesh, places: impl IntoIterator<Item = DAffine3>) {
         let triangles = (0..shape.triangles.len()).map(|i| shape.triangle(i));
         let own = Extent::of(&shape.positions, triangles);
@@ -293,7 +295,7 @@ impl<'a> Builder<'a> {
         Ok(())
     }
 
-    /// Notes the rounding of a primitive's vertices, which `render_from_mesh` puts in place.
+    /// Records the rounding error of a primitive's vertices, which `render_from_mesh` transforms.
     fn measure(
         &mut self,
         context: &Context<'_>,
@@ -306,7 +308,7 @@ impl<'a> Builder<'a> {
         self.assembly.add_error(place, error);
     }
 
-    /// Adds the lights that are no shapes; a soft one from behind the viewer where it is dark.
+    /// Adds the lights that are not shapes, and a soft one from behind the viewer if the scene would be dark.
     fn add_lights(
         &mut self,
         context: &mut Context<'_>,
@@ -332,7 +334,7 @@ impl<'a> Builder<'a> {
         Ok(())
     }
 
-    /// The defaults that the file needs.
+    /// Returns the defaults that the file needs; `camera` is true if it has no camera.
     fn needs(&self, camera: bool) -> Needs {
         let emits = self.assembly.summary.area_lights > 0;
         Needs {

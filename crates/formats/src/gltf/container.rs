@@ -23,7 +23,7 @@ pub(super) struct Container {
 }
 
 impl Container {
-    /// Returns the size of JSON and binary chunk. Unit: bytes.
+    /// Returns the size of the JSON and the binary chunk together. Unit: bytes.
     pub(super) fn size(&self) -> u64 {
         let binary = self.binary.as_ref().map_or(0, Vec::len);
         (self.json.len() + binary) as u64
@@ -101,11 +101,11 @@ fn chunks(bytes: &[u8]) -> Result<Container> {
 /// The bytes of a URI.
 pub(super) struct Resource {
     pub(super) bytes: Vec<u8>,
-    /// The file that they are of. None: they stand in the URI.
+    /// The file that has the bytes. None: the URI contains them.
     pub(super) file: Option<PathBuf>,
 }
 
-/// The resource of `uri`, which stands at `place`; relative names are of files in `folder`.
+/// Reads the resource of `uri`, which is the value at `place`; relative names are of files in `folder`.
 pub(super) fn resource(
     folder: &Path,
     uri: &str,

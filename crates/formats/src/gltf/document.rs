@@ -13,7 +13,7 @@ use crate::source::{Fault, SourceMap, Span, boundary_before};
 use std::cell::Cell;
 use std::path::{Path, PathBuf};
 
-/// Extensions that are understood, as docs/reference/gltf.md says how far.
+/// The supported extensions. docs/reference/gltf.md says how far each is supported.
 pub(super) const EXTENSIONS: [&str; 17] = [
     "EXT_mesh_gpu_instancing",
     "EXT_texture_webp",
@@ -34,7 +34,7 @@ pub(super) const EXTENSIONS: [&str; 17] = [
     "KHR_xmp_json_ld",
 ];
 
-/// Extensions with a warning at the material that has them.
+/// Extensions without effect whose warning is at each material that has them.
 const WITHOUT_EFFECT: [&str; 2] = ["KHR_materials_dispersion", "KHR_materials_iridescence"];
 
 pub(super) type Context<'a> = import::Context<'a, Document>;
@@ -47,7 +47,7 @@ pub(super) struct Document {
     /// The source of files.
     files: Files,
     buffers: Vec<Vec<u8>>,
-    /// Components that accessors may still read.
+    /// Number of components that accessors may still read.
     components_left: Cell<u64>,
 }
 
@@ -115,12 +115,12 @@ impl Document {
         Ok((document, log))
     }
 
-    /// Lets accessors read as much as files of `stored` bytes allow, once more.
+    /// Resets the number of components that accessors may read to what files of `stored` bytes allow.
     pub(super) fn start_counting(&self, stored: u64) {
         self.components_left.set(limits::COMPONENTS.of(stored));
     }
 
-    /// Reads the resource of `uri`, which stands at `place`.
+    /// Reads the resource of `uri`, which is the value at `place`.
     pub(super) fn resource(
         &self,
         log: &mut Log,
@@ -132,7 +132,7 @@ impl Document {
         })
     }
 
-    /// Counts components that an accessor at `place` reads: many may read the same.
+    /// Counts components that an accessor at `place` reads. Errors: too many, as accessors may share bytes.
     pub(super) fn count_components(&self, count: usize, place: &Place) -> Result<(), GltfFault> {
         let left = self.components_left.get().checked_sub(count as u64);
         self.components_left.set(left.ok_or_else(|| {
@@ -170,7 +170,7 @@ impl Document {
         Ok(bytes)
     }
 
-    /// The bytes of a buffer view, which `user` refers to, and the distance of its values.
+    /// Returns the bytes of the buffer view `index`, which the value at `user` names, and its stride in bytes.
     pub(super) fn view(
         &self,
         index: usize,
@@ -205,7 +205,7 @@ fn parse(path: &Path, json: String) -> Result<Root> {
     })
 }
 
-/// The byte of `text` that an error is at.
+/// Returns the position in `text` of an error. Unit: bytes.
 fn offset(text: &str, error: &serde_json::Error) -> usize {
     let lines = text.split_inclusive('\n');
     let before: usize = lines

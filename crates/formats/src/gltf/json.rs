@@ -157,7 +157,7 @@ object!(Texture {
     extensions: ImageExtensions,
 });
 object!(
-    /// The image of a texture in formats of extensions.
+    /// The images of a texture in the formats of extensions.
     ImageExtensions {
         #[serde(rename = "EXT_texture_webp")]
         webp: Option<OtherImage>,

@@ -20,7 +20,7 @@ use std::collections::BTreeMap;
 pub(super) struct Built {
     pub(super) id: MaterialId,
     pub(super) emission: Option<Emission>,
-    /// What its surfaces fill. None: they are opaque, or thin walls.
+    /// The contents of the volume inside. None: surfaces are opaque, or thin walls.
     pub(super) content: Option<VolumeContent>,
     /// The coverage of the surface. None: it is opaque.
     pub(super) coverage: Option<FloatTexture>,
@@ -29,7 +29,7 @@ pub(super) struct Built {
 }
 
 impl Built {
-    /// The surface of a shape of it, which belongs to a family of shapes.
+    /// Returns the surface of a shape with this material, which belongs to the family of this number.
     pub(super) fn skin(&self, family: usize) -> Skin<'_> {
         let medium = self.content.map(|content| content.volume.medium);
         Skin {
@@ -44,7 +44,7 @@ impl Built {
     }
 }
 
-/// The material of a primitive, and the factor of its vertices on the base colour.
+/// The index of a primitive's material, and the bits of the factor that its vertices have on the base colour.
 type Key = (Option<usize>, [u32; 4]);
 
 /// The materials in use.
@@ -105,7 +105,7 @@ impl Materials {
     }
 }
 
-/// Returns what fills a volume of this index of refraction. None: it is clear.
+/// Returns the contents of a volume with this index of refraction and medium. No medium: it is clear.
 fn content_of(
     builder: &mut SceneBuilder,
     (index, medium): (f32, Option<Medium>),
@@ -166,8 +166,9 @@ fn baked(described: &Described) -> UvMap {
     }
 }
 
-/// Returns the map of the texture coordinates that tangents follow: those of what turns in their frame, or those of the
-/// file where that is the same everywhere. None: nothing does, or on other coordinates than the first texture.
+/// Returns the map of the texture coordinates that tangents follow: those of the first texture that is given in the
+/// tangent frame, or for uniform anisotropy those of the file. None: nothing depends on tangents, or that texture has
+/// other coordinates than the first texture.
 fn map_of_tangents(described: &Described) -> Option<UvMap> {
     let first = uv_map(infos(described).first()?);
     let extensions = &described.extensions;

@@ -23,9 +23,9 @@ pub(super) struct Surface {
     /// Two sets of texture coordinates; empty if the file has none.
     pub(super) uvs: [Vec<[f32; 2]>; 2],
     pub(super) triangles: Vec<[u32; 3]>,
-    /// The factor of all vertices on the base colour: red, green, blue, alpha.
+    /// The mean colour of the vertices, a factor on the base colour: red, green, blue, alpha.
     pub(super) color: [f32; 4],
-    /// Joints and their weights of each vertex. Empty: the surface has no skin.
+    /// The joints of each vertex, with their weights. Empty: the surface has no skin.
     pub(super) joints: Vec<[(u32, f32); 4]>,
 }
 
@@ -49,7 +49,7 @@ impl UvMap {
         Affine2::from_cols(Vec2::new(a, d), Vec2::new(b, e), Vec2::new(c, f))
     }
 
-    /// Returns the same set of texture coordinates as the file has them.
+    /// Returns the identity on the same set of texture coordinates.
     pub(super) fn untransformed(&self) -> Self {
         Self {
             set: self.set,
@@ -57,13 +57,13 @@ impl UvMap {
         }
     }
 
-    /// Returns true for a map that leads to all texture coordinates, as far as numbers can tell.
+    /// Returns true for a map that can be inverted.
     pub(super) fn is_regular(&self) -> bool {
         self.affine().matrix2.determinant().is_normal()
     }
 
-    /// Returns the map from the parameters of a mesh that contain `baked`, which is regular or the same, to what the
-    /// textures of bidir are on, whose v points up.
+    /// Returns the rest of this map for a mesh whose parameters contain the map `baked`: from these parameters to the
+    /// coordinates of bidir's textures, whose v points up. `baked` has to be regular or equal to this map.
     pub(super) fn beyond(&self, baked: &Self) -> Mapping {
         if self == baked {
             return Mapping::IDENTITY;
@@ -82,7 +82,7 @@ impl UvMap {
         Mapping::Affine(map)
     }
 
-    /// Returns the parameters of the built mesh, whose v points up, while that of the file points down.
+    /// Maps texture coordinates of the file, whose v points down, to parameters of the built mesh, whose v points up.
     fn apply(&self, [u, v]: [f32; 2]) -> Vec2 {
         let [s, t] = self.rows.map(|[a, b, c]| a * u + b * v + c);
         Vec2::new(s, 1.0 - t)
@@ -148,8 +148,8 @@ impl Surface {
         repairs
     }
 
-    /// Sets weights to 0 that are not finite, negative, or of joints beyond the `count` that there are. Returns
-    /// the number of such weights, and of vertices that are left without any.
+    /// Sets weights to 0 that are not finite, negative, or of a joint beyond the first `count`. Returns the number
+    /// of such weights, and the number of vertices whose weights are all 0.
     pub(super) fn repair_weights(&mut self, count: usize) -> Repairs {
         let mut repairs = Repairs::default();
         for vertex in &mut self.joints {

@@ -50,7 +50,7 @@ const SETTINGS: SceneSettings = SceneSettings {
     aovs: Vec::new(),
 };
 
-/// Returns true for names of files in this format.
+/// Returns true for names that end in `.gltf` or `.glb`, in any case.
 pub fn is_gltf(path: &Path) -> bool {
     let extension = path.extension().and_then(|extension| extension.to_str());
     extension.is_some_and(|extension| {
@@ -65,7 +65,7 @@ pub fn load(path: &Path, options: &LoadOptions) -> Result<Loaded> {
     load_from(path, options, &Files::default())
 }
 
-/// Does the same as [`load`] with files from `files`.
+/// Reads a file as [`load`] does, from `files`.
 pub fn load_from(path: &Path, options: &LoadOptions, files: &Files) -> Result<Loaded> {
     let (document, log) = Document::open(path, options, files)?;
     let needs = Cell::new(Needs::default());

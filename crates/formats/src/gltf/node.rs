@@ -1,4 +1,4 @@
-//! The nodes of the rendered scene with their maps to the world.
+//! The nodes of the rendered scene, with their transforms to the render space.
 
 use super::document::Document;
 use super::json::{Node, Root};
@@ -9,7 +9,7 @@ use glam::{DAffine3, DMat4, DQuat, DVec3};
 pub(super) struct Nodes {
     /// The indices of the nodes.
     pub(super) order: Vec<usize>,
-    /// The map of each node of the file to the render space. None: it is not in the scene.
+    /// The transform of each node of the file to the render space. None: the node is not in the scene.
     pub(super) render_from_node: Vec<Option<DAffine3>>,
 }
 
@@ -87,7 +87,7 @@ fn local(node: &Node, place: &Place) -> Result<DAffine3, GltfFault> {
     Ok(DAffine3::from_mat4(matrix))
 }
 
-/// Returns T · R · S.
+/// Returns translation · rotation · scale.
 pub(super) fn from_parts(
     translation: Option<[f64; 3]>,
     rotation: Option<[f64; 4]>,

@@ -1,11 +1,11 @@
-//! Looks at a scene that is read, to find out whether its default camera and light will do.
+//! Examines a scene after reading, to find out whether its default camera and light suffice.
 //!
-//! **Camera.** A closed room is black from outside. If the camera is ours, and the file has lights of its own, a
-//! place inside is searched for: from there all rays hit something, mostly its front; or else there is a lamp
-//! inside, and the scene is dark from outside. Of all such places and directions the one with the farthest view is taken.
+//! **Camera.** A closed room is black from outside. If the file has lights but no camera, [`better`] searches for
+//! a viewpoint inside. From it almost all rays hit a surface, and most of them its front; or else a lamp is inside, and
+//! the scene is dark from outside. Of all such viewpoints and directions, it takes those with the farthest view.
 //!
-//! **Light.** Emission counts as light if it lights the scene: a lamp does, glowing eyes do not. It does if at
-//! least half of all places in view are brighter than [`DARK`] in a small picture.
+//! **Light.** Surfaces that emit suffice as light if at least half of all visible points are brighter than [`DARK`] in
+//! a small picture: a lamp does, glowing eyes do not.
 
 use super::view::looking;
 use crate::import::Loaded;
@@ -24,13 +24,13 @@ use glam::{DAffine3, DVec3};
 /// What the reader chooses for a file that has no camera, or no light that counts.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Outlook {
-    /// The place inside of a closed scene. Space: world. None: the camera sees all from outside.
+    /// The viewpoint inside a closed scene. None: the camera sees all from outside.
     pub(super) inside: Option<Place>,
     /// True to add a light though surfaces emit.
     pub(super) is_dark: bool,
 }
 
-/// A place to look from.
+/// A viewpoint and its direction. Space: world.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Place {
     eye: DVec3,
@@ -38,7 +38,7 @@ pub(super) struct Place {
 }
 
 impl Place {
-    /// The frame of a camera at this place.
+    /// Returns the frame of a camera at this viewpoint, in the render space.
     pub(super) fn camera(&self, render_from_world: &DAffine3) -> Affine3A {
         let eye = render_from_world.transform_point3(self.eye);
         looking(eye, self.ahead, DVec3::Y)
@@ -56,10 +56,10 @@ pub(super) struct Needs {
     pub(super) has_own_light: bool,
 }
 
-/// A pixel that is darker looks black on a screen.
+/// Luminance below which a pixel looks black on a screen.
 const DARK: f32 = 0.001;
 
-/// Returns the defaults that fit a scene better than those that it was read with. None: these will do.
+/// Returns better defaults than those that the scene was read with. None: these suffice.
 pub(super) fn better(loaded: &Loaded, needs: Needs) -> Option<Outlook> {
     let (scene, view) = (&loaded.scene, &loaded.view);
     let inside = Some(()).filter(|()| needs.camera && needs.has_own_light);
@@ -69,13 +69,13 @@ pub(super) fn better(loaded: &Loaded, needs: Needs) -> Option<Outlook> {
     (inside.is_some() || is_dark).then_some(Outlook { inside, is_dark })
 }
 
-/// Width and height of the small picture, and its passes.
+/// Width and height of the small picture. Unit: pixels.
 const SIZE: [u32; 2] = [32, 24];
 const PASSES: u64 = 8;
-/// The scattering events of its paths: more than a lamp behind several panes needs.
+/// Maximum number of scattering events of its paths: enough for a lamp behind several panes.
 const DEPTH: u32 = 32;
 
-/// Returns true if less than half of the places in view are lit.
+/// Returns true if less than half of the visible points are lit.
 fn is_dark(scene: &Scene, view: &View) -> bool {
     let film = view.film();
     let size = Vec2::from(SIZE.map(|side| side as f32));
@@ -145,16 +145,16 @@ impl<'a> Rays<'a> {
     }
 }
 
-/// Number of places to each side of the grid.
+/// Number of viewpoints along each side of the grid.
 const PLACES: usize = 7;
-/// The heights of places, relative to the scene's.
+/// The heights of viewpoints, relative to the scene's.
 const HEIGHTS: [f32; 3] = [0.5, 0.3, 0.7];
-/// Number of directions around a place.
+/// Number of directions around a viewpoint.
 const DIRECTIONS: usize = 96;
 /// The part of all rays that may leave through gaps.
 const GAPS: f64 = 0.02;
 
-/// Searches for a place within a closed scene. None: there is none, or the scene is a solid that is lit from
+/// Searches for a viewpoint inside a closed scene. None: there is none, or the scene is a solid that is lit from
 /// outside.
 fn place_inside(scene: &Scene, is_dark_outside: impl FnOnce() -> bool) -> Option<Place> {
     let bounds = bounds(scene)?;
@@ -184,15 +184,15 @@ fn place_inside(scene: &Scene, is_dark_outside: impl FnOnce() -> bool) -> Option
     })
 }
 
-/// Two corners of a box around all. None: the scene is empty.
+/// Returns the lowest and highest corner of the scene's bounding box. None: the box is empty or flat.
 fn bounds(scene: &Scene) -> Option<[Vec3; 2]> {
     let bounds = scene.bvh().bounds();
     let [low, high] = [bounds.min, bounds.max];
     (low.is_finite() && high.is_finite() && (high - low).min_element() > 0.0).then_some([low, high])
 }
 
-/// Returns true if mostly fronts are seen all around a place, and false if mostly backs, but a lamp. None: the
-/// place is open, or in a solid.
+/// Returns true if the rays from `eye` hit mostly fronts, false if mostly backs although a lamp is visible. None: too
+/// many rays escape, or `eye` is inside a solid.
 fn closed_around(rays: &Rays<'_>, eye: Vec3) -> Option<bool> {
     let seen = (0..DIRECTIONS).filter_map(|i| rays.hit(eye, around(i)));
     let (mut hits, mut fronts, mut has_lamp) = (0, 0, false);
@@ -218,7 +218,7 @@ fn sees_point_light(scene: &Scene, eye: Vec3) -> bool {
     })
 }
 
-/// Direction number `i` of many that are evenly distributed, on a spiral.
+/// Returns direction `i` of [`DIRECTIONS`] evenly distributed ones, on a spiral.
 fn around(i: usize) -> Vec3 {
     let y = 1.0 - 2.0 * (i as f32 + 0.5) / DIRECTIONS as f32;
     let golden = bidir::math::PI * (3.0 - 5.0_f32.sqrt());
@@ -227,9 +227,9 @@ fn around(i: usize) -> Vec3 {
     Vec3::new(across * cos, y, across * sin)
 }
 
-/// The level direction in which surfaces are farthest away in the mean over a view, and their distance.
+/// Returns the largest mean distance of surfaces in a view, and its direction, of several horizontal ones.
 fn farthest(rays: &Rays<'_>, eye: Vec3) -> (f32, Vec3) {
-    /// Number of level directions.
+    /// Number of horizontal directions.
     const LEVEL: usize = 16;
     let towards = |turn: f32, tilt: f32| {
         let (sin, cos) = bidir::math::sin_cos(turn * 2.0 * bidir::math::PI / LEVEL as f32);

@@ -16,7 +16,7 @@ pub(super) struct Viewpoint {
     /// The direction from the scene to the viewer, not normalised.
     to_viewer: DVec3,
     up: DVec3,
-    /// The name of the position in messages.
+    /// The viewpoint's name in messages, such as "above it".
     pub(super) name: &'static str,
 }
 
@@ -36,7 +36,7 @@ const VIEWPOINTS: [Viewpoint; 4] = [
     viewpoint(DVec3::X, DVec3::Y, "beside it"),
 ];
 
-/// The required projected area, relative to the largest of all viewpoints.
+/// The least projected area, relative to the largest among all viewpoints.
 const ENOUGH: f64 = 0.25;
 /// The size of the view relative to the scene.
 const MARGIN: f64 = 1.05;
@@ -123,8 +123,8 @@ fn outer(v: DVec3) -> DMat3 {
 }
 
 impl Viewpoint {
-    /// Returns a camera in this direction for which the box of `extent` fills a view of half size `half` at
-    /// distance 1.
+    /// Returns the frame of a camera in this direction that has the box of `extent` in view; `half` is half the size
+    /// of its view at distance 1.
     pub(super) fn camera(&self, extent: &Extent, half: DVec3) -> Affine3A {
         let (centre, size) = extent
             .centre_and_half()
@@ -145,12 +145,13 @@ impl Viewpoint {
 
 /// Number of texels of the environment in either direction.
 const TEXELS: usize = 128;
-/// The radiance of the background, which is added in all directions.
+/// The radiance that is added in all directions.
 const BACKGROUND: f32 = 0.25;
-/// The direction of most light in the space of the camera: over the viewer's left shoulder.
+/// The direction of the most radiance, in the space of the camera: over the viewer's left shoulder.
 const KEY: Vec3 = Vec3::new(-0.4, 0.7, -1.0);
 
-/// Returns soft light from behind and above the viewer, cos θ + [`BACKGROUND`], before a uniform background.
+/// Returns an environment with soft light from behind and above the viewer: its radiance is max(cos θ, 0) +
+/// [`BACKGROUND`], with θ from the direction [`KEY`].
 ///
 /// A white diffuse surface that faces the light has radiance 0.92.
 pub(super) fn surroundings(world_from_camera: &Affine3A) -> InfiniteLight {

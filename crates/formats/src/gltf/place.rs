@@ -4,10 +4,10 @@ use crate::error::ErrorKind;
 use crate::source::Fault;
 use std::fmt;
 
-/// Something wrong at a place.
+/// An error at a place in the JSON.
 pub(super) type GltfFault = Fault<Place>;
 
-/// A value of the JSON, by the way to it from the top.
+/// The path of a value in the JSON, from the top.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(super) struct Place(Vec<Step>);
 
@@ -18,20 +18,20 @@ enum Step {
 }
 
 impl Place {
-    /// All of the file.
+    /// The whole file.
     pub(super) const TOP: Self = Self(Vec::new());
 
-    /// Element `index` of the top array `name`.
+    /// Returns the place of element `index` of the top array `name`.
     pub(super) fn of(name: &str, index: usize) -> Self {
         Self::TOP.key(name).index(index)
     }
 
-    /// The value of `name` in this object.
+    /// Returns the place of the value `name` in this object.
     pub(super) fn key(&self, name: &str) -> Self {
         self.then(Step::Key(name.to_owned()))
     }
 
-    /// An element of this array.
+    /// Returns the place of an element of this array.
     pub(super) fn index(&self, index: usize) -> Self {
         self.then(Step::Index(index))
     }
@@ -46,7 +46,8 @@ impl Place {
         GltfFault::new(kind, self.clone(), message)
     }
 
-    /// Returns one of `all`, whose index stands at this place; `what` is their kind.
+    /// Returns the element of `all` whose index is the value at this place; `what` names the kind of element in the
+    /// error.
     pub(super) fn find<'a, T>(
         &self,
         all: &'a [T],
@@ -64,7 +65,7 @@ impl Place {
         self.key("extensions").key(name)
     }
 
-    /// A fault of a value that means nothing valid.
+    /// Returns the fault of an invalid value at this place.
     pub(super) fn scene(&self, message: impl Into<String>) -> GltfFault {
         self.fault(ErrorKind::Scene, message)
     }

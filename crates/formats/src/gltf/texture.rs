@@ -26,7 +26,7 @@ pub(super) enum Part {
     Alpha,
 }
 
-/// A change of the numbers of an image.
+/// A change of the numbers in an image.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Change {
     /// A factor.
@@ -57,11 +57,11 @@ pub(super) struct Textures {
 struct Decoder {
     /// The last decoded image, as its channels are often requested in sequence.
     last: Option<((usize, bool), ImageData)>,
-    /// Images that the log has.
+    /// The indices of images that the log has.
     logged: BTreeSet<usize>,
 }
 
-/// A lookup of a texture, with the part of its transform that the mesh contains.
+/// A lookup of a texture on a mesh whose parameters contain a map of texture coordinates.
 #[derive(Clone, Copy)]
 pub(super) struct Lookup<'a> {
     pub(super) info: &'a TextureInfo,
@@ -70,7 +70,7 @@ pub(super) struct Lookup<'a> {
     pub(super) baked: UvMap,
 }
 
-/// Returns the map of texture coordinates that a material requests.
+/// Returns the map of texture coordinates of a texture's use (KHR_texture_transform).
 pub(super) fn uv_map(info: &TextureInfo) -> UvMap {
     let Some(transform) = &info.extensions.transform else {
         return UvMap {
@@ -109,7 +109,7 @@ impl Textures {
         Ok(ColorTexture::Image(Arc::new(map)))
     }
 
-    /// Returns a texture of numbers: one channel of a linear image, changed.
+    /// Returns a texture of numbers: one channel of a linear image, with a change.
     pub(super) fn number(
         &mut self,
         context: &mut Context<'_>,
@@ -212,7 +212,7 @@ impl<'a> Found<'a> {
         }
     }
 
-    /// Returns the texture of an image on the parameters of the mesh.
+    /// Returns the texture that looks up an image by the parameters of the mesh.
     fn map<const N: usize>(
         &self,
         context: &mut Context<'_>,

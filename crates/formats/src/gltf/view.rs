@@ -26,9 +26,9 @@ const RATIOS: RangeInclusive<f64> = 1e-3..=1e3;
 /// The projection of a camera, and half the height of its view.
 #[derive(Clone, Copy)]
 enum Screen {
-    /// Perspective; half the height at distance 1.
+    /// Perspective, with half the height at distance 1.
     Perspective(f64),
-    /// Orthographic; half the height at any distance.
+    /// Orthographic, with half the height, which is the same at any distance.
     Orthographic(f64),
 }
 
@@ -37,7 +37,7 @@ pub(super) struct View {
     /// The camera's frame: x right, y up, z forward. None: the whole scene is in view.
     world_from_camera: Option<Affine3A>,
     screen: Screen,
-    /// Width over height of the part that has to be in view. None: that of the film.
+    /// Aspect ratio, width over height, of the part that has to be in view. None: the film's aspect ratio.
     aspect: Option<f64>,
     place: Place,
 }
@@ -155,7 +155,7 @@ impl View {
         Some(place.translation.as_dvec3())
     }
 
-    /// Returns the place of the film's size. None: the caller's options give it.
+    /// Returns the place in the file that gives the film's size. None: the caller's options give the size.
     pub(super) fn film_place(&self, context: &Context<'_>) -> Option<Place> {
         let is_given = context.options.resolution.is_some();
         (!is_given).then(|| self.place.clone())
@@ -178,7 +178,7 @@ impl View {
         Ok(film)
     }
 
-    /// Returns the frame of the camera: that of the file, else one at the place `inside`, else one with all of
+    /// Returns the frame of the camera: the file's, else one at the viewpoint `inside`, else one with all of
     /// `extent` in view.
     pub(super) fn placed(
         &self,
@@ -201,8 +201,8 @@ impl View {
         viewpoint.camera(extent, self.half(resolution))
     }
 
-    /// Returns the camera for a film of `resolution`. The view of the file's camera is contained in that of
-    /// a film of any aspect ratio, and not stretched.
+    /// Returns the camera for a film of `resolution`. A film of any aspect ratio contains the view of the file's
+    /// camera, and does not stretch it.
     pub(super) fn camera(
         &self,
         resolution: [u32; 2],
@@ -231,7 +231,7 @@ impl View {
         camera.ok_or_else(|| self.place.scene("the camera's position is not finite"))
     }
 
-    /// Returns half the size of the view of a film of `resolution`; z is 0.
+    /// Returns half the width and height of the view for a film of `resolution`, at distance 1; z is 0.
     fn half(&self, resolution: [u32; 2]) -> DVec3 {
         let [width, height] = resolution.map(f64::from);
         let (Screen::Perspective(mut half) | Screen::Orthographic(mut half)) = self.screen;

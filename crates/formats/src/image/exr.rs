@@ -11,7 +11,7 @@ use exr::prelude::{Blocks, Compression, ReadChannels, ReadLayers, Vec2, Writable
 use std::io::Cursor;
 use std::path::Path;
 
-/// Channels named `layer.channel`, or `channel` alone for the layer without a name.
+/// Channels named `layer.channel`, or only `channel` for the layer without a name.
 #[derive(Clone, Copy, Debug)]
 pub struct ExrLayer<'a> {
     /// The layer's name; empty for the picture itself.
@@ -194,7 +194,7 @@ fn attribute_length(bytes: &[u8]) -> Option<usize> {
     (length <= bytes.len()).then_some(length)
 }
 
-/// Reads the headers. Errors: sizes are zero or too large, which is checked before memory is reserved.
+/// Reads the headers, before memory is reserved. Errors: sizes are zero or too large.
 pub(super) fn check_headers(bytes: &[u8]) -> Result<MetaData> {
     let meta = MetaData::read_from_buffered(Cursor::new(bytes), false).map_err(broken)?;
     for header in &meta.headers {
@@ -259,8 +259,8 @@ pub(super) fn subsampled() -> Error {
     broken("it has subsampled channels")
 }
 
-/// Returns R, G, B and A, if there is one; else Y. If the unnamed layer has none of them, returns those of
-/// the first layer that does.
+/// Returns the channels R, G, B and, if it exists, A; or else Y. Takes the unnamed layer, or if it has none of
+/// them, the first layer that does.
 fn pick_channels(list: &[AnyChannel<FlatSamples>]) -> Option<Vec<&AnyChannel<FlatSamples>>> {
     let find = |name: &str| list.iter().find(|channel| channel.name.eq(name));
     let colours = |prefix: &str| {

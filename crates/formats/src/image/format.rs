@@ -1,4 +1,4 @@
-//! The formats of images: by the first bytes of a file, and by the ending of its name.
+//! The formats of images, recognised by the first bytes of a file or the ending of its name.
 
 use crate::error::{Error, ErrorKind, Result};
 use std::path::Path;
@@ -47,7 +47,7 @@ const MARKS: [(&[u8], Format); 13] = [
     (b"BM", Format::Bmp),
 ];
 
-/// The marks of other formats, with their offsets.
+/// The marks of formats that cannot be read, each after its offset in bytes.
 const OTHER_MARKS: [(usize, &[u8], &str); 10] = [
     (0, b"\xabKTX 20", "a KTX2 file"),
     (0, b"\xabKTX 11", "a KTX file"),
@@ -81,7 +81,7 @@ impl Format {
         })
     }
 
-    /// Returns the format by the first bytes of a file. None: they are no known mark.
+    /// Returns the format by the first bytes of a file. None: they are not a known mark.
     pub fn of_bytes(bytes: &[u8]) -> Option<Self> {
         if bytes.starts_with(b"RIFF") && bytes.get(8..12) == Some(b"WEBP") {
             return Some(Self::WebP);
@@ -90,7 +90,7 @@ impl Format {
         known.map(|&(_, format)| format)
     }
 
-    /// Returns the format of a file: by its bytes, else by its name, as files of Targa have no mark.
+    /// Returns the format of a file: by its bytes, else by its name, as Targa files have no mark.
     pub(super) fn of_file(bytes: &[u8], path: &Path) -> Result<Self> {
         let known = Self::of_bytes(bytes);
         let named = || Self::of(path).filter(|_| other_format(bytes).is_none());

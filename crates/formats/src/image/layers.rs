@@ -11,8 +11,8 @@ use std::path::Path;
 
 /// The channels of an EXR, and its header.
 ///
-/// Everything that is not changed is written as it was read: other channels of any type, both windows, and
-/// all attributes.
+/// Everything that is not changed is written as it was read: channels of any type, both windows, and all
+/// attributes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Layers {
     image: OnePart,

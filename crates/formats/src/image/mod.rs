@@ -1,9 +1,9 @@
 //! Images: reads them as linear numbers in every [`Format`], and writes EXR and PNG.
 //!
-//! The first bytes of a file decide its format; the ending of its name does where they are no mark.
+//! The first bytes of a file decide its format, or if they are not a known mark, the ending of its name.
 //!
 //! Rows go from top to bottom, whatever the file's order. Eight-bit files are converted from sRGB to
-//! linear; only for PNG can the caller, such as a scene file, name another encoding, and QOI says itself
+//! linear. For PNG, the caller (such as a scene file) can name another encoding; the header of a QOI says
 //! whether it is linear. EXR, HDR and PFM are linear.
 //!
 //! Decoders of other crates may panic on some bytes; such a panic becomes an [`Error`], and prints nothing.
@@ -56,7 +56,7 @@ impl ImageData {
     }
 }
 
-/// Reads an image; `encoding` is that of a PNG, by default sRGB.
+/// Reads an image. `encoding` applies only to PNG. None: sRGB.
 pub fn read(path: &Path, encoding: Option<Encoding>) -> Result<ImageData> {
     let bytes = bytes::read(path, limits::LARGEST_IMAGE)?.bytes;
     decode_file(path, &bytes, encoding)
@@ -97,12 +97,12 @@ fn broken(message: impl std::fmt::Display) -> Error {
     Error::new(ErrorKind::Data, format!("broken image: {message}"))
 }
 
-/// Returns the number of numbers of an image for limits: grey may become three channels.
+/// Returns the number of values that count against limits for an image: grey counts as three channels.
 pub(crate) fn numbers([width, height]: [u64; 2], channels: u64) -> u64 {
     width.saturating_mul(height).saturating_mul(channels.max(3))
 }
 
-/// Refuses sizes that are zero, or too large for the bytes of the file, before memory is reserved.
+/// Refuses a size that is zero or too large for the bytes of the file, before memory is reserved.
 fn check_size([width, height]: [u64; 2], channels: u64, bytes: &[u8]) -> Result<()> {
     let numbers = numbers([width, height], channels);
     if numbers == 0 {

@@ -47,7 +47,7 @@ fn number<T: FromStr>(rest: &mut &[u8], name: &str) -> Result<T> {
     number.ok_or_else(|| broken(format!("no {name}")))
 }
 
-/// Takes the next word and one byte of white space after it, as binary numbers may follow.
+/// Takes the next word and only one byte of white space after it, as binary numbers may follow.
 fn word<'b>(rest: &mut &'b [u8]) -> Option<&'b str> {
     let trimmed = rest.trim_ascii_start();
     let end = trimmed.iter().position(u8::is_ascii_whitespace)?;

@@ -1,4 +1,4 @@
-//! Reads images by the `image` crate: all but PFM and EXR.
+//! Reads all formats of images except PFM and EXR, by the `image` crate.
 
 use super::{Encoding, Format, ImageData, broken, check_size};
 use crate::error::Result;

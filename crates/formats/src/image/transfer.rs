@@ -8,7 +8,7 @@ pub enum Encoding {
     Srgb,
     /// Stored numbers are linear.
     Linear,
-    /// A linear number is the stored one to this power.
+    /// Linear values are stored values to this power.
     Gamma(f32),
 }
 
@@ -23,7 +23,7 @@ impl Encoding {
         }
     }
 
-    /// Returns the linear values of all stored values from 0 to `max`.
+    /// Returns the linear values of the stored integers from 0 to `max`, which stands for 1.
     pub(super) fn table(self, max: u16) -> Vec<f32> {
         (0..=max)
             .map(|stored| self.decode(f64::from(stored) / f64::from(max)) as f32)

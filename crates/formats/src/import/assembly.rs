@@ -1,4 +1,4 @@
-//! A scene in the making: shapes and lights, each with its place in the file.
+//! A scene under construction: shapes and lights, each with its place in the file.
 
 use super::lamp::{self, Placed};
 use super::placing::check_point;
@@ -25,17 +25,17 @@ const UNREACHABLE: &str =
 const ELSEWHERE: &str =
     "the shapes around the camera put it in another medium: it is taken to be there";
 
-/// A scene with the places `P` of its parts in the file.
+/// A scene under construction, with the places `P` of its parts in the file.
 pub(crate) struct Assembly<P> {
     pub(crate) builder: SceneBuilder,
     pub(crate) summary: Summary,
     settings: SceneSettings,
-    /// Of everything but shared objects.
+    /// The survey of everything but shared objects.
     pub(crate) survey: Survey,
-    /// Of each shared object, in its own space.
+    /// The survey of each shared object, in its own space.
     objects: Vec<Survey>,
     vertex_errors: VertexErrors<P>,
-    /// Of all meshes as they are kept.
+    /// Number of vertices of all meshes in memory.
     vertices: u64,
     /// By number.
     shapes: Vec<P>,
@@ -43,13 +43,13 @@ pub(crate) struct Assembly<P> {
     instances: Vec<P>,
     lamps: Vec<Placed<P>>,
     volumes: Volumes,
-    /// The place of the film's size. None: the caller's options give it.
+    /// The place in the file that gives the film's size. None: the caller's options give the size.
     pub(crate) film_place: Option<P>,
-    /// The camera's point, and the medium that the file names for it.
+    /// The position of the camera, the medium that the file names for it, and its place in the file.
     pub(crate) camera: Option<(Vec3, MediumId, P)>,
 }
 
-/// The numbers of a shape that limits are for, summed over its copies.
+/// The counts of a shape that limits apply to, summed over its copies.
 #[derive(Clone, Copy)]
 pub(crate) struct Size {
     pub(crate) primitives: u64,
@@ -61,17 +61,17 @@ pub(crate) struct Size {
 #[derive(Clone, Copy)]
 pub(crate) struct SharedObject {
     id: ObjectId,
-    /// Of the space that its shapes are kept in.
+    /// The origin of the space in which its shapes are kept, in the object's own space.
     origin: DVec3,
 }
 
 impl SharedObject {
-    /// The map from the object's own space to that of the shapes that are kept.
+    /// Returns the map from the object's own space to the space in which its shapes are kept.
     pub(crate) fn kept_from_own(&self) -> DAffine3 {
         DAffine3::from_translation(-self.origin)
     }
 
-    /// The map of the shapes that are kept to where `map` takes the object's own space.
+    /// Returns the map of the kept shapes for an instance, where `map` maps the object's own space.
     pub(crate) fn place_kept(&self, map: &DAffine3) -> DAffine3 {
         *map * DAffine3::from_translation(self.origin)
     }
@@ -80,7 +80,7 @@ impl SharedObject {
 /// The destination of a shape.
 #[derive(Clone, Copy)]
 pub(crate) enum Destination<'a> {
-    /// The space that is rendered in, once for each of these places of its own space.
+    /// The render space, with one copy of the shape for each of these maps from its own space.
     World(&'a [DAffine3]),
     /// An object that is shared.
     Object(SharedObject),
@@ -96,8 +96,8 @@ impl Destination<'_> {
     }
 }
 
-/// The places of several shapes. Where there are several, shapes are kept once, as an object that is shared, but for
-/// those that emit: these are lights of the world.
+/// The instances of several shapes, by their maps to the render space. If there are at least two, shapes are kept once,
+/// in a shared object. Shapes that emit are copied, as each copy is a light.
 pub(crate) struct Group<'a> {
     places: &'a [DAffine3],
     shared: Option<SharedObject>,
@@ -115,16 +115,17 @@ impl<'a> Group<'a> {
     }
 }
 
-/// The kind of a shape's surface.
+/// The properties of a shape's surface.
 #[derive(Clone, Copy)]
 pub(crate) struct Skin<'a> {
-    /// None: it is nothing but a boundary of media.
+    /// The material. None: the surface is only a boundary of media.
     pub(crate) material: Option<MaterialId>,
-    /// How much of it is there. None: all.
+    /// The coverage of the surface. None: it is opaque.
     pub(crate) coverage: Option<&'a FloatTexture>,
     /// The media on its sides.
     pub(crate) media: MediumSides,
-    /// What it fills, and the number of the family of shapes that it closes openings of. None: nothing.
+    /// The contents of the volume that the shape bounds together with its family, and the family's number. None: it
+    /// bounds no volume.
     pub(crate) content: Option<(Content, usize)>,
 }
 
@@ -139,7 +140,7 @@ pub(super) struct Built<P> {
 }
 
 impl<P: Clone> Assembly<P> {
-    /// An empty scene, seen from `eye`. None: where the camera stands depends on the scene.
+    /// Returns an empty scene, seen from `eye`. None: the position of the camera depends on the scene.
     pub(crate) fn new<D: Document>(
         context: &Context<'_, D>,
         settings: SceneSettings,
@@ -180,12 +181,12 @@ impl<P: Clone> Assembly<P> {
         context.check_shapes(self.summary.shapes as u64 + size.shapes, place)
     }
 
-    /// Notes the error of a mesh's vertices.
+    /// Records the rounding error of a mesh's vertices. None: it is negligible.
     pub(crate) fn add_error(&mut self, place: &P, error: Option<VertexError>) {
         self.vertex_errors.add(place, error);
     }
 
-    /// Adds the parts of a shape, which emit each for itself and are one lamp of the file.
+    /// Adds the parts of a shape. Each part that emits is a light of its own; all of them are one lamp of the file.
     pub(crate) fn add_shape(
         &mut self,
         parts: Vec<(Shape, Option<Emission>)>,
@@ -233,7 +234,7 @@ impl<P: Clone> Assembly<P> {
         SharedObject { id, origin }
     }
 
-    /// Returns the destination of the next shape of the last group, which does not emit.
+    /// Returns the destination of the next shape of `group` that does not emit. The group has to be the last one begun.
     pub(crate) fn shared<'a, D: Document>(
         &mut self,
         context: &Context<'_, D>,
@@ -246,7 +247,7 @@ impl<P: Clone> Assembly<P> {
         Destination::Object(*group.shared.get_or_insert_with(begin))
     }
 
-    /// The survey of the last object.
+    /// Returns the survey of the last object.
     pub(crate) fn object_survey(&mut self) -> &mut Survey {
         self.objects.last_mut().expect("an object was begun")
     }
@@ -267,8 +268,8 @@ impl<P: Clone> Assembly<P> {
         self.note_shape(number, (skin, Some(object)), place);
     }
 
-    /// Adds the instances of the last group, and returns their number; `name` returns the place in the file of each. Errors:
-    /// one reaches too far.
+    /// Adds the instances of the last group, and returns their number; `name` returns the place in the file of each.
+    /// Errors: an instance extends too far.
     pub(crate) fn add_instances<D: Document>(
         &mut self,
         context: &Context<'_, D>,
@@ -294,7 +295,7 @@ impl<P: Clone> Assembly<P> {
         Ok(group.places.len())
     }
 
-    /// Adds a light that is no shape.
+    /// Adds a light that is not a shape.
     pub(crate) fn add_light(&mut self, light: Light, place: P) {
         self.summary.other_lights += 1;
         let number = self.builder.light(light);
@@ -305,7 +306,7 @@ impl<P: Clone> Assembly<P> {
         Layout::of(&self.survey, &self.objects)
     }
 
-    /// Refuses a scene of which the vertices leave nothing.
+    /// Refuses a scene whose vertices have rounding errors that are large for its size.
     pub(super) fn check_vertices(&self) -> Result<(), Fault<P>> {
         match self.vertex_errors.refusal(self.survey.reach()) {
             None => Ok(()),
@@ -315,7 +316,7 @@ impl<P: Clone> Assembly<P> {
         }
     }
 
-    /// Builds the scene, which `view` sees.
+    /// Builds the scene for `view`, with warnings about lights, media and vertices.
     pub(super) fn finish<D: Document<Place = P>>(
         mut self,
         view: View,

@@ -3,16 +3,16 @@
 use sha2::{Digest, Sha256};
 use std::fmt;
 
-/// The first bytes of the hash: another layout has another number.
+/// The first bytes that are hashed. The number changes with the layout of the hashed bytes.
 const VERSION: &[u8] = b"bidir scene digest 1\n";
 
 /// The identity of a scene: SHA-256 of all texts, then all meshes, images and spectra, in the
 /// order read.
 ///
-/// Bytes are hashed as they are after unpacking, each file's with its kind and length before them;
-/// names and times are not. So a copied or packed scene is the same, and one with another byte is
-/// another. Unread files, such as the images of unused textures, are not part of it,
-/// and neither are [`LoadOptions`](super::LoadOptions).
+/// Of each file, its kind, its length and its unpacked bytes are hashed, but not its name and time. So a
+/// copied or packed scene has the same identity, and a scene with one other byte has another. Files that are
+/// not read, such as the images of unused textures, have no part in it, nor have
+/// [`LoadOptions`](super::LoadOptions).
 ///
 /// Its text is lower-case hexadecimal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -24,7 +24,7 @@ impl fmt::Display for SceneDigest {
     }
 }
 
-/// The part of a scene that a file is. The numbers are hashed.
+/// The kind of a file's contents. The numbers are hashed.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Content {
     Text = 0,
@@ -34,7 +34,7 @@ pub(crate) enum Content {
     Grid = 4,
 }
 
-/// A digest in the making.
+/// A digest under construction.
 #[derive(Clone)]
 pub(crate) struct DigestBuilder(Sha256);
 

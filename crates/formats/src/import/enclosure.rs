@@ -1,34 +1,34 @@
-//! Which meshes enclose something, and which way round their faces look.
+//! Finds out whether meshes enclose a volume, and on which side the fronts of their faces are.
 //!
-//! Corners at one place are one corner. Faces that share an edge belong to one part, and are turned to run along it in
-//! opposite directions; most of a part decides for all of it. Edges without a partner form the rims of openings, whose
-//! area ½ Σ a × b is known without filling them. A part whose rims have no area encloses the signed volume
-//! ⅙ Σ a · (b × c): it is positive where fronts look outwards.
+//! Corners at one position are one corner. Faces that share an edge belong to one part, and must run along the edge
+//! in opposite directions; faces that do not are turned to agree with most of their part's area. Edges without a
+//! partner form the rims of openings; the vector area of an opening is ½ Σ a × b. A part whose rims have almost no
+//! area encloses the signed volume ⅙ Σ a · (b × c), which is positive if fronts are outside.
 
 use bidir::math::Vec3;
 use bidir::shape::{Mesh, Orientation};
 use glam::DVec3;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// The least area of an opening, as a part of that of the whole; rounding at seams leaves less.
+/// The least area of an opening, relative to the area of its part. Rounding at seams opens less.
 const OPEN: f64 = 1e-3;
-/// The least volume, as a part of area^1.5; a sheet with two sides has none.
+/// The least volume, relative to area^1.5. A sheet with two sides has none.
 const FLAT: f64 = 1e-7;
-/// The most triangles that are looked at to find which parts lie within others.
+/// Maximum number of tests of triangles, to find out which parts are inside others.
 const MOST_TESTS: usize = 1 << 26;
 
 /// The findings about meshes that bound one volume together.
 #[derive(Debug, Default)]
 pub(super) struct Findings {
-    /// The meshes of which some part encloses nothing.
+    /// For each mesh, true if one of its parts does not enclose a volume.
     pub(super) open: Vec<bool>,
-    /// The faces of each mesh that look the other way than the rest.
+    /// The faces of each mesh that have to be turned.
     pub(super) turned: Vec<Vec<u32>>,
-    /// True where all parts have their fronts within.
+    /// True if all closed parts have their fronts inside.
     pub(super) is_inside_out: bool,
 }
 
-/// A triangle of a mesh: its corners, numbered by place.
+/// A triangle of a mesh, with its corners as indices of [`Hull::places`].
 #[derive(Clone, Copy)]
 struct Face {
     mesh: u32,
@@ -36,16 +36,16 @@ struct Face {
     corners: [u32; 3],
 }
 
-/// An edge of a face, from its lower corner to its higher.
+/// An edge of a face, from the corner with the lower index to the other.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Edge {
     ends: [u32; 2],
-    /// True where the face runs along it from the higher corner to the lower.
+    /// True if the face runs along the edge from the higher index to the lower.
     is_reversed: bool,
     face: u32,
 }
 
-/// Sets of faces or corners. Each has a parity in its set: odd where it is turned against its root.
+/// Disjoint sets of faces or corners. Each element has a parity: odd if it is turned relative to its root.
 struct Sets {
     parents: Vec<(u32, bool)>,
 }
@@ -60,7 +60,7 @@ struct Part {
     is_open: bool,
 }
 
-/// The faces of all meshes, and the places of their corners.
+/// The faces of all meshes, and the positions of their corners.
 struct Hull {
     places: Vec<DVec3>,
     faces: Vec<Face>,
@@ -74,7 +74,7 @@ impl Sets {
         }
     }
 
-    /// The root of `i`, and the parity of `i`. Halves the way there.
+    /// Returns the root of `i`, and the parity of `i`. Halves the path to the root.
     fn find(&mut self, mut i: u32) -> (u32, bool) {
         let mut parity = false;
         loop {
@@ -89,7 +89,7 @@ impl Sets {
         }
     }
 
-    /// Joins the sets of `a` and `b`; `differ` says whether their parities differ, unless they are in one already.
+    /// Joins the sets of `a` and `b`, unless they are one set. `differ` is true if their parities are to differ.
     fn join(&mut self, a: u32, b: u32, differ: bool) {
         let ((root_a, parity_a), (root_b, parity_b)) = (self.find(a), self.find(b));
         let (low, high) = (root_a.min(root_b), root_a.max(root_b));
@@ -129,7 +129,7 @@ impl Hull {
         face.corners.map(|corner| self.places[corner as usize])
     }
 
-    /// The edges of all faces, those in one place side by side.
+    /// Returns the edges of all faces, sorted by their ends.
     fn edges(&self) -> Vec<Edge> {
         let of_face = |(face, number): (&Face, u32)| {
             let [a, b, c] = face.corners;
@@ -144,7 +144,7 @@ impl Hull {
         edges
     }
 
-    /// The parts, as sets of faces.
+    /// Returns the parts, as sets of faces.
     fn sets(&self, edges: &[Edge]) -> Sets {
         let mut sets = Sets::new(self.faces.len());
         for along in edges.chunk_by(|a, b| a.ends == b.ends) {
@@ -162,7 +162,8 @@ impl Hull {
         sets
     }
 
-    /// The parts by number of their root.
+    /// Returns the parts by the number of their root face, and for each face its root, with true if it has to be
+    /// turned.
     fn parts(&self, edges: &[Edge]) -> (Vec<Part>, Vec<(u32, bool)>) {
         let mut sets = self.sets(edges);
         let mut roots: Vec<_> = (0..self.faces.len() as u32).map(|i| sets.find(i)).collect();
@@ -189,7 +190,7 @@ impl Hull {
         (parts, roots)
     }
 
-    /// Notes the parts with openings, and those that are flat.
+    /// Marks the parts that have openings, and those that are flat, as open.
     fn find_openings(&self, edges: &[Edge], roots: &[(u32, bool)], parts: &mut [Part]) {
         let mut rims = Sets::new(self.places.len());
         let mut open = Vec::new();
@@ -222,7 +223,7 @@ impl Hull {
         }
     }
 
-    /// How often the other parts wind around a corner of part number `own`.
+    /// Returns the winding number of all other parts around a corner of part `own`.
     fn winding(&self, own: u32, roots: &[(u32, bool)]) -> i32 {
         let from = self.places[self.faces[own as usize].corners[0] as usize];
         let others = self.faces.iter().zip(roots);
@@ -236,7 +237,7 @@ impl Hull {
     }
 }
 
-/// The places of all vertices, each once, and the number of each vertex's place.
+/// Returns the distinct positions of all vertices, and for each vertex the index of its position.
 fn weld(meshes: &[&Mesh]) -> (Vec<DVec3>, Vec<u32>) {
     let all = meshes.iter().flat_map(|mesh| mesh.positions.iter());
     // Adding zero makes both zeros one.
@@ -256,9 +257,9 @@ fn weld(meshes: &[&Mesh]) -> (Vec<DVec3>, Vec<u32>) {
     (places, numbers)
 }
 
-/// 1 where a ray from a point leaves through a triangle, -1 where it enters, 0 where it misses.
+/// Returns 1 if a ray from a point leaves through a triangle, -1 if it enters, 0 if it misses.
 fn crossing(from: DVec3, corners: [DVec3; 3]) -> i32 {
-    /// Far from axes and diagonals, along which people build.
+    /// The direction of the ray, far from axes and diagonals, to which many edges are parallel.
     const ALONG: DVec3 = DVec3::new(0.3601, 0.4793, 0.8004);
     let [a, b, c] = corners.map(|corner| corner - from);
     let sides = [a.cross(b), b.cross(c), c.cross(a)].map(|normal| normal.dot(ALONG));
@@ -274,7 +275,7 @@ fn crossing(from: DVec3, corners: [DVec3; 3]) -> i32 {
 }
 
 impl Findings {
-    /// Looks at the meshes that bound one volume.
+    /// Examines the meshes that together bound one volume.
     pub(super) fn of(meshes: &[&Mesh]) -> Self {
         let hull = Hull::of(meshes);
         let edges = hull.edges();
@@ -310,20 +311,20 @@ impl Findings {
         findings
     }
 
-    /// True where all meshes enclose something.
+    /// Returns true if all parts of all meshes enclose a volume.
     pub(super) fn is_closed(&self) -> bool {
         !self.open.contains(&true)
     }
 }
 
-/// Turns faces of a mesh that look the wrong way.
+/// Turns these faces of a mesh, so that their fronts are on the other side.
 pub(super) fn turn(mesh: &mut Mesh, faces: &[u32]) {
     for &face in faces {
         mesh.triangles[face as usize].swap(1, 2);
     }
 }
 
-/// Turns the normals of a mesh that point behind the faces around them. Returns how many there are.
+/// Flips the normals of a mesh that point behind the faces around them. Returns their number.
 pub(super) fn turn_normals(mesh: &mut Mesh) -> usize {
     if mesh.normals.is_empty() {
         return 0;

@@ -5,13 +5,13 @@ use bidir::texture::{Image, ImageFilter};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// Images by their key: what they are made of, and how.
+/// Images by their key, which says which file they are read from, and how.
 #[derive(Default)]
 pub(crate) struct Images<K, const N: usize>(BTreeMap<K, Arc<Image<N>>>);
 
 impl<K: Ord, const N: usize> Images<K, N> {
-    /// Returns the image of this key, with a pyramid of smaller copies if the filter needs one. If it is not known,
-    /// `read` returns its width and its texels.
+    /// Returns the image of this key, with a pyramid of smaller copies if the filter needs one. For a new key, `read`
+    /// returns the width and the texels.
     pub(crate) fn get<P: Clone>(
         &mut self,
         key: K,

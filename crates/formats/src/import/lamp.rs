@@ -4,7 +4,7 @@ use bidir::light::Light;
 use bidir::scene::Scene;
 use std::ops::Range;
 
-/// Maximum number of lamps with places, as finding a place takes time in proportion to the text.
+/// Maximum number of lamps with a place, because the time to find a place is proportional to the length of the text.
 const MOST: usize = 3;
 
 /// A lamp of a file that no ray can hit.
@@ -16,10 +16,11 @@ pub struct Lamp {
     pub light: u32,
 }
 
-/// The place of a lamp, and its lights by index: several if each triangle is a light of its own, none if it has none.
+/// The place of a lamp, and the indices of its lights: several if it has several parts, none if it has no triangle.
 pub(crate) type Placed<P> = (P, Range<u32>);
 
-/// Returns the first of `lamps` that no ray can hit, with the texts of their places.
+/// Returns the first lamps, at most [`MOST`], that have a light no ray can hit, each with its place as `text` writes
+/// it.
 pub(crate) fn unhittable<P>(
     scene: &Scene,
     lamps: &[Placed<P>],

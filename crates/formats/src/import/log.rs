@@ -11,7 +11,7 @@ use crate::source::{Fault, Span};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-/// Something odd that is no error.
+/// A message about something odd that is not an error.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Warning<P = Span> {
     /// The reason.
@@ -22,7 +22,7 @@ pub struct Warning<P = Span> {
     pub count: usize,
 }
 
-/// Counts a warning: the same words occur once in the list.
+/// Adds a warning to the list, or counts it if the list has its message.
 pub(crate) fn warn<P>(warnings: &mut Vec<Warning<P>>, place: P, message: impl Into<String>) {
     let mut message = message.into();
     if warnings.len() >= MOST_WARNINGS && warnings.iter().all(|known| known.message != message) {
@@ -41,7 +41,7 @@ pub(crate) fn warn<P>(warnings: &mut Vec<Warning<P>>, place: P, message: impl In
 /// Warnings with their places `P`, and the files that were read.
 #[derive(Clone)]
 pub(crate) struct Log<P> {
-    /// True where a substitute takes the place of what is not supported, with a warning.
+    /// True to replace unsupported features by substitutes, with warnings.
     pub(super) lenient: bool,
     pub(crate) warnings: Vec<Warning<P>>,
     /// The messages of those warnings that name a substitute.
@@ -53,7 +53,7 @@ pub(crate) struct Log<P> {
 }
 
 impl<P> Log<P> {
-    /// The log of a scene whose `texts` take `stored` bytes on the disk.
+    /// Returns the log of a scene whose `texts` take `stored` bytes on the disk.
     pub(crate) fn new(options: &LoadOptions, texts: Vec<PathBuf>, stored: u64) -> Self {
         Self {
             lenient: options.lenient,
@@ -86,7 +86,7 @@ impl<P> Log<P> {
         Err(fault.with_hint(format!("with --lenient, {substitute}")))
     }
 
-    /// Bytes that all files take on the disk, each once.
+    /// Returns the size of all files on the disk, each counted once. Unit: bytes.
     pub(crate) fn stored(&self) -> u64 {
         self.reading.stored()
     }
@@ -100,7 +100,7 @@ impl<P> Log<P> {
         Ok(bytes)
     }
 
-    /// Adds bytes of the scene, and the names of the file that they are of.
+    /// Adds the bytes of a file to the digest, and the names of the file.
     pub(crate) fn add(
         &mut self,
         content: Content,
@@ -111,7 +111,7 @@ impl<P> Log<P> {
         self.files.extend(names);
     }
 
-    /// The warnings whose messages are among those that are asked for, each as `place: message`.
+    /// Returns the warnings for whose messages `is_asked_for` is true, each as `place: message`.
     pub(super) fn texts(
         &self,
         text: impl Fn(&P) -> String,

@@ -4,8 +4,8 @@
 //! hands a function to [`load`] that puts all of the document into an [`Assembly`], by means of a
 //! [`Context`]: the options, the [`Layout`] and the [`Log`] of warnings and files.
 //!
-//! What every format needs is here: [`Images`] are decoded once for each use, `placing` puts vertices in their place in
-//! `f64`, and a [`Group`] of places shares its shapes, but for copies of those that emit.
+//! All formats share these parts: [`Images`] decodes an image once for each use, `placing` transforms vertices in
+//! `f64`, and the instances of a [`Group`] share its shapes, except those that emit.
 //!
 //! A feature that the format has and the renderer lacks is refused where it stands. With
 //! [`LoadOptions::lenient`] a substitute takes its place, and a warning names it.
@@ -59,19 +59,19 @@ pub(crate) trait Document {
     /// A place in the file.
     type Place: Clone;
 
-    /// The place of an error that concerns all of the scene.
+    /// The place of an error that concerns the whole scene.
     const TOP: Self::Place;
 
     /// The source of the scene's files.
     fn files(&self) -> &Files;
 
-    /// Every file that the document may name, whether it is read or not.
+    /// Returns every file that the document may name, whether it is read or not.
     fn named_files(&self) -> Vec<PathBuf>;
 
-    /// The text of a place, which begins with the name of the file.
+    /// Returns the text of a place, which begins with the name of the file.
     fn text(&self, place: &Self::Place) -> String;
 
-    /// The error of a fault.
+    /// Returns the error of a fault.
     fn error(&self, fault: Fault<Self::Place>) -> Error;
 }
 
@@ -84,7 +84,7 @@ pub struct Loaded {
     pub scene: Arc<Scene>,
     /// The camera of the file, and its film.
     pub view: View,
-    /// The settings of a render, by the file.
+    /// The settings of a render that the file gives.
     pub settings: SceneSettings,
     /// The warnings, each as `place: message`. Places are `file:line:column` in pbrt,
     /// and `file: meshes[0]` in glTF.
@@ -95,11 +95,11 @@ pub struct Loaded {
     pub summary: Summary,
     /// The first lamps that no ray can hit.
     pub lamps: Vec<Lamp>,
-    /// The place of the film's size. None: the caller's options give it.
+    /// The place in the file that gives the film's size. None: the caller's options give the size.
     pub film_place: Option<FilePlace>,
     /// The identity of the scene.
     pub digest: SceneDigest,
-    /// Every file that was read, by each name that it was asked for; the scene file is the first.
+    /// Every file that was read, under each name by which it was read; the scene file is the first.
     pub files: Vec<PathBuf>,
     /// Every file on the disk that the scene reads or names: no output may replace it
     /// ([`outputs`](crate::outputs)).
@@ -107,7 +107,7 @@ pub struct Loaded {
 }
 
 impl Loaded {
-    /// Returns what is rendered.
+    /// Returns the scene and its view, to render them.
     pub fn subject(&self) -> Subject {
         Subject {
             name: self.name.clone(),
@@ -117,8 +117,8 @@ impl Loaded {
         }
     }
 
-    /// Returns the error of a film that is too large, at the place that gives its size. It has no place where the
-    /// caller's options give it.
+    /// Returns the error of a film that is too large, at the place in the file that gives its size. If the caller's
+    /// options give the size, the error has no place.
     pub fn too_large(&self, error: &FilmError) -> Error {
         let [width, height] = self.view.film().resolution;
         let message = format!("a film of {width} x {height} pixels is too large: {error}");
@@ -140,16 +140,16 @@ pub struct SceneSettings {
     pub sampler: SamplerKind,
     /// Samples per pixel.
     pub samples_per_pixel: u32,
-    /// The seed. None: where the file gives none.
+    /// The seed. None: the file gives none.
     pub seed: Option<u64>,
-    /// The name of the image, as the file has it. None: where it gives none.
+    /// The name of the image, as the file has it. None: the file gives none.
     pub output: Option<String>,
-    /// The images that its film has beside the picture.
+    /// The layers that the film has besides the picture.
     pub aovs: Vec<Aov>,
 }
 
 impl SceneSettings {
-    /// Returns the settings of a render as the scene asks for them, over the defaults of its integrator.
+    /// Returns the settings of a render: those of the scene, and else the defaults of its integrator.
     pub fn render_settings(&self) -> Settings {
         let mut settings = Settings {
             sampler: self.sampler,
@@ -165,11 +165,11 @@ impl SceneSettings {
 /// The parts of a scene.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Summary {
-    /// Shapes as they are kept: those of shared objects count once.
+    /// The shapes in memory: those of an object count once, however often it is placed.
     pub shapes: usize,
-    /// Triangles, spheres and disks as they are kept: those of shared objects count once.
+    /// The triangles, spheres and disks in memory, counted like the shapes.
     pub primitives: u64,
-    /// Places of objects.
+    /// Instances of objects.
     pub instances: usize,
     /// Materials.
     pub materials: usize,
@@ -177,11 +177,11 @@ pub struct Summary {
     pub textures: usize,
     /// Shapes that emit.
     pub area_lights: usize,
-    /// Lights that are no shapes.
+    /// Lights that are not shapes.
     pub other_lights: usize,
 }
 
-/// The means of a reader that fills an [`Assembly`].
+/// The state of a reader while it fills an [`Assembly`].
 pub(crate) struct Context<'a, D: Document> {
     pub(crate) document: &'a D,
     pub(crate) options: &'a LoadOptions,
@@ -191,7 +191,7 @@ pub(crate) struct Context<'a, D: Document> {
 }
 
 impl<D: Document> Context<'_, D> {
-    /// Warns of something odd; the same message is counted.
+    /// Adds a warning, or counts it if there is one with the same message.
     pub(crate) fn warn(&mut self, place: D::Place, message: impl Into<String>) {
         self.log.warn(place, message);
     }
@@ -206,8 +206,8 @@ impl<D: Document> Context<'_, D> {
         self.log.unsupported(place, feature, substitute)
     }
 
-    /// Builds something that nobody uses: it must not be wrong, but an unsupported feature is no
-    /// reason to refuse the scene, and needs no substitute. None: it is not supported.
+    /// Builds something that the scene does not use, to check it. Errors in it are reported, but an unsupported
+    /// feature is neither refused nor replaced: then returns None.
     pub(crate) fn unused<T>(
         &mut self,
         build: impl FnOnce(&mut Self) -> Result<T, Fault<D::Place>>,
@@ -221,19 +221,19 @@ impl<D: Document> Context<'_, D> {
         }
     }
 
-    /// The view of the scene by this camera.
+    /// Returns the view of the scene by this camera.
     pub(crate) fn view(camera: Camera, film: FilmSettings) -> Result<View, Fault<D::Place>> {
         View::new(camera, film).map_err(|error| Fault::scene(D::TOP, error.to_string()))
     }
 
-    /// Refuses more primitives, or vertices of meshes, than the caller wants, or than the files have
-    /// the bytes for.
+    /// Refuses more primitives, or vertices of meshes, than the caller allows, or than the size of the
+    /// files allows.
     pub(crate) fn check_size(&self, count: u64, place: &D::Place) -> Result<(), Fault<D::Place>> {
         let most = self.options.most_primitives(self.log.stored());
         check(count, most, "primitives or vertices", place)
     }
 
-    /// Refuses more shapes than the files have the bytes for: those that emit are kept at each place.
+    /// Refuses more shapes than the size of the files allows: a shape that emits is copied for each instance.
     fn check_shapes(&self, count: u64, place: &D::Place) -> Result<(), Fault<D::Place>> {
         let most = limits::SHAPES.of(self.log.stored());
         check(count, most, "shapes, counted at each place", place)
@@ -250,10 +250,10 @@ fn check<P: Clone>(count: u64, most: u64, things: &str, place: &P) -> Result<(),
     Err(fault.with_hint("instances share the memory of their object, unless it emits"))
 }
 
-/// The scene of a file in the making, and the view of it.
+/// The scene of a file under construction, and the view of it.
 pub(crate) type Gathered<P> = Result<(Assembly<P>, View), Fault<P>>;
 
-/// Builds the scene that `gather` puts together.
+/// Builds the scene whose parts `gather` collects.
 pub(crate) fn load<'a, D: Document>(
     document: &'a D,
     options: &'a LoadOptions,
@@ -296,7 +296,7 @@ pub(crate) fn load<'a, D: Document>(
     })
 }
 
-/// Gathers everything in the world, or once more where the layout of the scene places it.
+/// Gathers everything in world space and builds the scene. If the scene needs another layout, gathers it again in that.
 fn build<'a, D: Document>(
     context: &mut Context<'a, D>,
     gather: impl Fn(&mut Context<'a, D>) -> Gathered<D::Place>,

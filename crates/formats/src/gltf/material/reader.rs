@@ -30,7 +30,7 @@ pub(super) struct Reader<'a, 'b> {
 }
 
 impl Reader<'_, '_> {
-    /// Reads a colour, whose texture is in sRGB.
+    /// Reads a factor times a colour texture, which is in sRGB.
     fn color(&mut self, factor: Rgb, info: Option<&TextureInfo>) -> Result<ScaledColor, GltfFault> {
         let texture = info
             .map(|info| self.image(info, Encoding::Srgb))
@@ -47,7 +47,7 @@ impl Reader<'_, '_> {
         self.textures.color(self.context, lookup, encoding)
     }
 
-    /// Reads a number, whose texture is one channel.
+    /// Reads a factor times one channel of a linear texture.
     fn number(
         &mut self,
         factor: f32,
@@ -162,20 +162,20 @@ impl Reader<'_, '_> {
         Ok(())
     }
 
-    /// The volume of a material that is no thin wall.
+    /// Returns the volume of the material. None: it is a thin wall.
     fn volume(&self) -> Option<&Volume> {
         let volume = &self.described.extensions.volume;
         (volume.thickness_factor > 0.0).then_some(volume)
     }
 
-    /// The index of refraction of a volume.
+    /// Returns the index of refraction inside.
     pub(super) fn index(&self) -> f32 {
         let ior = self.described.extensions.ior.ior.unwrap_or(1.5);
         if ior > 0.0 { ior } else { 1.0 }
     }
 
-    /// Reads the medium inside: at `attenuationDistance`, `attenuationColor` is left of the light. Some(None): it is
-    /// clear. None: there is no volume, or no light gets in.
+    /// Reads the medium inside, whose transmittance over `attenuationDistance` is `attenuationColor`. Some(None): the
+    /// inside is clear. None: there is no volume, or no light gets in.
     #[expect(clippy::option_option, reason = "a volume may be clear")]
     pub(super) fn inside(&self) -> Result<Option<Option<Medium>>, GltfFault> {
         let extensions = &self.described.extensions;
@@ -279,7 +279,7 @@ impl Reader<'_, '_> {
         }))
     }
 
-    /// Returns the coverage of the surface, with vertices of alpha `vertex`.
+    /// Returns the coverage of the surface; `vertex` is the alpha of its vertices.
     pub(super) fn coverage(&mut self, vertex: f32) -> Result<Option<FloatTexture>, GltfFault> {
         let pbr = &self.described.pbr_metallic_roughness;
         let factor = pbr.base_color_factor.map_or(1.0, |color| color[3]) * vertex;
@@ -303,7 +303,7 @@ impl Reader<'_, '_> {
     }
 }
 
-/// σ_a = -ln(part) / distance. Where nothing is to be left, 10⁻³⁸ is.
+/// Returns σ_a = -ln(part) / distance, for a transmittance `part` of at least 10⁻³⁸.
 fn absorption(part: f32, distance: f32) -> f64 {
     -libm::log(part.max(f32::MIN_POSITIVE).into()) / f64::from(distance)
 }

@@ -1,4 +1,4 @@
-//! The placement of meshes: the maps of joints, and the places of a node's instances.
+//! The placement of meshes: the transforms of joints, and of a node's instances.
 
 use crate::gltf::document::Document;
 use crate::gltf::json::Node;
@@ -6,7 +6,7 @@ use crate::gltf::node::from_parts;
 use crate::gltf::place::{GltfFault, Place};
 use glam::DAffine3;
 
-/// Returns the maps of a node's skin from the mesh to the render space, by joint.
+/// Returns the transforms from the mesh to the render space, one for each joint of `skin`.
 pub(in crate::gltf) fn joints(
     document: &Document,
     render_from_node: &[Option<DAffine3>],
@@ -42,7 +42,7 @@ pub(in crate::gltf) fn joints(
     of_skin.joints.iter().enumerate().map(of_joint).collect()
 }
 
-/// Returns the places of a mesh in its node: one, or those of EXT_mesh_gpu_instancing.
+/// Returns the transforms from a mesh to its node: the identity, or those of EXT_mesh_gpu_instancing.
 pub(in crate::gltf) fn places(
     document: &Document,
     node: &Node,

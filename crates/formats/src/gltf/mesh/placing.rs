@@ -7,7 +7,7 @@ use bidir::shape::{Mesh, Orientation};
 use glam::{DAffine3, DVec3};
 
 impl Surface {
-    /// Returns the mesh placed by `world_from_mesh`, and adds it to `survey`. Errors: it extends too far.
+    /// Returns the mesh transformed by `world_from_mesh`, and adds it to `survey`. Errors: it extends too far.
     pub(in crate::gltf) fn place(
         &self,
         world_from_mesh: &DAffine3,
@@ -25,7 +25,7 @@ impl Surface {
         self.mesh(vertices, (orientation, uv, survey), place)
     }
 
-    /// Returns the mesh moved by its joints, each of which has a map from the mesh to the world.
+    /// Returns the mesh transformed by its joints; `joints` are their transforms from the mesh to the world.
     pub(in crate::gltf) fn skinned(
         &self,
         joints: &[DAffine3],
@@ -73,7 +73,8 @@ impl Surface {
     }
 }
 
-/// Returns the map of normals up to scale: the matrix of cofactors, which exists for singular maps too.
+/// Returns the transform of normals, up to a positive factor: the matrix of cofactors, which exists for singular
+/// maps, too.
 fn normal_matrix(map: &DAffine3) -> glam::DMat3 {
     let m = map.matrix3;
     let sign = if m.determinant() < 0.0 { -1.0 } else { 1.0 };
@@ -81,7 +82,7 @@ fn normal_matrix(map: &DAffine3) -> glam::DMat3 {
     glam::DMat3::from_cols(y.cross(z) * sign, z.cross(x) * sign, x.cross(y) * sign)
 }
 
-/// Returns the weighted mean of the maps of joints. None: a joint does not exist.
+/// Returns the weighted mean of the transforms of a vertex's joints. None: a joint does not exist.
 fn blend(vertex: &[(u32, f32); 4], joints: &[DAffine3]) -> Option<DAffine3> {
     let total: f64 = vertex.iter().map(|&(_, weight)| f64::from(weight)).sum();
     if total <= 0.0 {
