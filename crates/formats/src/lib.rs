@@ -1,6 +1,6 @@
 //! Readers and writers: scenes of pbrt-v4 and glTF 2.0, PLY meshes, images, film files.
 //!
-//! Nothing here panics, whatever the bytes: a broken file is an [`Error`] with a place, a kind and a hint.
+//! No function panics, whatever the bytes: a broken file gives an [`Error`] with a place, a kind and a hint.
 //! Counts are checked before memory is reserved for them.
 
 mod bytes;

@@ -1,8 +1,8 @@
 //! The limits of readers. A test writes them to docs/reference/limits.md.
 //!
-//! Memory and time are bounded by the size of files on the disk, so that a small file cannot demand much.
-//! Features that expand a few bytes, such as packed texts, inclusions, subdivision and even images, have
-//! an [`Allowance`]: a free part, and more for every byte.
+//! The size of files on the disk bounds memory and time, so that a small file cannot demand much. Features
+//! that expand a few bytes to many, such as packed texts, inclusions, subdivision and even images, have an
+//! [`Allowance`]: a free part, and more for every byte.
 
 /// A limit that grows with the size of files.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -44,11 +44,11 @@ pub(crate) const SHAPES: Allowance = Allowance::new(1 << 18, 1);
 pub(crate) const INSTANCES: Allowance = Allowance::new(1 << 18, 1);
 /// Number of components that accessors of a glTF file read.
 pub(crate) const COMPONENTS: Allowance = Allowance::new(1 << 26, 64);
-/// Number of tests of a corner against others, for the concave polygons of a PLY mesh; its bytes are unpacked.
+/// Number of tests of a corner against others, for the concave polygons of a PLY mesh, by its unpacked bytes.
 pub(crate) const EARS: Allowance = Allowance::new(1 << 18, 256);
 /// Number of values of an image: pixels times channels.
 pub(crate) const IMAGE: Allowance = Allowance::new(1 << 26, 128);
-/// Number of cells that the grids of NanoVDB files span, kept or not.
+/// Number of cells in the bounds of all grids of NanoVDB files, stored or not.
 pub(crate) const VOXELS: Allowance = Allowance::new(1 << 25, 64);
 /// Number of values of all images of a scene.
 pub(crate) const IMAGES: Allowance = Allowance::new(1 << 28, 128);
@@ -75,8 +75,8 @@ pub(crate) const FURTHER_WARNINGS: &str = "further warnings, of other kinds";
 pub(crate) const MOST_PRIMITIVES: u64 = 1 << 28;
 /// Number of subdivision steps, each of which quadruples the triangles.
 pub(crate) const MOST_LEVELS: u32 = 10;
-/// Number of cells of a grid along an axis: a ray may cross all of them, and 32-bit coordinates within a cell
-/// need the bits that the number leaves.
+/// Number of cells of a grid along an axis. A ray may cross all of them, and 32-bit coordinates have to leave
+/// enough bits for the position within a cell.
 pub(crate) const LONGEST_GRID: usize = 1 << 14;
 /// Depth of nested textures.
 pub(crate) const DEEPEST_TEXTURE: usize = 32;

@@ -2,7 +2,7 @@
 //!
 //! Files are compared by identity: device and inode after all links, so that `a.png`, `./a.png`, a symbolic
 //! link and a hard link to it are one file. A file that does not exist yet is identified by its folder's
-//! identity and its name. Devices and pipes are written to and never replaced, so they equal nothing.
+//! identity and its name. Devices and pipes are written to and never replaced, so they equal no file.
 //!
 //! A command that writes files calls [`check`] before it renders, as soon as it knows all its inputs.
 
@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 /// A file that will be written.
 #[derive(Clone, Copy, Debug)]
 pub struct Output<'a> {
-    /// Its name.
+    /// The name of the file.
     pub path: &'a Path,
     /// The flag that names the file. None: there is no flag.
     pub flag: Option<&'a str>,

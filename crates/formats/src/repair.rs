@@ -1,32 +1,33 @@
 //! Repairs the attributes of meshes that cannot be used as they are, and counts them.
 //!
-//! Positions and indices say what the mesh is: wrong ones are errors. Everything else has a substitute.
+//! Wrong positions and indices are errors, as the shape of the mesh depends on them. All other attributes
+//! have substitutes.
 
 use glam::DVec3;
 
-/// What was wrong with a mesh, by number.
+/// The number of defects of a mesh, by kind.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Repairs {
-    /// Faces without area, or with fewer than three corners: nothing meets them.
+    /// Faces without area, or with fewer than three corners: no ray hits them.
     pub faces: usize,
-    /// Polygons whose sides cross: filled by a fan.
+    /// Polygons whose sides cross: a fan fills them.
     pub crossing: usize,
-    /// Normals that are not finite, or zero: those of the faces around stand for them.
+    /// Normals that are not finite, or zero: replaced by the normals of the faces around.
     pub normals: usize,
-    /// Tangents that are not finite, or zero: the mesh has none.
+    /// Tangents that are not finite, or zero: the mesh loses all its tangents.
     pub tangents: usize,
-    /// Texture coordinates that are not finite: 0.
+    /// Texture coordinates that are not finite: replaced by 0.
     pub uvs: usize,
-    /// Colours that are not finite: white.
+    /// Colours that are not finite: replaced by white.
     pub colors: usize,
-    /// Weights of joints that are not finite, negative, or of joints that do not exist: 0.
+    /// Weights of joints that are not finite, negative, or of joints that do not exist: replaced by 0.
     pub weights: usize,
     /// Vertices of a skin whose weights are all 0: they follow its first joint.
     pub loose: usize,
 }
 
 impl Repairs {
-    /// Returns a warning for everything that was repaired.
+    /// Returns a warning for each kind of repair that was made.
     pub(crate) fn warnings(&self) -> impl Iterator<Item = String> {
         let all = [
             (self.faces, "faces have no area and are not seen"),
@@ -69,7 +70,7 @@ pub(crate) fn has_no_direction(v: &[f32; 3]) -> bool {
     !v.iter().all(|x| x.is_finite()) || v.iter().all(|&x| x == 0.0)
 }
 
-/// Twice the area of a triangle, along the normal of its front.
+/// Returns twice the vector area of a triangle, which points along the normal of its front.
 pub(crate) fn area(positions: &[[f32; 3]], triangle: [u32; 3]) -> DVec3 {
     let [a, b, c] = triangle.map(|i| DVec3::from(positions[i as usize].map(f64::from)));
     (b - a).cross(c - a)
@@ -81,8 +82,8 @@ pub(crate) fn count_flat(positions: &[[f32; 3]], triangles: &[[u32; 3]]) -> usiz
     areas.filter(|area| *area == DVec3::ZERO).count()
 }
 
-/// Replaces each normal without a direction by the mean of the faces around it, weighted by area, on the side
-/// of these faces' other normals. Returns the number of such normals.
+/// Replaces each normal without a direction by the mean normal of the faces around it, weighted by area, on the
+/// side to which the other normals of these faces point. Returns the number of replaced normals.
 pub(crate) fn repair_normals(
     positions: &[[f32; 3]],
     triangles: &[[u32; 3]],

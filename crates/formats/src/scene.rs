@@ -14,7 +14,7 @@ pub fn load(path: &Path, options: &LoadOptions) -> Result<Loaded> {
     load_from(path, options, &Files::default())
 }
 
-/// Does the same as [`load`] with files from `files`.
+/// Reads a scene as [`load`] does, from `files`.
 pub fn load_from(path: &Path, options: &LoadOptions, files: &Files) -> Result<Loaded> {
     let loaded = if gltf::is_gltf(path) {
         gltf::load_from(path, options, files)

@@ -33,7 +33,7 @@ impl Span {
         }
     }
 
-    /// Returns the span from the beginning of this one to the end of `last`, which lies in the same text.
+    /// Returns the span from the beginning of this one to the end of `last`, which must be in the same text.
     pub(crate) fn to(self, last: Self) -> Self {
         debug_assert_eq!(self.file, last.file);
         Self {
@@ -70,7 +70,7 @@ impl<P> Fault<P> {
         Self::new(ErrorKind::Scene, place, message)
     }
 
-    /// The error of another file, at the place that names the file.
+    /// Returns the fault for an error of another file, at the place that names the file.
     pub(crate) fn from_error(place: P, error: &Error) -> Self {
         Self::new(error.kind(), place, error.to_string())
     }
@@ -82,7 +82,7 @@ impl<P> Fault<P> {
         }
     }
 
-    /// Adds the one of `known` that is nearest to `name` as a hint, if one is near.
+    /// Adds the name of `known` that is nearest to `name` as a hint, if one is near.
     pub(crate) fn with_nearest<'a>(
         mut self,
         name: &str,
@@ -166,8 +166,8 @@ pub(crate) fn line_and_column(text: &str, offset: usize) -> (usize, usize) {
     (line, 1 + before[line_start..].chars().count())
 }
 
-/// The lines around a place as [`printable_lines`]. Long lines are cut, so that a mesh on one line does not
-/// fill the screen.
+/// The lines around a place, as [`printable_lines`] writes them. Long lines are cut, so that a mesh on one line
+/// does not fill the screen.
 #[derive(Clone, Debug)]
 pub(crate) struct Excerpt {
     name: String,
@@ -247,7 +247,7 @@ fn shown(text: &str, marked: Range<usize>) -> (String, Range<usize>) {
     (before + &mark + &after, place)
 }
 
-/// The last place at or before `offset` where a character begins.
+/// Returns the last byte offset at or before `offset` where a character begins.
 pub(crate) fn boundary_before(text: &str, offset: usize) -> usize {
     let offset = offset.min(text.len());
     (0..=offset)

@@ -1,4 +1,4 @@
-//! Texts and numbers of files in messages, with control characters escaped.
+//! Formats texts and numbers for messages. Control characters are escaped.
 
 use std::borrow::Cow;
 use std::fmt;
@@ -11,13 +11,13 @@ pub fn printable(text: &str) -> Cow<'_, str> {
     escaped(text, is_obeyed)
 }
 
-/// Returns lines that show `text`: like [`printable`], but line feeds and tabs stay.
+/// Returns lines that show `text`: as [`printable`], but with line feeds and tabs unescaped.
 pub fn printable_lines(text: &str) -> Cow<'_, str> {
     escaped(text, |c| is_obeyed(c) && !matches!(c, '\n' | '\t'))
 }
 
-/// Returns true for characters by which a terminal moves, colours or reorders text: control
-/// characters of both sets (C0 and C1), and marks of lines and of writing direction.
+/// Returns true for characters that make a terminal move, colour or reorder text: control characters
+/// of both sets (C0 and C1), and marks of lines and of writing direction.
 pub fn is_obeyed(c: char) -> bool {
     // The property Bidi_Control of Unicode, and the separators of lines and paragraphs.
     let is_mark = matches!(

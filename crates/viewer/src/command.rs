@@ -9,11 +9,11 @@ use serde::Deserialize;
 pub enum Command {
     /// Render no further pass until [`Self::Resume`].
     Pause {},
-    /// Go on.
+    /// Continue after [`Self::Pause`].
     Resume {},
     /// End the render.
     Stop {},
-    /// Begin anew.
+    /// Begin all lanes anew.
     Restart {},
     /// Begin a lane anew with another estimator.
     Method {
@@ -21,17 +21,17 @@ pub enum Command {
         lane: LaneId,
         /// The estimator, by its name on the command line.
         integrator: String,
-        /// The selection of shadow rays, likewise.
+        /// The selection of shadow rays, by its name on the command line.
         #[serde(rename = "shadowRays")]
         shadow_rays: String,
     },
-    /// Begin anew with a second lane beside the first, or without it.
+    /// Begin all lanes anew, with a second lane beside the first or without one.
     Split {
         /// True for two lanes.
         on: bool,
-        /// The estimator of the second lane. None: that of the first.
+        /// The estimator of the second lane. None: the same as of the first.
         integrator: Option<String>,
-        /// Its shadow rays. None: those of the first.
+        /// The selection of shadow rays of the second lane. None: the same as of the first.
         #[serde(rename = "shadowRays")]
         shadow_rays: Option<String>,
     },
@@ -39,7 +39,7 @@ pub enum Command {
     Strategies {
         /// The lane.
         lane: LaneId,
-        /// The most vertices of their paths; 0: without images.
+        /// Maximum number of vertices of paths whose strategies have images; 0: no images.
         vertices: usize,
     },
     /// Move the camera around its target. Unit: radians.
@@ -61,13 +61,13 @@ pub enum Command {
         /// Up.
         up: f32,
     },
-    /// Move the camera, and turn it where it stands.
+    /// Move the camera, and turn it at its new position.
     Walk(Walk),
-    /// Bring the camera back to where the scene has it.
+    /// Move the camera back to its position in the scene.
     Home {},
     /// Write an EXR into the folder that the server was started in.
     Save {
-        /// Its name, which has no folders and ends in `.exr`.
+        /// The name of the file, which has no folders and ends in `.exr`.
         name: String,
         /// The lane.
         #[serde(default)]
@@ -75,7 +75,7 @@ pub enum Command {
     },
 }
 
-/// A step. Unit: the distance to the target; of angles radians.
+/// A step and a turn of the camera. Unit: the distance to the target; for angles, radians.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Walk {
@@ -83,7 +83,7 @@ pub struct Walk {
     pub forward: f32,
     /// To the picture's right.
     pub right: f32,
-    /// To its up.
+    /// Upwards in the picture.
     pub up: f32,
     /// The turn to the right.
     pub yaw: f32,
@@ -92,7 +92,7 @@ pub struct Walk {
 }
 
 impl Command {
-    /// Returns true where it only moves the camera: many such come one after another.
+    /// Returns true if the command only moves the camera. Such commands often come in sequence.
     pub fn is_move(&self) -> bool {
         matches!(
             self,
@@ -100,7 +100,7 @@ impl Command {
         )
     }
 
-    /// Returns true where it makes the running pass useless.
+    /// Returns true if the command makes the running pass useless.
     pub fn ends_pass(&self) -> bool {
         !matches!(self, Self::Resume {} | Self::Save { .. })
     }

@@ -3,19 +3,18 @@
 use bidir::film::{Film, FilmSettings};
 use bidir::spectrum::Rgb;
 
-/// A picture between two passes, both film layers composed, which any number of clients share.
+/// A picture between two passes: camera samples plus light image. Any number of clients share it.
 #[derive(Clone, Debug)]
 pub struct Frame {
     /// The film's geometry: the picture is its crop.
     pub film: FilmSettings,
-    /// The passes that are in it.
+    /// The number of passes in the picture.
     pub passes: u64,
     /// Linear Rec. 709, row by row from the top left of the crop.
     pub pixels: Vec<Rgb>,
     /// The estimated variance of each pixel's mean; zero after a single pass.
     pub variance: Vec<Rgb>,
-    /// The remaining noise, as [`Picture::relative_error`](bidir::film::Picture::relative_error)
-    /// has it.
+    /// The remaining noise, by [`Picture::relative_error`](bidir::film::Picture::relative_error).
     pub relative_error: f64,
 }
 

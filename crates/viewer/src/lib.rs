@@ -1,9 +1,9 @@
-//! Live images of a running render. The renderer gives a [`Frame`] now and then, and never waits for a
+//! Live images of a running render. The renderer shares a [`Frame`] between passes, and never waits for a
 //! client.
 //!
-//! [`interactive`] is a render that clients command, a [`RenderMonitor`] shows one that they only watch.
+//! In [`interactive`], clients command the render; a [`RenderMonitor`] shows a render that clients only watch.
 //! Both replace the newest status and frames of a [`SharedState`], which [`web`] serves. [`tev`] sends
-//! frames to another program.
+//! frames to the image viewer tev.
 
 mod command;
 mod frame;

@@ -1,4 +1,4 @@
-//! A render of another owner that clients may look at: they change nothing.
+//! Shows clients a render that they cannot change.
 
 use crate::shared::{Lane, Request, RequestQueue};
 use crate::status::{LaneId, State, Status};
@@ -13,8 +13,8 @@ pub struct RenderMonitor {
 }
 
 impl RenderMonitor {
-    /// Shows a render that begins; `settings` are those that were asked for, and `target` the number of
-    /// passes. None: it is not known.
+    /// Begins to show a render; `settings` are the requested ones, `target` is the number of passes. None: the
+    /// number is not known.
     pub fn new(
         queue: RequestQueue,
         render: &Render,

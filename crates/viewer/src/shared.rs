@@ -1,7 +1,7 @@
 //! The state that a renderer shares with its clients. The renderer replaces the newest status and
 //! frames of the [`SharedState`], and takes requests from its [`RequestQueue`] between passes; clients
-//! read the state, and ask through a [`ClientHandle`]. Nobody waits: frames that no client took are
-//! replaced, and a request that finds no room is refused.
+//! read the state, and send requests through a [`ClientHandle`]. Neither side waits: new frames replace
+//! frames that no client took, and a full queue refuses requests.
 
 use crate::command::Command;
 use crate::frame::Frame;
@@ -16,9 +16,9 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::time::{Duration, Instant};
 use tokio::sync::watch;
 
-/// The most requests that wait; more are refused.
+/// Maximum number of waiting requests. Further ones are refused.
 const REQUESTS: usize = 64;
-/// The most lines of the log.
+/// Maximum number of lines of the log.
 const LOG_LINES: usize = 1000;
 
 /// A frame of a lane, shared by all clients.
@@ -32,7 +32,7 @@ pub struct SentFrame {
     pub frame: Frame,
     /// The rays of all samples of each pixel. None: the film does not keep them.
     pub rays: Option<Vec<f32>>,
-    /// The message to clients, once the first of them gets it.
+    /// The message to clients, which the first use encodes.
     message: OnceLock<Bytes>,
 }
 
@@ -48,9 +48,9 @@ impl SentFrame {
         }
     }
 
-    /// Returns the message to clients: `BDF1`, then as u32 the lane, its generation, the passes, width and
-    /// height of the whole film, left, top, width and height of the crop, then red, green and blue of
-    /// each pixel as f32, row by row from the top left; all little endian.
+    /// Returns the message to clients: `BDF1`; then as u32 the lane, its generation, the number of passes,
+    /// width and height of the whole film, left, top, width and height of the crop; then red, green and blue
+    /// of each pixel as f32, row by row from the top left. All numbers are little-endian.
     pub(crate) fn message(&self) -> Bytes {
         self.message.get_or_init(|| self.encode().into()).clone()
     }
@@ -82,13 +82,13 @@ impl SentFrame {
 
 /// A lane between two passes.
 pub(crate) struct Lane<'a> {
-    /// Its render.
+    /// The render of the lane.
     pub(crate) render: &'a Render,
-    /// Grows whenever the lane begins anew.
+    /// A number that grows whenever the lane begins anew.
     pub(crate) generation: u32,
 }
 
-/// Reads a lane between two passes; None: there is no such lane now.
+/// A function that reads a lane between two passes. It gets None if there is no such lane now.
 pub(crate) type Query = Box<dyn FnOnce(Option<&Lane<'_>>) + Send>;
 
 /// A request to a renderer.
@@ -99,7 +99,7 @@ pub(crate) enum Request {
     Show(LaneId),
     /// Answer a query about a lane.
     Query(LaneId, Query),
-    /// End.
+    /// End the render.
     Close,
 }
 
@@ -122,7 +122,7 @@ impl SharedState {
         }
     }
 
-    /// Replaces the status by one that is made of it.
+    /// Replaces the status by the one that `make` returns for it.
     pub(crate) fn update(&self, make: impl FnOnce(Status) -> Status) {
         let status = make(Status::clone(&self.status()));
         self.status.send_replace(Arc::new(status));
@@ -133,7 +133,7 @@ impl SharedState {
         self.status.borrow().clone()
     }
 
-    /// Receives every status that is not replaced before it is read.
+    /// Returns a receiver of statuses. It skips those that are replaced before it reads them.
     pub(crate) fn watch_status(&self) -> watch::Receiver<Arc<Status>> {
         self.status.subscribe()
     }
@@ -148,17 +148,17 @@ impl SharedState {
         self.frames[lane.index()].borrow().clone()
     }
 
-    /// Receives every frame of a lane that is not replaced before it is read.
+    /// Returns a receiver of a lane's frames. It skips those that are replaced before it reads them.
     pub(crate) fn watch_frames(&self, lane: LaneId) -> watch::Receiver<Option<Arc<SentFrame>>> {
         self.frames[lane.index()].subscribe()
     }
 
-    /// Returns true where a client receives frames.
+    /// Returns true if a client receives frames.
     pub(crate) fn is_watched(&self) -> bool {
         self.frames[0].receiver_count() > 0
     }
 
-    /// Adds a line to the log, which loses the oldest.
+    /// Adds a line to the log. If the log is full, it drops the oldest line.
     pub fn log(&self, line: &str) {
         let seconds = self.start.elapsed().as_secs_f64();
         let mut log = self.log.lock().unwrap_or_else(PoisonError::into_inner);
@@ -175,7 +175,7 @@ impl SharedState {
     }
 }
 
-/// The reasons to give up what is running: a pass, or training.
+/// The commands since the last [`clear`](Self::clear) that interrupt a running pass, or training.
 #[derive(Debug, Default)]
 pub(crate) struct Interrupts {
     any: AtomicBool,
@@ -183,17 +183,17 @@ pub(crate) struct Interrupts {
 }
 
 impl Interrupts {
-    /// Asks to stop where the camera moved since the last [`Self::clear`], or another command ends the pass.
+    /// Returns a stop for the commands that move the camera or end the pass.
     pub(crate) fn stop(&self) -> Stop<'_> {
         Stop::when(&self.any)
     }
 
-    /// Asks to stop where a command ends the pass that is no move of the camera.
+    /// Returns a stop for the commands that end the pass and do not move the camera.
     pub(crate) fn stop_unless_moved(&self) -> Stop<'_> {
         Stop::when(&self.changed)
     }
 
-    /// Forgets all, before requests are taken: later commands set it again.
+    /// Forgets all commands. The renderer calls it before it takes requests, so that it misses no later command.
     pub(crate) fn clear(&self) {
         self.any.store(false, Ordering::Relaxed);
         self.changed.store(false, Ordering::Relaxed);
@@ -224,7 +224,7 @@ pub struct ClientHandle {
     interrupts: Arc<Interrupts>,
 }
 
-/// Returns a queue with the handle of its clients; `first` is the status until the renderer has more.
+/// Returns a queue, and the handle of its clients. `first` is the status until the renderer replaces it.
 pub fn request_queue(first: Status) -> (RequestQueue, ClientHandle) {
     let (sender, receiver) = sync_channel(REQUESTS);
     let handle = ClientHandle {
@@ -253,18 +253,18 @@ impl RequestQueue {
         &self.handle.interrupts
     }
 
-    /// Returns the next request.
+    /// Takes the next request, without waiting. None: there is none.
     pub(crate) fn take(&self) -> Option<Request> {
         self.requests.try_recv().ok()
     }
 
-    /// Waits this long for the next request. None: there was none.
+    /// Waits at most this long for the next request. None: none came.
     pub(crate) fn wait(&self, at_most: Duration) -> Option<Request> {
         self.requests.recv_timeout(at_most).ok()
     }
 }
 
-/// The renderer has too many requests already, or is gone.
+/// The error of a request: the renderer has too many requests already, or is gone.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Refused;
 
@@ -287,7 +287,7 @@ impl ClientHandle {
         Ok(())
     }
 
-    /// Asks the renderer to end; waits until the request finds room.
+    /// Asks the renderer to end. Waits until the queue has room for the request.
     pub(crate) fn close(&self) {
         self.interrupts.note(&Command::Stop {});
         // A renderer that is gone has ended.

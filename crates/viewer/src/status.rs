@@ -7,22 +7,22 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// A render among those that are shown side by side.
+/// One of the renders that are shown side by side.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum LaneId {
     /// The first, which is always there.
     #[default]
     A,
-    /// The one beside it.
+    /// The second, beside it.
     B,
 }
 
 impl LaneId {
-    /// Both.
+    /// Both lanes.
     pub const ALL: [Self; 2] = [Self::A, Self::B];
 
-    /// Returns its number.
+    /// Returns the index of the lane: 0 or 1.
     pub fn index(self) -> usize {
         match self {
             Self::A => 0,
@@ -38,13 +38,13 @@ pub enum State {
     /// Training, or building, before the first pass.
     #[default]
     Preparing,
-    /// Passes are rendered.
+    /// Rendering passes.
     Rendering,
-    /// It goes on when a command resumes it.
+    /// Waiting for a command to resume.
     Paused,
-    /// All passes are done, or it was stopped.
+    /// All passes are done, or the render was stopped.
     Done,
-    /// It cannot begin.
+    /// The render cannot begin.
     Failed,
 }
 
@@ -53,7 +53,7 @@ pub enum State {
 pub struct FilmStatus {
     /// Width and height of the whole film.
     pub resolution: [u32; 2],
-    /// Left, top, right and bottom (exclusive) of what is rendered.
+    /// Left, top, right and bottom of the rendered part, the last two exclusive.
     pub crop: [u32; 4],
 }
 
@@ -68,8 +68,7 @@ impl From<&FilmSettings> for FilmStatus {
 }
 
 impl Status {
-    /// Returns the status of a render that has not begun, of the scene file `name` on `film`, and that takes no
-    /// commands.
+    /// Returns the status of a render before it begins: of the scene file `name` on `film`, without commands.
     pub fn preparing(name: &str, film: &FilmSettings) -> Self {
         Self {
             version: env!("CARGO_PKG_VERSION"),
@@ -79,7 +78,7 @@ impl Status {
         }
     }
 
-    /// The same of a render that takes commands.
+    /// Returns the status before it begins of a render that takes commands.
     pub fn interactive(name: &str, film: &FilmSettings) -> Self {
         Self {
             controls: true,
@@ -104,7 +103,7 @@ pub(crate) fn scene_name(name: &str) -> String {
 pub struct Choices {
     /// Estimators.
     pub integrators: Vec<&'static str>,
-    /// Selections of shadow rays; those with a number take others, too.
+    /// Selections of shadow rays. Where a name contains a number, commands accept other numbers, too.
     pub shadow_rays: Vec<String>,
 }
 
@@ -128,28 +127,28 @@ impl Choices {
     }
 }
 
-/// The place of the camera. Space: world.
+/// The position of the camera. Space: world.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct CameraStatus {
-    /// Its kind in one word.
+    /// The kind of camera, in one word.
     pub kind: &'static str,
-    /// Its position.
+    /// The position.
     pub origin: [f32; 3],
-    /// The point it moves around.
+    /// The point that the camera moves around.
     pub target: [f32; 3],
-    /// The picture's up.
+    /// The upward direction of the picture.
     pub up: [f32; 3],
-    /// True where it is not the scene's own.
+    /// True if the view is not the scene's own.
     pub moved: bool,
 }
 
-/// Numbers of rays by kind.
+/// Rays by kind, per second or per camera sample.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 #[serde(rename_all = "camelCase")]
 pub struct RayRates {
-    /// Of camera walks.
+    /// Rays of camera walks.
     pub camera: f64,
-    /// Of light walks.
+    /// Rays of light walks.
     pub light: f64,
     /// Shadow rays that join s ≥ 1 with t ≥ 2.
     pub connection: f64,
@@ -163,21 +162,21 @@ pub struct RayRates {
 pub struct LaneStatus {
     /// The lane.
     pub lane: LaneId,
-    /// Grows whenever the lane begins anew.
+    /// A number that grows whenever the lane begins anew.
     pub generation: u32,
     /// All settings, by the names of flags.
     pub settings: BTreeMap<String, String>,
-    /// The requested estimator; a preview may take another, as its settings say.
+    /// The requested estimator. A preview may use another, which `settings` has.
     pub integrator: String,
-    /// The requested selection of shadow rays, likewise.
+    /// The requested selection of shadow rays. A preview may use another, which `settings` has.
     pub shadow_rays: String,
-    /// The passes that are done.
+    /// The number of finished passes.
     pub passes: u64,
     /// The number of passes. None: there is no end.
     pub target: Option<u64>,
-    /// The time of the passes, without that of frames.
+    /// The time of the passes, without the time of developing frames. Unit: seconds.
     pub seconds: f64,
-    /// The expected time of the other passes. Unit: seconds.
+    /// The expected time of the remaining passes. Unit: seconds. None: it is not known.
     pub eta: Option<f64>,
     /// Camera samples per second.
     pub samples_per_second: f64,
@@ -185,13 +184,13 @@ pub struct LaneStatus {
     pub rays_per_second: RayRates,
     /// Rays per camera sample.
     pub rays_per_sample: RayRates,
-    /// The noise of the last frame. None: it is not known.
+    /// The relative error of the last frame. None: it is not known.
     pub relative_error: Option<f64>,
-    /// The same over the seconds.
+    /// The relative error over time: pairs of seconds and error.
     pub curve: Vec<[f64; 2]>,
-    /// The most vertices of paths whose strategies have images.
+    /// Maximum number of vertices of paths whose strategies have images.
     pub strategy_vertices: usize,
-    /// True for the low resolution of a moving camera.
+    /// True if the lane has the low resolution of a moving camera.
     pub preview: bool,
 }
 
@@ -206,15 +205,15 @@ pub struct Status {
     pub state: State,
     /// The result or refusal of the last command, or the failure of the render.
     pub message: Option<String>,
-    /// True where commands are accepted.
+    /// True if the render accepts commands.
     pub controls: bool,
-    /// The film in full.
+    /// The film at full resolution.
     pub film: FilmStatus,
     /// The names that commands accept.
     pub choices: Choices,
-    /// None: it cannot be moved.
+    /// The camera. None: it cannot be moved.
     pub camera: Option<CameraStatus>,
-    /// True where there are two lanes.
+    /// True if there are two lanes.
     pub split: bool,
     /// The lanes.
     pub lanes: Vec<LaneStatus>,

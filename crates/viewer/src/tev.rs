@@ -1,8 +1,8 @@
-//! A render in the image viewer tev, by its protocol over TCP.
+//! Shows a render in the image viewer tev, by its protocol over TCP.
 //!
-//! A thread connects, again and again where nobody listens, and always sends the newest frame. The
-//! renderer develops a frame only where the thread waits for one and it is cheap; it never waits
-//! before the end, and then not long.
+//! A thread connects to tev, retries until tev listens, and always sends the newest frame. The renderer
+//! develops a frame only if the thread waits for one and developing is cheap. It waits only at the end,
+//! for at most [`PATIENCE`].
 
 use crate::frame::Frame;
 use crate::status::scene_name;
@@ -22,36 +22,36 @@ use thiserror::Error;
 
 /// The port of tev.
 const PORT: u16 = 14158;
-/// The rendering time between two frames. Unit: the time that developing the last one took.
+/// The least rendering time between two frames. Unit: the time of developing the last one.
 const RENDERING_PER_FRAME: u32 = 50;
-/// The time that the last frame has to be sent.
+/// The time limit for sending the last frame.
 const PATIENCE: Duration = Duration::from_secs(2);
-/// The time that each address of a host has to answer.
+/// The time limit for the answer of each address of a host.
 const CONNECTING: Duration = Duration::from_millis(500);
-/// The addresses of a host that are tried.
+/// Maximum number of addresses of a host that are tried.
 const ADDRESSES: usize = 4;
-/// The time until a host is tried again.
+/// The time between two attempts to connect.
 const RETRY: Duration = Duration::from_secs(2);
-/// The time that tev may read nothing.
+/// The time without reading after which tev counts as stalled.
 const STALLED: Duration = Duration::from_secs(1);
 /// The least time between two frames.
 const SHORTEST_GAP: Duration = Duration::from_millis(250);
-/// The rest of the thread after a frame, as it takes time from the render. Unit: the time of sending.
+/// The pause of the thread after a frame, as sending takes time from the render. Unit: the time of sending.
 const REST_PER_FRAME: u32 = 40;
-/// The most numbers of a packet: large pictures go in bands of rows.
+/// Maximum number of values in a packet: large pictures are sent in bands of rows.
 const BAND: usize = 1 << 20;
 const CHANNELS: [&str; 3] = ["R", "G", "B"];
 
 /// The reason why tev does not show the last frame.
 #[derive(Debug, Error)]
 pub enum TevError {
-    /// There is no such host, or nobody listens.
+    /// There is no such host, or tev does not listen there.
     #[error("cannot connect to {0}: {1}")]
     Absent(TevAddress, io::Error),
     /// The connection broke, or tev did not read.
     #[error("{0} does not accept images: {1}")]
     Broken(TevAddress, io::Error),
-    /// The last frame was not taken in time.
+    /// tev did not take the last frame in time.
     #[error("{0} did not take the last image within {seconds} seconds", seconds = PATIENCE.as_secs())]
     Late(TevAddress),
 }
@@ -60,17 +60,17 @@ pub enum TevError {
 pub struct Tev {
     address: TevAddress,
     frames: Sender<Frame>,
-    /// True where the thread waits for a frame.
+    /// True while the thread waits for a frame.
     is_wanted: Arc<AtomicBool>,
     result: Receiver<Result<(), TevError>>,
-    /// Before this no frame is developed.
+    /// The time before which no frame is developed.
     next: Instant,
 }
 
 impl Tev {
     /// Begins to show a render of the scene file `scene` at `address`.
     ///
-    /// Errors: the system gives no thread.
+    /// Errors: the system cannot start a thread.
     pub fn start(address: TevAddress, scene: &str) -> io::Result<Self> {
         let (frames, received) = channel();
         let (report, result) = channel();
@@ -97,7 +97,7 @@ impl Tev {
         })
     }
 
-    /// Shows `film` after a pass, where a frame is wanted and cheap.
+    /// Shows `film` after a pass, if the thread waits for a frame and developing is cheap.
     pub fn add_pass(&mut self, film: &Film) {
         let start = Instant::now();
         if start >= self.next && self.is_wanted.swap(false, Ordering::Relaxed) {
@@ -108,9 +108,9 @@ impl Tev {
         }
     }
 
-    /// Shows the last frame, and waits a moment until it is sent.
+    /// Shows the last frame, and waits for at most [`PATIENCE`] until it is sent.
     ///
-    /// Errors: it is not.
+    /// Errors: it is not sent by then.
     pub fn end(self, film: &Film) -> Result<(), TevError> {
         if film.passes().is_empty() {
             return Ok(());
@@ -122,7 +122,7 @@ impl Tev {
     }
 }
 
-/// The thread that sends frames. It ends with [`Tev`], or with the program: nobody waits for a host
+/// The thread that sends frames. It ends with [`Tev`], or with the program, which does not wait for a host
 /// that does not answer.
 struct Thread {
     address: TevAddress,
@@ -131,12 +131,12 @@ struct Thread {
     is_wanted: Arc<AtomicBool>,
     /// A frame that is not sent yet.
     next: Option<Frame>,
-    /// True where no frame will follow `next`.
+    /// True if no frame will follow `next`.
     is_over: bool,
 }
 
 impl Thread {
-    /// Sends frames until none will follow.
+    /// Connects and sends frames until the last one is sent.
     fn run(&mut self) -> Result<(), TevError> {
         loop {
             // A try that begins after the end is the last.
@@ -161,7 +161,7 @@ impl Thread {
         Err(absent(failure))
     }
 
-    /// Sends frames to a connection until none will follow.
+    /// Sends frames over a connection until the last one is sent.
     fn show(&mut self, stream: TcpStream) -> Result<(), TevError> {
         let sent = self.send_all(stream);
         sent.map_err(|error| TevError::Broken(self.address.clone(), error))
@@ -197,7 +197,7 @@ impl Thread {
         self.next.take()
     }
 
-    /// Waits this long, or until the last frame comes: no other comes unasked.
+    /// Waits at most this long, or until the last frame comes. Only the last frame comes without a request.
     fn rest(&mut self, at_most: Duration) {
         if self.is_over {
             return;
@@ -208,7 +208,7 @@ impl Thread {
     }
 }
 
-/// Makes the image of `frame` anew.
+/// Closes the image of this name in tev, and creates it anew with the size of `frame`.
 fn make_image(client: &mut TevClient, image_name: &str, frame: &Frame) -> io::Result<()> {
     let [width, height] = frame.film.resolution;
     client.send(PacketCloseImage { image_name })?;
@@ -250,7 +250,7 @@ fn send(client: &mut TevClient, image_name: &str, frame: &Frame) -> io::Result<(
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TevAddress(String);
 
-/// A text that is no address.
+/// The error of a text that is not an address.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 #[error("expected HOST or HOST:PORT, such as 127.0.0.1:{PORT} or [::1]:{PORT}")]
 pub struct InvalidAddress;
@@ -275,7 +275,7 @@ fn is_v6(host: &str) -> bool {
     host.parse::<Ipv6Addr>().is_ok()
 }
 
-/// Returns true for a name, an address of version 4, or one of version 6 in brackets.
+/// Returns true for the name of a host, an IPv4 address, or an IPv6 address in brackets.
 fn is_host(text: &str) -> bool {
     let is_part = |c: char| c.is_alphanumeric() || "-._%".contains(c);
     let bracketed = text

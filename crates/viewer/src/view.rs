@@ -1,4 +1,4 @@
-//! The view that clients have of a lane: frames, as often as they are cheap, and numbers.
+//! The view that clients have of a lane: its status, and frames as often as developing them is cheap.
 
 use crate::frame::Frame;
 use crate::shared::{SentFrame, SharedState};
@@ -11,13 +11,13 @@ use formats::film::{Render, SettingsText};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// The least time between two frames: nobody sees more.
+/// The least time between two frames: more frames would not be visible.
 const SHORTEST_GAP: Duration = Duration::from_millis(125);
-/// The rendering time of a lane until which nothing else keeps frames apart.
+/// The rendering time of a lane up to which only [`SHORTEST_GAP`] limits its frames.
 const YOUTH: Duration = Duration::from_secs(3);
-/// The rendering time between two later frames. Unit: the time that developing the last one took.
+/// The least rendering time between two later frames. Unit: the time of developing the last one.
 const RENDERING_PER_FRAME: u32 = 40;
-/// The most points of the error curve; of more, every other one is left out.
+/// Maximum number of points of the error curve. Beyond it, every other point is removed.
 const CURVE_POINTS: usize = 256;
 
 /// The view of a lane.
@@ -31,14 +31,14 @@ pub(crate) struct RenderView {
     curve: Vec<[f64; 2]>,
 }
 
-/// The last frame that was developed.
+/// The record of the last developed frame.
 #[derive(Clone, Copy, Debug)]
 struct Last {
     at: Instant,
     passes: u64,
-    /// The time that developing took.
+    /// The time of developing.
     cost: Duration,
-    /// The rendering time by then.
+    /// The rendering time before the frame.
     rendered: Duration,
     relative_error: f64,
 }
@@ -48,7 +48,7 @@ struct Last {
 pub(crate) struct Course {
     /// Grows whenever the lane begins anew.
     pub(crate) generation: u32,
-    /// True for the low resolution of a moving camera.
+    /// True if the lane has the low resolution of a moving camera.
     pub(crate) preview: bool,
     /// The number of passes. None: there is no end.
     pub(crate) target: Option<u64>,
@@ -78,13 +78,13 @@ impl RenderView {
         self.course.generation
     }
 
-    /// Returns true where all passes are done.
+    /// Returns true if all passes are done.
     pub(crate) fn is_complete(&self, render: &Render) -> bool {
         let passes = render.session.film().passes().len();
         self.course.target.is_some_and(|target| passes >= target)
     }
 
-    /// Shares a frame after a pass where a client watches and it is due.
+    /// Shares a frame after a pass, if a client watches and a frame is due.
     pub(crate) fn add_pass(&mut self, render: &Render, state: &SharedState) {
         if state.is_watched() && (self.course.preview || self.is_due(render.spent.rendering)) {
             self.show(render, state);
@@ -123,7 +123,7 @@ impl RenderView {
         self.add_point();
     }
 
-    /// Adds the remaining error to the curve; that of a single pass is unknown.
+    /// Adds the error of the last frame to the curve, unless it has only one pass: then the error is unknown.
     fn add_point(&mut self) {
         if let (Some(last), Some(error)) = (self.last, self.relative_error()) {
             self.curve.push([last.rendered.as_secs_f64(), error]);
@@ -177,7 +177,7 @@ impl RenderView {
     }
 }
 
-/// Returns a count by seconds or samples; 0 where there are none.
+/// Returns a count per second or per sample; 0 if `whole` is 0.
 fn ratio(count: u64, whole: f64) -> f64 {
     if whole > 0.0 {
         count as f64 / whole

@@ -13,24 +13,24 @@ pub struct LoadOptions {
     pub lenient: bool,
     /// Width and height of the film, instead of the file's. Unit: pixels.
     pub resolution: Option<[u32; 2]>,
-    /// The part of the film that is rendered, instead of the file's. Errors: where there are no
-    /// such pixels, the error's kind is [`ErrorKind::Options`].
+    /// The part of the film that is rendered, instead of the file's. Errors: of kind
+    /// [`ErrorKind::Options`], if the film has no such pixels.
     pub crop: Option<Crop>,
     /// The instruction set of the intersector. None: the fastest that the machine has.
     pub isa: Option<bidir::scene::Isa>,
-    /// The most primitives of the scene, and the most vertices of its meshes, those of shared objects
-    /// counted once. None: 2²², and 16 more for every byte of the scene's files; at most 2²⁸.
+    /// Maximum number of primitives of the scene, and of vertices of its meshes; shared objects count
+    /// once. None: 2²², and 16 more for every byte of the scene's files, but at most 2²⁸.
     pub most_primitives: Option<u64>,
 }
 
 impl LoadOptions {
-    /// The most primitives, and the most vertices, of a scene whose files take `stored` bytes.
+    /// Returns the maximum number of primitives, and of vertices, of a scene whose files take `stored` bytes.
     pub(super) fn most_primitives(&self, stored: u64) -> u64 {
         let allowed = limits::PRIMITIVES.of(stored).min(limits::MOST_PRIMITIVES);
         self.most_primitives.unwrap_or(allowed)
     }
 
-    /// Width and height of the film: those that the caller asks for, else the file's `own`.
+    /// Returns width and height of the film: those of the options, else the file's `own`. Errors: beyond the limit.
     pub(crate) fn resolution<P>(&self, own: [u32; 2], place: P) -> Result<[u32; 2], Fault<P>> {
         let [width, height] = self.resolution.unwrap_or(own);
         let sides = 1..=LARGEST_SIDE;
@@ -43,8 +43,8 @@ impl LoadOptions {
         Err(Fault::new(ErrorKind::Limit, place, message))
     }
 
-    /// The pixels that are rendered: those that the caller asks for, else those that the file
-    /// describes, else all.
+    /// Returns the pixels to render: those of the options, else those that the file describes, else all.
+    /// Errors: there are none.
     pub(crate) fn crop<P>(
         &self,
         described: Option<Crop>,

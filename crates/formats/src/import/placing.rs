@@ -7,10 +7,10 @@ use bidir::math::Vec3;
 use bidir::shape::Orientation;
 use glam::{DAffine3, DVec3};
 
-/// Maximum distance from the origin, below which squared distances stay finite.
+/// Maximum distance from the origin. Up to it, products of squared distances stay finite in `f32`.
 const FARTHEST: f64 = 1e12;
 
-/// Refuses a point that is too far away.
+/// Refuses a point that is too far from the origin.
 pub(crate) fn check_point<P: Clone>(point: DVec3, place: &P) -> Result<(), Fault<P>> {
     if point.is_finite() && point.abs().max_element() <= FARTHEST {
         return Ok(());
@@ -33,8 +33,8 @@ pub(crate) fn place_vertices<P: Clone>(
     points.map(rounded).collect()
 }
 
-/// Rounds the placed normal or tangent of a vertex. It has length 1, so that interpolation weights corners as in the
-/// file.
+/// Normalises and rounds the normal or tangent of a placed vertex. With length 1, interpolation weights corners as in
+/// the file.
 pub(crate) fn unit(v: DVec3) -> Vec3 {
     v.normalize_or_zero().as_vec3()
 }
@@ -44,7 +44,7 @@ pub(crate) fn vector(v: [f32; 3]) -> DVec3 {
     DVec3::from(v.map(f64::from))
 }
 
-/// Returns the orientation of a mesh under a map: one that mirrors turns the winding of its corners.
+/// Returns the orientation of a mesh under `map`: the opposite of `own` if the map mirrors.
 pub(crate) fn mirrored(own: Orientation, map: &DAffine3) -> Orientation {
     let is_mirrored = map.matrix3.determinant() < 0.0;
     if is_mirrored { opposite(own) } else { own }

@@ -1,7 +1,7 @@
 //! The rounding error of vertices that a file stores as `f32`.
 //!
-//! The error of a coordinate is half a unit in the last place, which grows with its size, and no
-//! transformation recovers the lost digits. Small coordinates moved by a transformation lose nothing.
+//! The error of a coordinate is half a unit in its last place, which grows with the coordinate. No
+//! transformation recovers the lost digits, but small coordinates with a transformation lose none.
 
 use glam::{DMat3, DVec3, Vec3};
 
@@ -47,7 +47,7 @@ fn stretch(linear: &DMat3) -> f64 {
     columns.map(DVec3::length).into_iter().fold(0.0, f64::max)
 }
 
-/// The errors of all meshes of a scene, each with the place `P` in the file that names it.
+/// The errors of all meshes of a scene, each with the place `P` in the file that names the mesh.
 #[derive(Clone, Debug)]
 pub(crate) struct VertexErrors<P> {
     /// The number of meshes with an error.
@@ -80,8 +80,8 @@ impl<P: Clone> VertexErrors<P> {
         keep(&mut self.longest, |error| error.distance);
     }
 
-    /// Returns the mesh that makes the scene impossible to render, and the message; `reach` is half the size
-    /// of the scene with the camera. None: there is no such mesh.
+    /// Returns the place of the mesh whose error is too large to render the scene, and the message; `reach` is
+    /// half the size of the scene with the camera. None: no error is too large.
     pub(crate) fn refusal(&self, reach: f64) -> Option<(P, String)> {
         let (place, error) = self.longest.as_ref()?;
         (error.distance > ACCEPTED * reach).then(|| {
@@ -114,7 +114,7 @@ impl<P: Clone> VertexErrors<P> {
     }
 }
 
-/// The hint of the error.
+/// The hint of the warning and of the error.
 pub(crate) const HINT: &str = "use small coordinates and a transformation";
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! Counts what is read for a scene, and checks it against the limits.
+//! Counts the data that are read for a scene, and checks the counts against the limits.
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::image::{self, ImageData};
@@ -13,7 +13,7 @@ pub(crate) struct Reading {
     stored: u64,
     /// The identities of the files.
     files: BTreeSet<PathBuf>,
-    /// The size of files that are read repeatedly. Unit: bytes.
+    /// The size of all repeated readings of files. Unit: bytes.
     again: u64,
     /// The numbers in all images.
     numbers: u64,
@@ -35,7 +35,7 @@ impl Reading {
         self.stored
     }
 
-    /// Counts a file of `length` bytes that has `stored` bytes on the disk. Errors: files are read too often.
+    /// Counts a file of `length` unpacked bytes that has `stored` bytes on the disk. Errors: files are read too often.
     pub(crate) fn file(&mut self, identity: PathBuf, stored: u64, length: u64) -> Result<()> {
         if self.files.insert(identity) {
             self.stored += stored;
@@ -48,7 +48,7 @@ impl Reading {
         )
     }
 
-    /// Counts an image. Errors: all images are too large for their files.
+    /// Counts an image, and returns it. Errors: all images together are too large for their files.
     pub(crate) fn image(&mut self, image: ImageData) -> Result<ImageData> {
         self.numbers += image::numbers(
             [image.width, image.height].map(|n| n as u64),
@@ -58,7 +58,7 @@ impl Reading {
         Ok(image)
     }
 
-    /// Counts the cells of a grid, before they are read. Errors: all grids are too large for their files.
+    /// Counts the cells of a grid, before they are read. Errors: all grids together are too large for their files.
     pub(crate) fn cells(&mut self, count: u64) -> Result<()> {
         self.cells = self.cells.saturating_add(count);
         self.check((self.cells, "cells of grids"), limits::VOXELS)

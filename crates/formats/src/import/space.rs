@@ -1,19 +1,18 @@
-//! The space that a scene is rendered in: that of the world if `f32` suffices for it, else one around the
-//! visible part.
+//! The render space of a scene: world space if `f32` suffices for it, else a space around the visible part.
 //!
-//! A reader places everything in the world, and a [`Survey`] records it in `f64`. If the resulting
-//! [`Layout`] is not that of the world, the reader starts again and places everything in the new space, by
+//! A reader places everything in world space, and a [`Survey`] records it in `f64`. If the resulting
+//! [`Layout`] has another space, the reader starts again and places everything in that one, by
 //! transformations composed in `f64`: visible points are near the origin when they are rounded.
 //!
 //! **Origin.** The error of points is about 10⁻⁶ of their distance from the origin (`position_error` of
 //! `bidir::shape`), so the origin is moved
-//! - to the middle of the box around everything, if it is more than [`FAR`] half widths away from it;
-//! - or else to the camera, if it is [`FAR_FROM_VIEW`] times farther away from it than the nearest
-//!   vertex.
+//! - to the middle of the bounding box, if the middle is more than [`FAR`] half widths away from the origin;
+//! - or else to the camera, if the distance from the origin to the camera is more than [`FAR_FROM_VIEW`]
+//!   times the distance from the camera to the nearest vertex.
 //!
 //! **Unit.** If the distance of the farthest point from the origin is not within 2^±[`RANGE`], the unit is
-//! the power of two that scales a large scene to 2^[`RANGE`], and a small one to 1: densities per area and
-//! squared distances stay in the range of `f32` for much smaller details.
+//! the power of two that scales a large scene to 2^[`RANGE`], and a small one to 1. Then densities per area
+//! and squared distances stay in the range of `f32`, also for much smaller details.
 //!
 //! Shared objects have their own origin, by the same rule for their box.
 
@@ -23,8 +22,8 @@ use glam::{DAffine3, DVec3};
 /// The origin is moved if the middle of the scene is more than this many half widths away. Below it, the
 /// error of points is less than 10⁻⁴ of the half width.
 const FAR: f64 = 64.0;
-/// The origin is moved if the camera is farther away than this many distances to the nearest vertex. It is
-/// larger than [`FAR`], as the nearest vertex may be an exception.
+/// The origin is moved to the camera if that is farther away than this multiple of the distance from it to
+/// the nearest vertex. It is larger than [`FAR`], as the nearest vertex may be an exception.
 const FAR_FROM_VIEW: f64 = 1024.0;
 /// Scenes whose size is within 2^±RANGE keep their unit.
 const RANGE: i32 = 20;
@@ -62,10 +61,10 @@ impl Layout {
     }
 }
 
-/// The contents of a space, as far as its layout needs them.
+/// The bounds of the contents of a space, from which its layout follows.
 #[derive(Clone, Debug)]
 pub(crate) struct Survey {
-    /// The corners of a box around every point. If there is none, the first is above the second.
+    /// The lowest and highest corner of the bounding box. If there is no point, the first is above the second.
     corners: [DVec3; 2],
     eye: Option<DVec3>,
     /// The square of the distance of the nearest point to the eye.
@@ -99,7 +98,7 @@ impl Survey {
         }
     }
 
-    /// Returns two corners of a box around every point. None: there is no point.
+    /// Returns the lowest and highest corner of the bounding box. None: there is no point.
     pub(crate) fn corners(&self) -> Option<[DVec3; 2]> {
         let [low, high] = self.corners;
         low.cmple(high).all().then_some(self.corners)

@@ -1,5 +1,4 @@
-//! The volumes of a scene: closed meshes are filled, those that enclose nothing are thin, and those that are inside
-//! out are turned.
+//! The volumes of a scene: fills closed meshes, makes open ones thin, and turns meshes that are inside out.
 
 use super::enclosure::{self, Findings};
 use super::{Context, Document, placing};
@@ -11,54 +10,54 @@ use std::collections::BTreeMap;
 
 const INSIDE_OUT: &str = "a mesh with a volume is inside out: it is turned";
 
-/// The most meshes that one which is inside out is compared with, to find if it is a cavity of theirs.
+/// Maximum number of closed volumes that an inside-out mesh is compared with, to find out whose cavity it is.
 const MOST_CAVITIES: usize = 1024;
 
-/// A material that fills what it bounds.
+/// The contents of the volumes that the shapes of a material bound.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Content {
     pub(crate) volume: Volume,
-    /// The material of meshes that enclose nothing. None: it stays.
+    /// The material of shapes that do not enclose a volume. None: they keep theirs.
     pub(crate) thin: Option<MaterialId>,
-    /// The warning for these.
+    /// The warning for shapes that do not enclose a volume.
     pub(crate) warning: &'static str,
 }
 
 /// The space of shapes: the world, or an object by number.
 pub(super) type Space = Option<usize>;
 
-/// The shapes that bound a volume.
+/// Shapes that may bound a volume together.
 #[derive(Clone, Debug)]
 struct Draft {
     content: Content,
     /// The material of its shapes.
     material: MaterialId,
     space: Space,
-    /// Drafts of one family may close each other's openings.
+    /// The number of the family. Drafts of one family may close each other's openings.
     family: usize,
     shapes: Vec<usize>,
 }
 
-/// A volume, and two corners of a box around it.
+/// A volume, and the lowest and highest corner of its bounding box.
 type Boxed = (Draft, [Vec3; 2]);
 
-/// The volumes of a scene in the making.
+/// The volumes of a scene under construction.
 #[derive(Debug, Default)]
 pub(super) struct Volumes {
     drafts: Vec<Draft>,
     numbers: BTreeMap<(usize, Space, MaterialId), usize>,
 }
 
-/// The volumes that are left to look at.
+/// The tools to settle volumes.
 struct Settling<'a, 'b, 'c, D: Document> {
     builder: &'a mut SceneBuilder,
     context: &'a mut Context<'b, D>,
-    /// The places of shapes.
+    /// The place of each shape in the file, for warnings.
     places: &'c [D::Place],
 }
 
 impl Volumes {
-    /// Adds a shape of a material that fills what it bounds.
+    /// Adds a shape whose material fills the volume that the shape bounds.
     pub(super) fn add(
         &mut self,
         shape: usize,
@@ -82,7 +81,7 @@ impl Volumes {
         self.drafts[number].shapes.push(shape);
     }
 
-    /// Fills what the shapes enclose, and repairs those that do not, or look inwards.
+    /// Fills the volumes that the shapes enclose. Makes open shapes thin, and turns those that are inside out.
     pub(super) fn settle<D: Document>(
         self,
         builder: &mut SceneBuilder,
@@ -144,7 +143,7 @@ impl<D: Document> Settling<'_, '_, '_, D> {
         findings
     }
 
-    /// Makes one of drafts of a family that enclose something together and nothing alone.
+    /// Joins the open drafts of a family to one, if they enclose a volume together.
     fn join_families(&self, mut drafts: Vec<Draft>) -> Vec<Draft> {
         drafts.sort_by_key(|draft| (draft.family, draft.space));
         let mut joined: Vec<Draft> = Vec::new();
@@ -202,7 +201,7 @@ impl<D: Document> Settling<'_, '_, '_, D> {
         }
     }
 
-    /// Takes a mesh for a cavity of another of its substance that is around it, or else turns it.
+    /// Adds an inside-out mesh as a cavity to a closed volume of the same contents around it, or else turns it.
     fn settle_inside_out(&mut self, draft: Draft, closed: &mut Vec<Boxed>) {
         let own = self.corners(&draft);
         let is_like =
@@ -231,7 +230,7 @@ impl<D: Document> Settling<'_, '_, '_, D> {
         closed.push((draft, own));
     }
 
-    /// Two corners of a box around the shapes of a draft.
+    /// Returns the lowest and highest corner of the bounding box of a draft.
     fn corners(&self, draft: &Draft) -> [Vec3; 2] {
         let nowhere = [Vec3::INFINITY, Vec3::NEG_INFINITY];
         let shapes = draft

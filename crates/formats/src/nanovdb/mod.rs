@@ -1,8 +1,8 @@
-//! Grids of numbers from NanoVDB files \[Museth21\]: trees of boxes of cells, of which few are kept.
+//! Grids of numbers from NanoVDB files \[Museth21\]: sparse trees of boxes of cells.
 //!
 //! A file has segments: a header, for each grid a description and its name, and then the grids, plain or deflated.
-//! Numbers are little-endian. All bytes are untrusted: each is asked for by its place. The caller counts the
-//! cells of a box before it asks for their values.
+//! Numbers are little-endian. The bytes are untrusted: every access is checked. The caller counts the cells of a
+//! box before it asks for their values.
 
 mod tree;
 
@@ -16,16 +16,16 @@ use glam::{DAffine3, DMat3, DVec3};
 use std::borrow::Cow;
 use std::io::Read;
 
-/// The first bytes of a segment, by the age of its writer.
+/// The first bytes of a segment, from older and newer writers.
 const MAGIC: [&[u8; 8]; 2] = [b"NanoVDB0", b"NanoVDB2"];
-/// The versions whose layout is read.
+/// The major version whose layout is read.
 const MAJOR: u32 = 32;
 const HEADER: usize = 16;
 const DESCRIPTION: usize = 176;
-/// The part of a grid before its tree.
+/// Size of the part of a grid before its tree. Unit: bytes.
 const GRID: usize = 672;
 
-/// A box of cells: those from the first to the last number along each axis, both included.
+/// A box of cells, by the indices of the first and the last cell along each axis, both included.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct CellBox {
     pub(crate) first: [i32; 3],
@@ -36,28 +36,28 @@ pub(crate) struct CellBox {
 #[derive(Debug)]
 pub(crate) struct Grid {
     bytes: Vec<u8>,
-    /// The cells that are active.
+    /// The bounding box of the active cells.
     pub(crate) bounds: CellBox,
-    /// The map from numbers of cells to the file's world.
+    /// The map from cell indices to the file's world space.
     pub(crate) world_from_cells: DAffine3,
 }
 
 /// The outcome of a search for a grid.
 #[derive(Debug)]
 pub(crate) enum Found {
-    /// It is there.
+    /// The grid.
     Grid(Grid),
-    /// The file has none of this name.
+    /// The file has no grid of this name.
     Nothing,
-    /// It is there, but of a kind that is not read: a phrase that says which.
+    /// The grid is of a kind that cannot be read, described by a phrase.
     Unsupported(String),
 }
 
-/// Bytes at places of a file.
+/// The bytes of a file, with checked access by offset.
 #[derive(Clone, Copy)]
 struct Bytes<'b>(&'b [u8]);
 
-/// A grid as a segment describes it.
+/// The description of a grid in a segment.
 struct Described<'f> {
     size: u64,
     stored: u64,
@@ -68,18 +68,18 @@ struct Described<'f> {
 }
 
 impl CellBox {
-    /// The number of cells along each axis.
+    /// Returns the number of cells along each axis.
     pub(crate) fn size(&self) -> [u64; 3] {
         std::array::from_fn(|i| (i64::from(self.last[i]) - i64::from(self.first[i]) + 1) as u64)
     }
 
-    /// The number of all cells.
+    /// Returns the number of all cells, at most `u64::MAX`.
     pub(crate) fn count(&self) -> u64 {
         let size = self.size().into_iter();
         size.fold(1, u64::saturating_mul)
     }
 
-    /// The same with a cell more on each side.
+    /// Returns the box with one more cell on each side.
     pub(crate) fn grown(&self) -> Self {
         Self {
             first: self.first.map(|n| n.saturating_sub(1)),
@@ -88,7 +88,7 @@ impl CellBox {
     }
 }
 
-/// Finds the grid of single numbers that has a name.
+/// Finds the grid of this name, which has to consist of 32-bit floats.
 pub(crate) fn find(file: &[u8], name: &str) -> Result<Found> {
     let bytes = Bytes(file);
     let mut at = 0;
@@ -123,13 +123,13 @@ pub(crate) fn find(file: &[u8], name: &str) -> Result<Found> {
     Ok(Found::Nothing)
 }
 
-/// The part of a name before its first zero byte.
+/// Returns the part of a name before its first zero byte.
 fn text(bytes: &[u8]) -> Cow<'_, str> {
     let end = bytes.iter().position(|&byte| byte == 0);
     String::from_utf8_lossy(&bytes[..end.unwrap_or(bytes.len())])
 }
 
-/// Opens the grid that is stored in `part`.
+/// Opens the grid whose stored bytes are `part`.
 fn grid(described: &Described<'_>, part: &[u8]) -> Result<Found> {
     const FLOATS: u32 = 1;
     const UNKNOWN: u32 = 0;
@@ -164,7 +164,7 @@ fn grid(described: &Described<'_>, part: &[u8]) -> Result<Found> {
     }))
 }
 
-/// The bytes of a grid, which are stored plainly or deflated. None: another codec packed them.
+/// Returns the bytes of a grid, which are stored plain or deflated. None: another codec packed them.
 fn unpack(described: &Described<'_>, part: &[u8]) -> Result<Option<Vec<u8>>> {
     const PLAIN: u16 = 0;
     const DEFLATED: u16 = 1;
@@ -187,8 +187,8 @@ fn unpack(described: &Described<'_>, part: &[u8]) -> Result<Option<Vec<u8>>> {
 }
 
 impl Grid {
-    /// The values of the cells of a box, x fastest; the background where the file has none. The caller has counted
-    /// them.
+    /// Returns the values of the cells of a box, x fastest, or the background where the file has none. The caller has
+    /// to count the cells before.
     pub(crate) fn values(&self, within: CellBox) -> Result<Vec<f32>> {
         tree::values(Bytes(&self.bytes), within)
     }
@@ -225,13 +225,13 @@ impl<'b> Bytes<'b> {
         self.at(at).map(f64::from_le_bytes)
     }
 
-    /// Three numbers of a cell.
+    /// Returns the three indices of a cell, which are stored at the offset `at`.
     fn cell(self, at: usize) -> Result<[i32; 3]> {
         let number = |i: usize| self.at(at + 4 * i).map(i32::from_le_bytes);
         Ok([number(0)?, number(1)?, number(2)?])
     }
 
-    /// The place that a number at `at` gives relative to `origin`.
+    /// Returns the offset that is stored at `at`, relative to `origin`, as an offset in the file.
     fn place(self, origin: usize, at: usize) -> Result<usize> {
         let offset = self.at(at).map(i64::from_le_bytes)?;
         let offset = usize::try_from(offset).ok();

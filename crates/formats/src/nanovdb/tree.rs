@@ -1,27 +1,27 @@
 //! The tree of a grid: a root, two kinds of inner nodes, and leaves of 8³ cells.
 //!
-//! A child of the root has 32³ children of 128³ cells, and each of those 16³ leaves. Where a child is missing, all of
-//! its cells have one value.
+//! A child of the root has 32³ children of 128³ cells, and each of these has 16³ leaves. All cells of a missing child
+//! have one value.
 
 use super::{Bytes, CellBox, GRID, broken};
 use crate::error::{Error, Result};
 use std::collections::BTreeSet;
 
-/// The part of a root before its tiles, and the size of each.
+/// Size of the part of a root before its tiles. Unit: bytes.
 const ROOT: usize = 64;
 const TILE: usize = 32;
-/// Bits of a cell's number within a child of the root.
+/// Number of bits of a cell's index within a child of the root, along each axis.
 const ROOT_BITS: u32 = 12;
 
 /// A kind of inner node.
 struct Inner {
-    /// Bits of the number of a child, along each axis.
+    /// Number of bits of a child's index, along each axis.
     bits: u32,
-    /// Bits of a cell's number within a child.
+    /// Number of bits of a cell's index within a child, along each axis.
     child_bits: u32,
-    /// The place of the mask of children, after that of values.
+    /// Offset of the mask of children in a node, after the mask of values. Unit: bytes.
     children: usize,
-    /// The place of the table.
+    /// Offset of the table of children and values in a node. Unit: bytes.
     table: usize,
 }
 
@@ -37,15 +37,15 @@ const LOWER: Inner = Inner {
     children: 32 + 512,
     table: 1088,
 };
-/// The place of a leaf's values.
+/// Offset of the values in a leaf. Unit: bytes.
 const LEAF: usize = 96;
 
-/// The place of the root.
+/// Returns the offset of the root.
 fn root(bytes: Bytes<'_>) -> Result<usize> {
     bytes.place(GRID, GRID + 24)
 }
 
-/// The cells that are active.
+/// Returns the bounding box of the active cells.
 pub(super) fn bounds(bytes: Bytes<'_>) -> Result<CellBox> {
     let root = root(bytes)?;
     let (first, last) = (bytes.cell(root)?, bytes.cell(root + 12)?);
@@ -55,7 +55,7 @@ pub(super) fn bounds(bytes: Bytes<'_>) -> Result<CellBox> {
     Ok(CellBox { first, last })
 }
 
-/// The values of a box, x fastest, whose cells the caller has counted.
+/// Returns the values of the cells of a box, x fastest. The caller has to count the cells before.
 pub(super) fn values(bytes: Bytes<'_>, within: CellBox) -> Result<Vec<f32>> {
     let root = root(bytes)?;
     let tiles = bytes.u32(root + 24)? as usize;
@@ -80,10 +80,10 @@ pub(super) fn values(bytes: Bytes<'_>, within: CellBox) -> Result<Vec<f32>> {
     Ok(dense.values)
 }
 
-/// A part of the cells of a box, from the first to behind the last.
+/// A box of cells: the first index and one past the last, along each axis.
 type Range = [[i64; 2]; 3];
 
-/// A box of values in the making.
+/// A box of values under construction.
 struct Dense {
     first: [i64; 3],
     size: [i64; 3],
@@ -104,7 +104,8 @@ impl Dense {
         })
     }
 
-    /// The cells of the cube of 2^`bits` from `first` on that lie in the box. None: none do.
+    /// Returns the cells of a cube that lie in the box. The cube begins at `first` and has 2^`bits` cells along each
+    /// axis. None: it does not overlap the box.
     fn range(&self, first: [i64; 3], bits: u32) -> Option<Range> {
         let range = std::array::from_fn(|i| {
             let begin = first[i].max(self.first[i]);
@@ -119,7 +120,7 @@ impl Dense {
             .then_some(range)
     }
 
-    /// The place of the first cell of a row in the values.
+    /// Returns the index of a cell in the values.
     fn row(&self, [x, y, z]: [i64; 3]) -> usize {
         let [x, y, z] = [x - self.first[0], y - self.first[1], z - self.first[2]];
         ((z * self.size[1] + y) * self.size[0] + x) as usize
@@ -140,7 +141,7 @@ impl Dense {
         })
     }
 
-    /// Takes over an inner node, and its children by `take`.
+    /// Copies the values of an inner node, and calls `take` for its children.
     fn inner(
         &mut self,
         kind: &Inner,
@@ -192,7 +193,7 @@ impl Dense {
     }
 }
 
-/// All pairs of numbers of two ranges.
+/// Returns all pairs (y, z) of two ranges.
 fn rows([ys, zs]: [[i64; 2]; 2]) -> impl Iterator<Item = (i64, i64)> {
     (zs[0]..zs[1]).flat_map(move |z| (ys[0]..ys[1]).map(move |y| (y, z)))
 }

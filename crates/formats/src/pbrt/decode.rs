@@ -1,11 +1,11 @@
-//! From bytes to the text of a scene.
+//! Decodes the bytes of a scene file to text.
 
 use crate::error::{Error, ErrorKind, Place, Result};
 use crate::source::line_and_column;
 use std::path::Path;
 
-/// Decodes bytes as UTF-8. Bytes of comments are no text: where they are not UTF-8, they count as characters of
-/// Latin-1. Errors: other bytes are not UTF-8, or the text is UTF-16.
+/// Decodes bytes as UTF-8. Bytes of comments that are not UTF-8 count as Latin-1. Errors: other bytes are not UTF-8,
+/// or the text is UTF-16.
 pub(super) fn decode(path: &Path, bytes: Vec<u8>) -> Result<String> {
     if bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff]) {
         let error = Error::new(ErrorKind::Syntax, "the text is UTF-16").in_file(path);
@@ -32,7 +32,7 @@ fn decode_comments(path: &Path, bytes: &[u8]) -> Result<String> {
     Ok(text)
 }
 
-/// The error of a text whose next byte is not UTF-8.
+/// Returns the error of a text whose byte after `before` is not UTF-8.
 fn not_text(path: &Path, before: &str) -> Error {
     let (line, column) = line_and_column(before, before.len());
     let error = Error::new(ErrorKind::Syntax, "the text is not UTF-8").in_file(path);
@@ -44,7 +44,7 @@ fn not_text(path: &Path, before: &str) -> Error {
     error.at(place).with_hint("save it as UTF-8")
 }
 
-/// The part of a text that a byte is in, as the lexer splits it.
+/// The kind of token that a byte is part of, as the lexer splits the text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum State {
     Between,

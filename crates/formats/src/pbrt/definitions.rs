@@ -13,7 +13,7 @@ pub(super) fn defined_again(span: Span, what: &str, name: &str) -> Fault {
 }
 
 impl Parser {
-    /// Returns the material of a name, which may be defined later.
+    /// Returns the index of the material of this name, which may be defined later.
     pub(super) fn material_use(&mut self, name: &str, span: Span) -> usize {
         let materials = &mut self.scene.materials;
         let (index, _) = *self
@@ -44,7 +44,7 @@ impl Parser {
         Ok(())
     }
 
-    /// Returns the object of a name, which may be defined later.
+    /// Returns the index of the object of this name, which may be defined later.
     pub(super) fn object_use(&mut self, name: &str, span: Span) -> usize {
         let objects = &mut self.scene.objects;
         let (index, _) = *self

@@ -13,7 +13,7 @@ use std::path::Path;
 const REPEAT_BY_OBJECTS: &str =
     "make an object of what is repeated (ObjectBegin), and instances of it (ObjectInstance)";
 
-/// Counts of what was read, for limits.
+/// The counts of parsed items that have limits.
 #[derive(Debug, Default)]
 pub(super) struct Counts {
     pub(super) inclusions: u64,
@@ -74,7 +74,7 @@ impl Parser {
         Ok(())
     }
 
-    /// Reads a file under a name that is used for the first time.
+    /// Reads a file whose name is used for the first time.
     fn load(&mut self, path: &Path, span: Span) -> Result<FileId, Fault> {
         // A file may have several names.
         let key = self.scene.files.identity(path);
@@ -104,8 +104,8 @@ impl Parser {
         Ok(file)
     }
 
-    /// Refuses counts beyond the allowance of the texts' bytes: packed or included repeatedly, a few bytes
-    /// expand to any number.
+    /// Refuses a count beyond the allowance for the bytes of the texts: a few bytes, packed or included
+    /// repeatedly, expand to any number of items.
     pub(super) fn check_count(
         &self,
         (count, what): (u64, &str),

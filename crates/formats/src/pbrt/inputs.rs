@@ -1,18 +1,18 @@
-//! The files that a scene names, also in parts that are not used or that a substitute replaces.
+//! The files that a scene names, including those in parts that are not used or that a substitute replaces.
 
 use super::scene::{Entity, SceneDescription, ShapeDescription};
 use std::collections::BTreeSet;
 use std::path::PathBuf;
 
 impl SceneDescription {
-    /// The files that parameters may name, without the film's, which is written. A text with a dot
-    /// in it is taken for the name of a file.
+    /// Returns the files that parameters may name, except the film's, which is an output. Every string
+    /// with a dot counts as the name of a file.
     pub(super) fn inputs(&self) -> Vec<PathBuf> {
         let named: BTreeSet<_> = self.entities().flat_map(strings).collect();
         named.into_iter().map(|name| self.resolve(name)).collect()
     }
 
-    /// All that can have parameters with names of files in them.
+    /// Returns all entities whose parameters can name files.
     fn entities(&self) -> impl Iterator<Item = &Entity> {
         let camera = self.camera.iter().map(|camera| &camera.entity);
         let materials = self.materials.iter().filter_map(|m| m.entity.as_ref());
@@ -34,7 +34,7 @@ fn of_shape(shape: &ShapeDescription) -> impl Iterator<Item = &Entity> {
     std::iter::once(&shape.entity).chain(shape.area_light.as_deref())
 }
 
-/// The texts of parameters that may be names of files.
+/// Returns the strings of an entity's parameters that may be names of files.
 fn strings(entity: &Entity) -> impl Iterator<Item = &str> {
     let parameters = &entity.parameters;
     let all = parameters.explicit.iter().chain(&*parameters.defaults);

@@ -5,7 +5,7 @@ use super::v3;
 use crate::source::{Fault, Span};
 use unicode_normalization::UnicodeNormalization;
 
-/// Returns a name in Unicode's normal form C, in which names are compared.
+/// Returns a name in Unicode's normalization form C, which makes equal names comparable.
 pub(super) fn normalized(name: &str) -> String {
     if name.is_ascii() {
         name.into()
@@ -57,11 +57,11 @@ pub(crate) fn is_directive(word: &str) -> bool {
 
 /// The type words of a directive.
 pub(super) struct Names {
-    /// The kind of thing that they name.
+    /// The kind of thing that the words name, for messages.
     what: &'static str,
-    /// The words, between spaces; where a space stands at the end, one is empty.
+    /// The words, separated by spaces. A space at the end stands for an empty word.
     known: &'static str,
-    /// Words of version 3, between spaces, with their replacement.
+    /// Words of version 3, separated by spaces, with their replacement.
     old: &'static [(&'static str, &'static str)],
 }
 

@@ -157,8 +157,8 @@ impl<'t> Tokens<'t> {
     }
 }
 
-/// Returns true if `inside` is the text between the opening quotes of two strings, the first of which is not
-/// closed: it ends with a blank, and a word follows the quote directly.
+/// Returns true if the quote between `inside` and `after` probably opens the next string, so that the string of
+/// `inside` is not closed: `inside` ends with a blank, and a word follows the quote directly.
 fn is_unclosed(inside: &str, after: &str) -> bool {
     inside.ends_with([' ', '\t']) && after.starts_with(|next: char| next.is_ascii_alphabetic())
 }
@@ -223,7 +223,7 @@ pub(super) fn not_a_number(token: &Token<'_>) -> Fault {
     Fault::syntax(token.span, message)
 }
 
-/// Returns the fault of a number that its type does not have.
+/// Returns the fault of a number that is too large for its type.
 pub(super) fn too_large(word: &str, span: Span) -> Fault {
     let message = format!("the number `{}` is too large", shorten(word));
     Fault::scene(span, message)

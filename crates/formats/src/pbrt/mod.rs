@@ -1,8 +1,8 @@
 //! Scene files of pbrt-v4.
 //!
-//! Reading has two steps. [`parse_file`] parses text into a [`SceneDescription`]: plain data with the
-//! contents of the text, in which all names are known and all numbers valid. [`build()`] makes a scene of
-//! it and reads the meshes and images; [`load`] does both.
+//! Reading has two steps. [`parse_file`] parses text into a [`SceneDescription`]: the contents of the text as
+//! plain data, in which all names are known and all numbers valid. [`build()`] builds a scene from it and reads
+//! the meshes and images; [`load`] does both.
 //!
 //! Departures from the reference program, which all give more specific errors: an unknown name is an error
 //! that suggests the nearest known one; a file of version 3 is recognised by its first mark; a matrix with

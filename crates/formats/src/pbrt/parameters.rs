@@ -32,7 +32,7 @@ pub enum ParameterType {
     String,
     /// The name of a texture.
     Texture,
-    /// A colour in the colour space of its place.
+    /// A colour in the current colour space.
     Rgb,
     /// Pairs of wavelength and value, or the name of a spectrum or of a file with one.
     Spectrum,
@@ -162,7 +162,7 @@ pub struct Parameter {
 pub struct ParameterList {
     /// The parameters of the directive itself. Of two with the same type and name, the last counts.
     pub explicit: Vec<Parameter>,
-    /// The parameters of `Attribute` directives, for which the directive has none of its own.
+    /// The parameters of `Attribute` directives, which apply unless the directive itself has them.
     pub defaults: Arc<Vec<Parameter>>,
 }
 

@@ -25,7 +25,7 @@ pub fn parse_file(path: &Path) -> Result<SceneDescription> {
     parse_file_from(path, &Files::default())
 }
 
-/// Does the same as [`parse_file`] with files from `files`.
+/// Parses a scene file as [`parse_file`] does, from `files`.
 pub fn parse_file_from(path: &Path, files: &Files) -> Result<SceneDescription> {
     foreign::check_folder(path, files)?;
     let FileBytes { bytes, stored } = files.read_or_stdin(path, LONGEST_TEXT)?;
@@ -73,12 +73,12 @@ pub(super) struct Parser {
     pub(super) object: Option<usize>,
     /// Materials by name, with the first use of undefined ones.
     pub(super) materials: BTreeMap<String, (usize, Option<Span>)>,
-    /// Objects by name, in the same way.
+    /// Objects by name, with the first use of undefined ones.
     pub(super) objects: BTreeMap<String, (usize, Option<Span>)>,
-    /// The files in reading, outermost first.
+    /// The files that are being read, outermost first.
     pub(super) open: Vec<PathBuf>,
     pub(super) texts: BTreeMap<PathBuf, FileId>,
-    /// The included files by their names beside the scene.
+    /// The included files by their paths beside the scene, each with the path that was read.
     pub(super) included: BTreeMap<PathBuf, (PathBuf, FileId)>,
     pub(super) texture_names: BTreeSet<(TextureKind, String)>,
     pub(super) medium_names: BTreeSet<String>,
@@ -222,7 +222,8 @@ impl Parser {
 }
 
 impl SceneDescription {
-    /// Returns the path of a file that the scene names: beside the scene, else in the working directory.
+    /// Returns the path of a file that the scene names: beside the scene if it exists there, else in the working
+    /// directory.
     pub fn resolve(&self, name: &str) -> PathBuf {
         let beside = self.folder.join(name);
         let here = Path::new(name);

@@ -11,7 +11,7 @@ use std::sync::Arc;
 /// A parsed scene.
 ///
 /// References are valid indices into the vectors here. Every item has its place in the text, so that errors
-/// of building have file, line and column.
+/// during building have file, line and column.
 #[derive(Clone, Debug, Default)]
 pub struct SceneDescription {
     /// The texts that spans point into.
@@ -50,7 +50,7 @@ pub struct SceneDescription {
     pub shapes: Vec<ShapeDescription>,
     /// The objects.
     pub objects: Vec<ObjectDescription>,
-    /// The places of objects.
+    /// The instances of objects.
     pub instances: Vec<InstanceDescription>,
     /// The warnings.
     pub warnings: Vec<Warning>,
@@ -88,7 +88,7 @@ pub struct CameraDescription {
     pub entity: Entity,
     /// Camera from world.
     pub transforms: Transforms,
-    /// The outer one of these media surrounds it.
+    /// The media of the camera; the outside one surrounds it.
     pub medium: MediumInterface,
 }
 
@@ -106,7 +106,7 @@ pub struct FilmDescription {
 pub struct OptionDescription {
     /// The name in lower case, without `-` and `_`.
     pub name: String,
-    /// The value as it is written; strings without their quotes.
+    /// The value as the file has it; strings without their quotes.
     pub value: String,
     /// The name with its quotes.
     pub span: Span,
@@ -156,7 +156,7 @@ pub struct TextureDescription {
 /// A participating medium.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MediumDescription {
-    /// The name; the span of [`entity`](Self::entity) is that of the name.
+    /// The name; its place is the span of [`entity`](Self::entity).
     pub name: String,
     /// Type and parameters.
     pub entity: Entity,
@@ -178,7 +178,7 @@ pub struct LightDescription {
 pub struct ShapeDescription {
     /// Type and parameters.
     pub entity: Entity,
-    /// World (or instance) from object space.
+    /// World space from object space; for a shape of an object, instance space from object space.
     pub transforms: Transforms,
     /// True if `ReverseOrientation` reversed the normals.
     pub reverse_orientation: bool,
@@ -201,7 +201,7 @@ pub struct ObjectDescription {
     pub span: Span,
 }
 
-/// The place of an object.
+/// An instance of an object.
 #[derive(Clone, Debug, PartialEq)]
 pub struct InstanceDescription {
     /// An index into [`SceneDescription::objects`].

@@ -1,4 +1,4 @@
-//! The graphics state, which directives change and later ones inherit.
+//! The graphics state, which directives change for later directives.
 
 use super::scene::{AttributeDefaults, ColorSpace, Entity, MediumInterface};
 use super::transform::{Active, Transforms};
@@ -6,7 +6,7 @@ use crate::source::Span;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// The graphics state, which blocks save and restore as a whole.
+/// The graphics state, which blocks save at their beginning and restore at their end.
 #[derive(Clone, Debug, Default)]
 pub(super) struct GraphicsState {
     pub(super) transforms: Transforms,
@@ -47,7 +47,7 @@ pub(super) struct OpenBlock {
     pub(super) saved: GraphicsState,
 }
 
-/// The state of one file and those that it includes. An imported file has its own.
+/// The state of one file and of the files that it includes. An imported file has its own.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Scope {
     pub(super) state: GraphicsState,

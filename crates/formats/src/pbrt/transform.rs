@@ -4,7 +4,7 @@ use glam::{DAffine3, DMat3, DMat4, DVec3, DVec4};
 
 /// Transformations at the two ends of the shutter's interval: equal if nothing moves.
 ///
-/// They are f64, so that chains of rotations and translations are rounded to f32 only once, at the end.
+/// They are `f64`, so that chains of rotations and translations are rounded to `f32` only once, at the end.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Transforms {
     /// The transformation at the first time.

@@ -1,4 +1,4 @@
-//! The marks of files for version 3 (or older) of the format.
+//! The words by which files for version 3 (or older) of the format are recognised.
 
 use crate::source::{Fault, Span};
 

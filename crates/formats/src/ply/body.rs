@@ -9,7 +9,7 @@ pub(super) struct Body<'b> {
     rest: &'b [u8],
     /// The line of the last word in an ASCII body, counted from 1.
     line: usize,
-    /// Its column, counted from 1.
+    /// The column of that word, counted from 1.
     column: usize,
     /// The column at which `rest` begins.
     next_column: usize,
@@ -36,7 +36,7 @@ impl<'b> Body<'b> {
         }
     }
 
-    /// Refuses counts that the body is too short for, before memory is reserved.
+    /// Refuses an element with more rows than the body has bytes for, before memory is reserved.
     pub(super) fn check_room(&self, element: &Element) -> Result<(), Broken> {
         let smallest = |scalar: Scalar| match self.format {
             // A digit and a separator.
@@ -115,7 +115,7 @@ impl<'b> Body<'b> {
         })
     }
 
-    /// Takes the next bytes of a binary body, least significant first.
+    /// Takes the next `N` bytes of a binary body, and returns them in little-endian order.
     #[inline]
     fn take<const N: usize>(&mut self) -> Result<[u8; N], Broken> {
         let Some((bytes, rest)) = self.rest.split_first_chunk::<N>() else {

@@ -24,7 +24,7 @@ pub(super) enum Scalar {
 }
 
 impl Scalar {
-    /// Returns its size in a binary body. Unit: bytes.
+    /// Returns the size of a number in a binary body. Unit: bytes.
     pub(super) const fn size(self) -> usize {
         match self {
             Self::I8 | Self::U8 => 1,

@@ -6,8 +6,8 @@
 //! if both lie within it; other polygons become triangles by `polygon`. Normals and texture coordinates that
 //! cannot be used are repaired, and counted.
 //!
-//! The crates `serde-ply` and `ply-rs-bw` are not used: they read a list of a million faces into a million
-//! vectors, and do not report which element of a file is broken.
+//! The crates `serde-ply` and `ply-rs-bw` are not used: they allocate a vector for each face, and do not report
+//! which element of a file is broken.
 
 mod body;
 mod header;
@@ -33,9 +33,9 @@ pub struct PlyMesh {
     pub uvs: Vec<[f32; 2]>,
     /// Valid indices of vertices.
     pub triangles: Vec<[u32; 3]>,
-    /// The end of each face among the triangles. Shape: empty if every triangle is a face.
+    /// For each face, the index past its last triangle. Shape: empty if every triangle is a face.
     pub faces: Vec<u32>,
-    /// What was wrong, and is repaired.
+    /// The counts of repaired defects.
     pub repairs: Repairs,
 }
 
@@ -55,7 +55,7 @@ impl PlyMesh {
         self.end_face(first);
     }
 
-    /// Makes a face of the triangles from `first` on, if there are any.
+    /// Ends a face that has the triangles from index `first` on, if there are any.
     fn end_face(&mut self, first: usize) {
         let (first, end) = (first as u32, self.triangles.len() as u32);
         if end == first {
@@ -79,7 +79,7 @@ impl PlyMesh {
         }
     }
 
-    /// Returns the triangles of each face.
+    /// Returns the range of triangles of each face.
     pub(crate) fn faces(&self) -> Vec<Range<usize>> {
         if self.faces.is_empty() {
             return (0..self.triangles.len()).map(|i| i..i + 1).collect();
@@ -90,7 +90,7 @@ impl PlyMesh {
     }
 }
 
-/// An error within a file, whose name the caller knows.
+/// An error in a file, without its name, which the caller adds.
 struct Broken {
     kind: ErrorKind,
     message: String,
@@ -181,10 +181,10 @@ fn parse_mesh(bytes: &[u8]) -> Result<PlyMesh, Broken> {
 
 /// The numbers of a vertex: position, normal, uv.
 type VertexRow = [f32; 8];
-/// The number of slots of the position.
+/// The number of columns of the position.
 const POSITION: usize = 3;
 
-/// The places of a vertex's properties in a [`VertexRow`].
+/// The index of each vertex property in a [`VertexRow`].
 struct Columns {
     slots: Vec<Option<usize>>,
     has_normal: bool,
@@ -266,7 +266,7 @@ fn read_vertex(
 /// The names of the list of a face's corners.
 const CORNERS: [&str; 2] = ["vertex_indices", "vertex_index"];
 
-/// Reads the faces as fans. Returns those with more than three corners, each by the range of its triangles.
+/// Reads the faces as fans. Returns the range of triangles of each face with more than three corners.
 fn read_faces(
     body: &mut Body<'_>,
     face: &Element,
@@ -299,7 +299,7 @@ fn read_faces(
     Ok(polygons)
 }
 
-/// Returns the error of faces without a list of corners, which names what they have.
+/// Returns the error of faces without a list of corners, which names the properties that they have.
 fn no_corners(face: &Element) -> Broken {
     let found = face.properties.iter().map(|p| format!("`{}`", p.name));
     let found = match found.collect::<Vec<_>>().join(", ") {
@@ -311,7 +311,7 @@ fn no_corners(face: &Element) -> Broken {
     ))
 }
 
-/// Reads the corners of a face into triangles, all of which have the first one. Returns their range.
+/// Reads the corners of a face into a fan of triangles about the first one. Returns the range of the triangles.
 fn read_corners(
     body: &mut Body<'_>,
     kind: PropertyKind,

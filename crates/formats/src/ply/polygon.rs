@@ -1,9 +1,9 @@
 //! Splits polygons into triangles.
 //!
-//! A polygon of n corners is read as a fan about its first one. Where a triangle of the fan lies outside the
-//! polygon, ears are cut instead: corners whose triangle with both neighbours lies inside. A simple polygon
-//! of four corners or more has two ears. All is decided in the axis plane that the polygon covers most of,
-//! as a projection along an axis keeps what is convex, and rounds nothing.
+//! A polygon is read as a fan about its first corner. If a triangle of the fan lies outside the polygon, ears are
+//! cut instead: corners whose triangle with both neighbours lies inside. A simple polygon of four corners or more
+//! has two ears. All tests are in the axis plane in which the polygon's projection is largest: a projection along
+//! an axis keeps convexity, and rounds nothing.
 
 use super::Broken;
 use crate::error::ErrorKind;
@@ -13,17 +13,17 @@ use glam::{DVec2, DVec3};
 /// Splits polygons, and counts the work.
 pub(super) struct Splitter<'m> {
     positions: &'m [[f32; 3]],
-    /// Number of tests of a corner against an ear that may still be done.
+    /// Number of tests of a corner against an ear that are left.
     tests: u64,
-    /// Number of polygons that have no ear, as their sides cross.
+    /// Number of polygons without an ear, whose sides cross.
     pub(super) crossing: usize,
 }
 
-/// A polygon in a plane: the unsplit rest of it.
+/// The unsplit rest of a polygon in a plane.
 struct Rest {
     /// The corners, in positive direction.
     corners: Vec<DVec2>,
-    /// Number of the corner before and after each one.
+    /// The indices of the corners before and after each corner.
     neighbours: Vec<[usize; 2]>,
     /// The corners that are not convex; some may be cut already.
     reflex: Vec<usize>,
@@ -39,7 +39,7 @@ impl<'m> Splitter<'m> {
         }
     }
 
-    /// Replaces the fan of a polygon by triangles within it. Errors: that takes too many tests.
+    /// Replaces the fan of a polygon by triangles inside the polygon. Errors: that takes too many tests.
     pub(super) fn split(&mut self, fan: &mut [[u32; 3]]) -> Result<(), Broken> {
         let Some(&[first, second, _]) = fan.first() else {
             return Ok(());
@@ -149,7 +149,7 @@ impl Rest {
         ) <= 0.0
     }
 
-    /// Takes a corner out. Its neighbours may become convex.
+    /// Removes a corner. Its neighbours may become convex.
     fn cut(&mut self, corner: usize) {
         let [before, after] = self.neighbours[corner];
         self.neighbours[before][1] = after;
@@ -160,13 +160,13 @@ impl Rest {
     }
 }
 
-/// Twice the area of a triangle; negative if its corners go around in the negative direction.
+/// Returns twice the area of a triangle, negative if its corners go around clockwise.
 fn area(a: DVec2, b: DVec2, c: DVec2) -> f64 {
     (b - a).perp_dot(c - a)
 }
 
-/// Drops the axis along which a polygon covers most, so that its corners go around in the positive direction.
-/// None: it covers nothing, or as much in one direction as in the other.
+/// Projects a polygon along the axis that gives the largest area, so that its corners go around counterclockwise.
+/// None: its signed area is 0 in all projections.
 fn flattened(corners: &[DVec3]) -> Option<Vec<DVec2>> {
     let first = corners[0];
     let cross = |pair: &[DVec3]| (pair[0] - first).cross(pair[1] - first);

@@ -8,7 +8,7 @@ use bidir::spectrum::Rgb;
 use glam::{DMat3, DVec3};
 use std::sync::LazyLock;
 
-/// Chromaticities of red, green and blue, and of white.
+/// The primaries and the white of a colour space.
 pub(crate) struct Primaries {
     /// The chromaticities of the three primaries.
     pub(crate) xy: [[f64; 2]; 3],
@@ -40,7 +40,7 @@ fn xyz([x, y]: [f64; 2]) -> DVec3 {
 
 /// The observer and daylight, nanometre by nanometre.
 struct Observed {
-    /// Wavelength (nm), the observer's functions, and D65 relative to its luminance.
+    /// For each step: the wavelength (nm), the observer's functions, and D65 relative to its luminance.
     steps: Vec<(f64, DVec3, f64)>,
     /// XYZ of D65.
     white: DVec3,
@@ -75,7 +75,7 @@ fn rgb(xyz: DVec3) -> Rgb {
     (rgb_from_xyz() * xyz).as_vec3().into()
 }
 
-/// Computes ∫ value · D65 in linear Rec. 709, which is white for a reflectance of 1. Not clamped.
+/// Returns ∫ value · D65 in linear Rec. 709: white for a value of 1. Not clamped.
 fn under_daylight(value: impl Fn(f64) -> f64) -> Rgb {
     let steps = OBSERVED.steps.iter();
     rgb(steps.map(|(nm, bars, d65)| bars * (d65 * value(*nm))).sum())
@@ -100,10 +100,10 @@ pub(crate) fn emission(spectrum: &Spectrum) -> Option<Rgb> {
     Some((clamped / luminance).as_vec3().into())
 }
 
-/// The luminance of a spectrum that is 1 everywhere: ∫ ȳ dλ, in nm.
+/// The luminance of a spectrum that is 1 everywhere: ∫ ȳ dλ. Unit: nm.
 pub(crate) const LUMINANCE_OF_ONE: f32 = 106.856_895;
 
-/// Returns the light of Planck's law relative to its peak, which is not brought to luminance 1.
+/// Returns the colour of Planck's law relative to its peak, not normalised to luminance 1.
 pub(crate) fn black_body(kelvin: f64) -> Rgb {
     let spectrum = Spectrum::blackbody(kelvin);
     let steps = OBSERVED.steps.iter();
@@ -112,8 +112,8 @@ pub(crate) fn black_body(kelvin: f64) -> Rgb {
     of_one.map(|channel| channel * luminance as f32)
 }
 
-/// Returns η and k of a metal whose reflectance at normal incidence, under daylight, equals that of the
-/// spectral index: η is the mean over each channel, and k follows from
+/// Returns η and k of a metal for each channel, so that its reflectance R at normal incidence, under daylight,
+/// equals the reflectance by the spectral index: η is the mean over the channel, and k follows from
 /// R = ((η - 1)² + k²) / ((η + 1)² + k²).
 pub(crate) fn conductor(eta: &Spectrum, k: &Spectrum) -> (Rgb, Rgb) {
     let sqr = |x: f64| x * x;
@@ -131,7 +131,7 @@ pub(crate) fn conductor(eta: &Spectrum, k: &Spectrum) -> (Rgb, Rgb) {
     (seen, k)
 }
 
-/// Converts a colour from other primaries to linear Rec. 709; their white becomes `white`.
+/// Converts a colour from the primaries `from` to linear Rec. 709. Maps the white of `from` to `white`.
 pub(crate) fn rgb_from_rgb(from: &Primaries, white: DVec3, color: Rgb) -> Rgb {
     let xyz = from.xyz_from_rgb() * DVec3::from(color.map(f64::from));
     rgb(bradford(from.white, white) * xyz)

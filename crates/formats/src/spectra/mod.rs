@@ -19,7 +19,7 @@ pub(crate) use named::{metal, named, names};
 pub(crate) enum Beyond {
     /// The value is 0.
     Zero,
-    /// The value is that of the nearest end.
+    /// The value is the first or the last sample.
     Last,
 }
 
@@ -106,8 +106,7 @@ impl Spectrum {
         }
     }
 
-    /// Returns the index of refraction that a spectrum of indices stands for: that at the d line of helium, at which
-    /// glasses are specified.
+    /// Returns the index of refraction at the d line of helium, by which glasses are specified.
     pub(crate) fn index(&self) -> f32 {
         const D_LINE: f64 = 587.56;
         self.at(D_LINE) as f32

@@ -26,7 +26,7 @@ pub(crate) fn named(name: &str) -> Option<Spectrum> {
     }
 }
 
-/// Returns η and k of a metal by its chemical symbol, for each channel. None: it is not known.
+/// Returns η and k of a metal for each channel, by its chemical symbol. None: the metal is not known.
 pub(crate) fn metal(symbol: &str) -> Option<(Rgb, Rgb)> {
     let [eta, k] = ["eta", "k"].map(|part| named(&format!("metal-{symbol}-{part}")));
     Some(conductor(&eta?, &k?))

@@ -42,7 +42,7 @@ impl Table {
         self.names.iter().copied()
     }
 
-    /// Returns the column of this name, with its end values beyond its ends.
+    /// Returns the column of this name; beyond its ends, the spectrum has the value at the end.
     pub(super) fn column(&self, name: &str) -> Option<Spectrum> {
         let index = self.names.iter().position(|known| *known == name)?;
         Spectrum::new(self.columns[index].clone(), Beyond::Last).ok()
@@ -56,7 +56,7 @@ pub(super) fn glass(name: &str) -> Option<[f64; 6]> {
     numbers.try_into().ok()
 }
 
-/// Returns names and coefficients of all glasses.
+/// Returns the names of all glasses, each with the text of its coefficients.
 pub(super) fn glasses() -> impl Iterator<Item = (&'static str, &'static str)> {
     let text = include_str!("../../data/spectra/glasses.csv");
     text.lines().skip(1).filter_map(|line| line.split_once(','))

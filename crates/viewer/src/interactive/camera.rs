@@ -1,4 +1,4 @@
-//! The camera that clients move, and the size of the film: quarter sides while it moves.
+//! The camera that clients move. While it moves, the film has a quarter of the pixels per side.
 
 use crate::command::Walk;
 use crate::status::CameraStatus;
@@ -10,14 +10,14 @@ use bidir::scene::{RayDraws, RenderSpace, Scene};
 use bidir::view::{EmptyCrop, View};
 use std::time::{Duration, Instant};
 
-/// The time after which a camera that does not move stands still.
+/// The time without a move after which the camera counts as still.
 const REST: Duration = Duration::from_millis(500);
-/// The factor by which a side has fewer pixels while the camera moves.
+/// The factor by which each side of the film has fewer pixels while the camera moves.
 const COARSENESS: u32 = 4;
-/// The nearest and the farthest that the camera comes to its target. Unit: the scene's radius.
+/// The smallest and the largest distance of the camera from its target. Unit: the scene's radius.
 const REACH: [f32; 2] = [1e-4, 1e3];
 
-/// The camera and film of a scene that is looked at.
+/// The camera and film of a scene, as clients move the camera.
 #[derive(Debug)]
 pub(super) struct CameraControl {
     space: RenderSpace,
@@ -26,21 +26,21 @@ pub(super) struct CameraControl {
     camera: Camera,
     /// The point in the middle of the scene's own picture, in the axes of the camera.
     home_target: Vec3,
-    /// The point that the camera moves around, likewise.
+    /// The point that the camera moves around, in the axes of the camera.
     target: Vec3,
-    /// Up in the world.
+    /// The upward direction in the world.
     vertical: Vec3,
     /// The radius of the scene.
     radius: f32,
-    /// The time of the last move. None: it stands still.
+    /// The time of the last move. None: the camera is still.
     moved: Option<Instant>,
 }
 
-/// The reason why a camera cannot move so.
+/// The reason why the camera cannot move as commanded.
 pub(super) type Refusal = String;
 
 impl CameraControl {
-    /// Returns the scene's own view.
+    /// Returns the control of a camera at the scene's own view.
     pub(super) fn new(scene: &Scene, home: View) -> Self {
         let camera = *home.camera();
         let target = target(scene, &home);
@@ -56,23 +56,23 @@ impl CameraControl {
         }
     }
 
-    /// True while the camera moves.
+    /// Returns true while the camera moves.
     pub(super) fn is_preview(&self) -> bool {
         self.moved.is_some()
     }
 
-    /// True once when the camera stands still again.
+    /// Returns true once, at the first call after the camera has become still.
     pub(super) fn settle(&mut self) -> bool {
         self.rest() == Some(Duration::ZERO) && self.moved.take().is_some()
     }
 
-    /// Returns the time that it still has to stand. None: it does not move.
+    /// Returns the time without a move until the camera counts as still. None: it is still.
     pub(super) fn rest(&self) -> Option<Duration> {
         let moved = self.moved?;
         Some(REST.saturating_sub(moved.elapsed()))
     }
 
-    /// Returns the view that is rendered now.
+    /// Returns the view to render now.
     pub(super) fn current(&self) -> Result<View, EmptyCrop> {
         let film = self.home.film();
         if !self.is_preview() {
@@ -96,7 +96,7 @@ impl CameraControl {
         }
     }
 
-    /// Returns a point in the coordinates of the scene's file.
+    /// Maps a point from the render space to the coordinates of the scene file.
     fn in_world(&self, point: Vec3) -> [f32; 3] {
         self.space.world_point(point).as_vec3().to_array()
     }
@@ -105,7 +105,7 @@ impl CameraControl {
         self.camera.pose() != self.home.camera().pose()
     }
 
-    /// Returns the view in words that no other view has. None: it is the scene's own.
+    /// Returns a text that identifies the view. None: it is the scene's own view.
     pub(super) fn text(&self) -> Option<String> {
         let pose = self.camera.pose();
         let [origin, forward, up] = [pose.origin, pose.forward, pose.up].map(|v| v.to_array());
@@ -113,14 +113,14 @@ impl CameraControl {
         self.is_elsewhere().then(text)
     }
 
-    /// Back to the scene's own view, in full at once.
+    /// Moves the camera back to the scene's own view, at full resolution at once.
     pub(super) fn go_home(&mut self) {
         self.camera = *self.home.camera();
         self.target = self.home_target;
         self.moved = None;
     }
 
-    /// Around the target.
+    /// Moves the camera around the target. Unit: radians.
     pub(super) fn orbit(&mut self, yaw: f32, pitch: f32) -> Result<(), Refusal> {
         self.check_is_flat("orbit")?;
         let pose = self.camera.pose();
@@ -135,7 +135,7 @@ impl CameraControl {
         )
     }
 
-    /// To `factor` times the distance of the target.
+    /// Moves the camera to `factor` times its distance from the target.
     pub(super) fn dolly(&mut self, factor: f32) -> Result<(), Refusal> {
         self.check_is_flat("dolly")?;
         if self.camera.is_parallel() {
@@ -154,7 +154,7 @@ impl CameraControl {
         self.go(pose.shifted(back), self.target * factor)
     }
 
-    /// Across the target, which comes along.
+    /// Moves the camera and the target across the view. Unit: the distance between them.
     pub(super) fn pan(&mut self, right: f32, up: f32) -> Result<(), Refusal> {
         self.check_is_flat("pan")?;
         self.walk(Walk {
@@ -164,7 +164,7 @@ impl CameraControl {
         })
     }
 
-    /// Returns a step and a turn; the target comes along.
+    /// Moves and turns the camera, together with the target.
     pub(super) fn walk(&mut self, walk: Walk) -> Result<(), Refusal> {
         let (pose, unit) = (self.camera.pose(), self.distance());
         let step = pose.right * walk.right + pose.up * walk.up + pose.forward * walk.forward;
@@ -187,7 +187,7 @@ impl CameraControl {
         Ok(())
     }
 
-    /// Refuses what makes no sense for a picture of all directions.
+    /// Refuses a command that has no meaning for a picture of all directions.
     fn check_is_flat(&self, command: &str) -> Result<(), Refusal> {
         match self.camera {
             Camera::Spherical(_) => Err(format!(
@@ -206,8 +206,8 @@ impl CameraControl {
     }
 }
 
-/// Returns the point in the middle of the picture, in the axes of the camera; where nothing is there, one as far
-/// as the middle of the scene.
+/// Returns the point that is visible in the middle of the picture, in the axes of the camera. If nothing is visible
+/// there, returns a point as far away as the middle of the scene.
 fn target(scene: &Scene, view: &View) -> Vec3 {
     let (camera, film) = (view.camera(), view.film());
     let pose = camera.pose();
@@ -228,7 +228,7 @@ fn target(scene: &Scene, view: &View) -> Vec3 {
     pose.to_local(point - pose.origin)
 }
 
-/// Returns a film with a fraction of the pixels of `film` to each side.
+/// Returns a film whose sides have 1 / [`COARSENESS`] of the pixels of `film`.
 fn coarse(film: &FilmSettings) -> FilmSettings {
     let PixelRect { min, max } = film.crop;
     FilmSettings {

@@ -1,4 +1,4 @@
-//! The thread that renders: requests, a pass of the lane that is behind, requests, …
+//! The thread that renders. In turn, it takes requests and renders a pass of the lane with less rendering time.
 
 use super::InteractiveSettings;
 use super::camera::CameraControl;
@@ -14,7 +14,7 @@ use formats::film::{Subject, TrainingLimits, Watch};
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
-/// The least time between two statuses, however short passes are.
+/// The least time between two statuses, even if passes are shorter.
 const STATUS_GAP: Duration = Duration::from_millis(50);
 /// The time that an idle thread sleeps; requests wake it.
 const NAP: Duration = Duration::from_secs(60);
@@ -26,13 +26,13 @@ pub(super) struct RenderController {
     pub(super) camera: CameraControl,
     /// The requested settings of each lane.
     pub(super) wanted: Vec<Settings>,
-    /// The lanes that render; none where they could not begin.
+    /// The lanes that render; empty if they could not begin.
     pub(super) slots: Vec<RenderSlot>,
     generation: u32,
     pub(super) state: State,
     pub(super) message: Option<String>,
     pub(super) saved: Saved,
-    /// True where lanes have to begin anew.
+    /// True if lanes have to begin anew.
     pub(super) is_stale: bool,
     published: Instant,
 }
@@ -56,13 +56,13 @@ impl RenderController {
         }
     }
 
-    /// Renders until a request closes it. Returns the names of the saved files.
+    /// Renders until a request ends the thread. Returns the names of the saved files.
     pub(super) fn run(mut self) -> Vec<String> {
         while self.step().is_continue() {}
         self.saved.into_names()
     }
 
-    /// Takes the requests, and renders a pass or rests.
+    /// Takes all requests, then renders a pass or rests.
     fn step(&mut self) -> ControlFlow<()> {
         self.queue.interrupts().clear();
         while let Some(request) = self.queue.take() {
@@ -102,7 +102,7 @@ impl RenderController {
         ControlFlow::Continue(())
     }
 
-    /// Waits for a request, or for the camera to stand still.
+    /// Waits for a request, or until the camera is still.
     fn rest(&mut self) -> ControlFlow<()> {
         if self.state == State::Rendering {
             self.state = State::Done;
@@ -121,7 +121,7 @@ impl RenderController {
         }
     }
 
-    /// Returns the number of the slot that rendered for the least time, of those that are not complete.
+    /// Returns the index of the incomplete slot with the least rendering time. None: all are complete.
     fn slot_behind(&self) -> Option<usize> {
         if self.state != State::Rendering {
             return None;
@@ -262,7 +262,7 @@ impl RenderController {
     }
 }
 
-/// Returns the layers with those that queries about pixels need.
+/// Returns `layers` with the layers that queries about pixels need.
 fn with_inspected(layers: &Layers) -> Layers {
     let aovs = [layers.aovs(), &[Aov::Samples, Aov::Variance, Aov::Rays]].concat();
     Layers::new(&aovs, layers.light_groups(), layers.strategy_vertices())

@@ -11,7 +11,7 @@ use bidir::settings::Request;
 use formats::film::{Developed, metadata};
 
 impl RenderController {
-    /// Executes a command; the status gets the reason of a refusal.
+    /// Executes a command. If it is refused, the status gets the reason.
     pub(super) fn execute(&mut self, command: Command) {
         match self.apply(command) {
             Ok(message) => self.message = message,
@@ -68,7 +68,7 @@ impl RenderController {
         Ok(())
     }
 
-    /// Refuses commands that have no meaning after the end.
+    /// Refuses commands that have no meaning after the render has ended.
     fn check_runs(&self) -> Result<(), String> {
         match self.state {
             State::Rendering | State::Paused => Ok(()),
@@ -78,7 +78,7 @@ impl RenderController {
         }
     }
 
-    /// Begins stale lanes anew: they would render, whatever the state was before.
+    /// Begins stale lanes anew, so that they can render.
     fn catch_up(&mut self) {
         if self.is_stale {
             self.begin();
@@ -159,13 +159,13 @@ impl RenderController {
         Ok(message)
     }
 
-    /// Returns the settings of a lane.
+    /// Returns the requested settings of a lane.
     fn wanted(&self, lane: LaneId) -> Result<&Settings, String> {
         let wanted = self.wanted.get(lane.index());
         wanted.ok_or_else(|| "there is no second lane: `split` makes one".to_owned())
     }
 
-    /// Returns `settings` with another method; roulette is the one that suits it, where none was asked for.
+    /// Returns `settings` with another method. Russian roulette is the requested one, or else the method's default.
     fn method(
         &self,
         settings: &Settings,

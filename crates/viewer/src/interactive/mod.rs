@@ -1,9 +1,9 @@
-//! A render that clients command: one thread renders one lane, or two side by side in equal time, pass
-//! by pass, and executes commands between passes. A command that makes a lane begin anew gives the
-//! running pass up at once.
+//! A render that clients command. One thread renders one lane, or two side by side in equal time, pass
+//! by pass, and executes commands between passes. A command that makes a lane begin anew interrupts the
+//! running pass at once.
 //!
-//! A lane has the picture that `bidir render` makes with the same settings, bit for bit: seeds are
-//! kept, and neither frames nor queries have influence.
+//! The picture of a lane equals the one that `bidir render` makes with the same settings, bit for bit:
+//! seeds are kept, and neither frames nor queries change the samples.
 
 mod camera;
 mod controller;
@@ -20,7 +20,7 @@ use formats::film::Subject;
 use std::path::PathBuf;
 use std::thread::JoinHandle;
 
-/// The first settings of a lane, and those that stay as they are.
+/// The first settings of a lane, and the settings that no command changes.
 #[derive(Debug)]
 pub struct InteractiveSettings {
     /// The scene, with its own view.
@@ -45,9 +45,9 @@ pub struct InteractiveRender {
 }
 
 impl InteractiveRender {
-    /// Begins to render, as the requests of `queue` ask.
+    /// Begins to render, and follows the requests of `queue`.
     ///
-    /// Errors: no thread can be started.
+    /// Errors: the system cannot start a thread.
     pub fn open(settings: InteractiveSettings, queue: RequestQueue) -> std::io::Result<Self> {
         let client = queue.handle();
         let thread = std::thread::Builder::new()
@@ -56,13 +56,13 @@ impl InteractiveRender {
         Ok(Self { thread, client })
     }
 
-    /// Returns true where the thread has ended by itself, which is a bug.
+    /// Returns true if the thread has ended by itself, which is a bug.
     pub fn is_finished(&self) -> bool {
         self.thread.is_finished()
     }
 
-    /// Gives the running pass up, and ends. Returns the names of the saved files; None: the thread
-    /// failed.
+    /// Interrupts the running pass, and ends the thread. Returns the names of the saved files. None: the
+    /// thread failed.
     pub fn close(self) -> Option<Vec<String>> {
         self.client.close();
         self.thread.join().ok()

@@ -1,4 +1,4 @@
-//! Images that clients have written: into one folder, and never over what others wrote.
+//! Saves images for clients, only into one folder, and never over files that others wrote.
 
 use std::collections::BTreeSet;
 use std::fs::{self, OpenOptions};
@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 /// The longest name. Unit: bytes.
 const LONGEST: usize = 200;
 
-/// A folder with the names of what was written into it.
+/// A folder, and the names of the files that were saved in it.
 #[derive(Debug)]
 pub(super) struct Saved {
     folder: PathBuf,
@@ -26,9 +26,9 @@ impl Saved {
         self.names.into_iter().collect()
     }
 
-    /// Has `write` write the file of this name.
+    /// Calls `write` to write the file of this name.
     ///
-    /// Errors: the name is none for an image in this folder, is taken, or cannot be written to.
+    /// Errors: the name is not valid for an image in this folder, another file has it, or the file cannot be written.
     pub(super) fn save(
         &mut self,
         name: &str,
@@ -51,7 +51,7 @@ impl Saved {
     }
 }
 
-/// Refuses names that lead elsewhere, hide a file, or end otherwise.
+/// Refuses names that contain a folder, begin with a dot, or do not end in `.exr`.
 fn check_name(name: &str) -> Result<(), String> {
     let is_plain = |c: char| c.is_alphanumeric() || matches!(c, ' ' | '.' | '-' | '_' | '+');
     let is_name = name.len() <= LONGEST && name.chars().all(is_plain) && !name.starts_with('.');
@@ -68,7 +68,7 @@ fn check_name(name: &str) -> Result<(), String> {
     ))
 }
 
-/// Makes an empty file where there is none.
+/// Creates an empty file. Errors: the file exists.
 fn reserve(path: &Path, name: &str) -> Result<(), String> {
     let made = OpenOptions::new().write(true).create_new(true).open(path);
     made.map(|_| ()).map_err(|error| match error.kind() {

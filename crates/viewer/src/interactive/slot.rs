@@ -18,8 +18,8 @@ pub(super) struct RenderSlot {
 }
 
 impl RenderSlot {
-    /// Renders the next pass unless a command ends it, and shares a frame where it is due. Returns its time; None: it
-    /// was given up.
+    /// Renders the next pass, and shares a frame if one is due. Returns the time of the pass. None: a command
+    /// interrupted it.
     pub(super) fn step(
         &mut self,
         interrupts: &Interrupts,
@@ -69,9 +69,9 @@ impl RenderSlot {
     }
 }
 
-/// Returns the settings of a preview, which needs no training: no camera would stand still for as long as
-/// `auto` tries estimators. Bidirectional path tracing samples all light paths of the others.
-/// `roulette` is the requested one.
+/// Returns the settings of a preview, without training: `auto` would try estimators for longer than a camera
+/// stands still. Bidirectional path tracing replaces estimators that need training, as it samples all of
+/// their paths. `roulette` is the requested Russian roulette.
 pub(super) fn without_training(
     wanted: &Settings,
     roulette: Option<Choice<PathRoulette>>,

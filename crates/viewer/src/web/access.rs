@@ -1,9 +1,9 @@
-//! Access of clients: pages of this server alone, and on other machines those that have the token.
+//! Access control: only pages of this server have access, and clients on other machines need the token.
 //!
-//! A page of another site could send requests here from a browser on this machine. It cannot read
-//! answers, but WebSockets know no such rule, and a name that is made to point here (DNS rebinding)
-//! evades it. So where the server is on the loopback the `Host` has to be its own, and an `Origin`
-//! has to be that of the `Host`.
+//! A page of another site could send requests to this server from a browser on this machine. Browsers
+//! keep it from reading the answers, but not those of WebSockets, nor after DNS rebinding, which makes
+//! the name of the site point to this machine. So if the server is on the loopback, the `Host` of a
+//! request has to be the server's own, and an `Origin` has to match the `Host`.
 
 use super::error::Refusal;
 use axum::http::{HeaderMap, StatusCode, Uri, header};
@@ -12,19 +12,19 @@ use std::io;
 use std::net::SocketAddr;
 use subtle::ConstantTimeEq;
 
-/// Bytes of a token.
+/// Size of a token. Unit: bytes.
 const TOKEN: usize = 16;
 
-/// The credentials of requests.
+/// The credentials that requests need.
 #[derive(Debug)]
 pub(super) struct Access {
     address: SocketAddr,
-    /// None: the server is on the loopback.
+    /// The token. None: the server is on the loopback.
     token: Option<String>,
 }
 
 impl Access {
-    /// That of a server on `address`.
+    /// Returns the access to a server on `address`.
     ///
     /// Errors: the system has no random numbers.
     pub(super) fn new(address: SocketAddr) -> io::Result<Self> {
@@ -33,7 +33,7 @@ impl Access {
         Ok(Self { address, token })
     }
 
-    /// Returns the address that a user opens. An address that stands for all of this machine is named as the loopback.
+    /// Returns the URL that a user opens. It has the loopback instead of an unspecified address, such as 0.0.0.0.
     pub(super) fn url(&self) -> String {
         let mut address = self.address;
         if address.ip().is_unspecified() {
@@ -48,7 +48,7 @@ impl Access {
         }
     }
 
-    /// Refuses requests of others.
+    /// Refuses requests without access.
     pub(super) fn check(&self, uri: &Uri, headers: &HeaderMap) -> Result<(), Refusal> {
         let host = text(headers, header::HOST).unwrap_or_default();
         if self.token.is_none() && !self.is_own(host) {
@@ -90,7 +90,7 @@ impl Access {
     }
 }
 
-/// Returns a header that is plain text. None: it is not there, or something else.
+/// Returns the value of a header. None: it is missing or not plain text.
 fn text(headers: &HeaderMap, name: header::HeaderName) -> Option<&str> {
     headers.get(name)?.to_str().ok()
 }

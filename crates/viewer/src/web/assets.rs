@@ -1,4 +1,4 @@
-//! The page and what belongs to it, as it was when the program was built. It shares modules with the
+//! The page with its style and scripts, embedded when the program is built. It shares modules with the
 //! report of an experiment.
 
 use super::error::Refusal;
@@ -11,17 +11,17 @@ use rust_embed::{Embed, EmbeddedFile};
 #[folder = "page"]
 struct Page;
 
-/// Returns true for what is embedded beside the page.
+/// Returns true for the path of an embedded style or script.
 pub(super) fn is_asset(path: &str) -> bool {
     path.starts_with("/assets/")
 }
 
-/// The page.
+/// Answers with the page.
 pub(super) async fn index() -> Result<Response, Refusal> {
     answer("index.html")
 }
 
-/// The style and scripts of the page.
+/// Answers with the style or a script of the page.
 pub(super) async fn asset(Path(name): Path<String>) -> Result<Response, Refusal> {
     answer(&name)
 }
@@ -36,7 +36,7 @@ fn answer(name: &str) -> Result<Response, Refusal> {
     Ok((kind, data).into_response())
 }
 
-/// Returns the type of a file by its name's end.
+/// Returns the media type of a file by the ending of its name.
 fn content_type(name: &str) -> &'static str {
     match name.rsplit_once('.').map(|(_, end)| end) {
         Some("html") => "text/html; charset=utf-8",

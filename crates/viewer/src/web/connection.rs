@@ -1,7 +1,7 @@
-//! Connections: a limit of their number, and of the time that one may be idle.
+//! Connections, with limits of their number and of the time that one may be idle.
 //!
-//! The limit is shared by all clients, which suits the few windows of one person. On an open network a
-//! proxy has to see to it that everybody gets a share.
+//! All clients share the limit, which suffices for the few windows of one person. On an open network, a
+//! proxy has to distribute connections among clients.
 
 use axum::serve::Listener;
 use std::future::Future;
@@ -16,12 +16,12 @@ use tokio::net::{TcpListener, TcpStream};
 use tokio::sync::{OwnedSemaphorePermit, Semaphore};
 use tokio::time::{Instant, Sleep, sleep};
 
-/// Connections at once. Others wait until one of them ends.
+/// Maximum number of connections at once. Further ones wait until one of them ends.
 const CONNECTIONS: usize = 128;
-/// The time that a peer may neither send nor take anything. Longer than the renderer needs for an answer.
+/// The time after which an idle connection ends: longer than the renderer needs for an answer.
 const PATIENCE: Duration = Duration::from_secs(90);
 
-/// A listener that accepts no more connections than it has places.
+/// A listener that accepts a limited number of connections at once.
 pub(super) struct Limited {
     listener: TcpListener,
     places: Arc<Semaphore>,
@@ -54,13 +54,13 @@ impl Listener for Limited {
     }
 }
 
-/// A connection that fails when nothing has gone either way for a while.
+/// A connection that fails if it is idle for too long.
 pub(super) struct Connection {
     stream: TcpStream,
     patience: Duration,
-    /// When the patience ends.
+    /// The end of the time that the connection may be idle.
     end: Pin<Box<Sleep>>,
-    /// It is free again when the stream is gone, which may be long after an upgrade.
+    /// The permit, which is returned when the stream is dropped: possibly long after an upgrade.
     _place: Option<OwnedSemaphorePermit>,
 }
 
@@ -74,7 +74,7 @@ impl Connection {
         }
     }
 
-    /// Does a part of a transfer. It fails when the patience has ended.
+    /// Polls a transfer. Errors: the connection was idle for too long.
     fn transfer<T>(
         &mut self,
         context: &mut Context<'_>,
@@ -119,7 +119,7 @@ impl AsyncWrite for Connection {
         })
     }
 
-    /// Without it each image would be copied once more.
+    /// Returns true if the stream writes vectored; else each image would be copied once more.
     fn is_write_vectored(&self) -> bool {
         true
     }

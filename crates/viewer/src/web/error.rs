@@ -1,4 +1,4 @@
-//! Why a request is not answered, as JSON.
+//! The reason why a request is refused, as JSON.
 
 use axum::http::{StatusCode, header};
 use axum::response::{IntoResponse, Response};
@@ -17,17 +17,17 @@ impl Refusal {
         Self { status, message }
     }
 
-    /// Makes the answer to a wrong query.
+    /// Returns the answer to a wrong query.
     pub(super) fn query(message: impl Into<String>) -> Self {
         Self::new(StatusCode::BAD_REQUEST, message)
     }
 
-    /// Makes the answer to a query for something that is not there now, but may be later.
+    /// Returns the answer to a query for something that is not available now, but may be later.
     pub(super) fn now(message: impl Into<String>) -> Self {
         Self::new(StatusCode::CONFLICT, message)
     }
 
-    /// Makes the answer where the server has a bug.
+    /// Returns the answer if the server has a bug.
     pub(super) fn bug(message: impl Into<String>) -> Self {
         Self::new(StatusCode::INTERNAL_SERVER_ERROR, message)
     }

@@ -1,4 +1,4 @@
-//! Pictures as files: what the film shows, and what its strategies do.
+//! Image files: the picture of the film, and images of strategies.
 
 use super::Site;
 use super::error::Refusal;
@@ -18,10 +18,10 @@ use std::fmt::Display;
 use std::sync::Arc;
 use tokio::task::spawn_blocking;
 
-/// The most that a tile is made brighter or darker. Unit: stops.
+/// Maximum change of a tile's exposure, up or down. Unit: stops.
 const MOST_STOPS: f32 = 40.0;
 
-/// The picture of the film, as `bidir render` writes PNG.
+/// Answers with the picture of the film, as PNG like that of `bidir render`.
 pub(super) async fn png(
     State(site): State<Arc<Site>>,
     Asked(OfLane { lane }): Asked<OfLane>,
@@ -34,7 +34,7 @@ pub(super) async fn png(
     .await
 }
 
-/// The same as `bidir render` writes EXR, with layers and attributes.
+/// Answers with the picture of the film, as EXR like that of `bidir render`, with layers and attributes.
 pub(super) async fn exr(
     State(site): State<Arc<Site>>,
     Asked(OfLane { lane }): Asked<OfLane>,
@@ -71,7 +71,7 @@ pub(super) async fn exr(
     Ok(response)
 }
 
-/// Returns a name for a file of the scene `name`, of letters that mean nothing anywhere.
+/// Returns a file name for the scene `name`, without characters that are special in a file system or header.
 fn file_name(name: &str) -> String {
     let stem = name.rsplit_once('.').map_or(name, |(stem, _)| stem);
     let is_plain = |c: char| c.is_ascii_alphanumeric() || matches!(c, '-' | '_');
@@ -80,7 +80,7 @@ fn file_name(name: &str) -> String {
         .collect()
 }
 
-/// Which image of a strategy.
+/// The query for an image of a strategy.
 #[derive(Clone, Copy, Debug, Deserialize)]
 pub(super) struct OfStrategies {
     #[serde(default)]
@@ -109,7 +109,7 @@ impl From<KindName> for Kind {
     }
 }
 
-/// The image of a strategy, as large as the film.
+/// Answers with the image of a strategy, in the size of the film.
 pub(super) async fn strategies(
     State(site): State<Arc<Site>>,
     Asked(asked): Asked<OfStrategies>,
@@ -134,7 +134,7 @@ pub(super) async fn strategies(
     encode("image/png", encode_pixels).await
 }
 
-/// Returns a picture, so many stops brighter.
+/// Encodes a picture as PNG, `stops` stops brighter.
 fn encode_pixels(mut pixels: Pixels, stops: f32) -> formats::Result<Vec<u8>> {
     let factor = libm::exp2f(stops);
     for channel in pixels.data.as_flattened_mut() {
@@ -143,7 +143,7 @@ fn encode_pixels(mut pixels: Pixels, stops: f32) -> formats::Result<Vec<u8>> {
     encode_png(pixels.size.map(|side| side as u32), &pixels.data)
 }
 
-/// An answer of this type that takes a while to make, in another thread.
+/// Answers with bytes of the media type `kind`. Calls `encode` in another thread, as it takes long.
 async fn encode(
     kind: &'static str,
     encode: impl FnOnce() -> formats::Result<Vec<u8>> + Send + 'static,

@@ -18,11 +18,11 @@ use std::time::Duration;
 use tokio::sync::oneshot;
 use tokio::time::timeout;
 
-/// The time that the renderer has for an answer, which it gives between passes.
+/// The time limit for an answer of the renderer, which answers between passes.
 const PASS_TIME: Duration = Duration::from_secs(60);
 
 impl Site {
-    /// The answer of `query` about a lane between two passes.
+    /// Returns the answer of `query` about a lane between two passes.
     pub(super) async fn query<T: Send + 'static>(
         &self,
         lane: LaneId,
@@ -47,7 +47,7 @@ impl Site {
         answer.ok_or_else(|| Refusal::now("there is no such lane now"))
     }
 
-    /// The newest frame of a lane.
+    /// Returns the newest frame of a lane.
     pub(super) async fn frame(&self, lane: LaneId) -> Result<Arc<SentFrame>, Refusal> {
         let state = self.client.state();
         let status = state.status();
@@ -84,16 +84,17 @@ struct PixelReport {
     x: u32,
     y: u32,
     mean: [f32; 3],
-    /// That of the mean; after one pass it is not known, and zero.
+    /// The standard error of the mean; 0 after one pass, when it is not known.
     standard_error: [f32; 3],
     samples: u64,
-    /// Of all samples, with those of the light subpaths that go with them.
+    /// The rays of all samples of the pixel, including those of their light subpaths. None: the film does not keep
+    /// them.
     rays: Option<f32>,
     passes: u64,
     generation: u32,
 }
 
-/// A pixel of the newest frame; where that is small, the one that shows the place.
+/// Answers with the report of a pixel. A smaller frame, as of a preview, has one pixel for several of the film.
 pub(super) async fn pixel(
     State(site): State<Arc<Site>>,
     Asked(OfPixel { lane, x, y }): Asked<OfPixel>,
@@ -128,7 +129,7 @@ pub(super) async fn pixel(
     json(&report.ok_or_else(|| not_rendered(x, y))?)
 }
 
-/// A sample, and the render of its lane that it is of.
+/// The report of a sample, with the lane and the generation of its render.
 #[derive(Debug, Serialize)]
 struct SampleOfLane {
     generation: u32,
@@ -136,7 +137,7 @@ struct SampleOfLane {
     report: SampleReport,
 }
 
-/// The report of a sample, as `bidir render --replay --json` prints it.
+/// Answers with the report of a sample, as `bidir render --replay --json` prints it.
 pub(super) async fn sample(
     State(site): State<Arc<Site>>,
     Asked(OfSample { lane, x, y, pass }): Asked<OfSample>,
@@ -171,7 +172,7 @@ struct StrategiesReport {
     passes: u64,
     vertices: usize,
     tiles: Vec<TileReport>,
-    /// The mean luminance of longer paths.
+    /// The mean luminance that paths without images of strategies add.
     longer_mean: f64,
 }
 
@@ -183,10 +184,10 @@ struct TileReport {
     name: String,
     /// The mean luminance of the weighted image.
     mean: f64,
-    /// Shadow rays.
+    /// Traced shadow rays.
     traced: u64,
     blocked_share: Option<f64>,
-    /// The variance of the contribution of a pass to the mean pixel.
+    /// The variance of a pixel of the weighted image in one pass, averaged over pixels. None: it is not known.
     variance: Option<f64>,
 }
 
@@ -208,7 +209,7 @@ pub(super) async fn strategies(
     json(&report.await??)
 }
 
-/// Refuses queries about strategies where no images of them are kept.
+/// Refuses queries about strategies if the film keeps no images of them.
 pub(super) fn check_strategies(session: &Session<'_>) -> Result<(), Refusal> {
     if session.film().layers().strategy_vertices() > 0 {
         return Ok(());

@@ -1,4 +1,4 @@
-//! The WebSocket: the newest status and frames to a client, as fast as it takes them, and its
+//! The WebSocket: sends a client the newest status and frames, as fast as it takes them, and receives its
 //! commands.
 
 use super::Site;
@@ -17,24 +17,24 @@ use std::time::Duration;
 use tokio::sync::{OwnedSemaphorePermit, Semaphore, watch};
 use tokio::time::{Instant, MissedTickBehavior, interval, sleep, sleep_until, timeout};
 
-/// Clients at once.
+/// Maximum number of clients at once.
 const CLIENTS: usize = 64;
-/// The largest message of a client. Unit: bytes.
+/// Maximum size of a client's message. Unit: bytes.
 const LARGEST_MESSAGE: usize = 4 << 10;
-/// The largest message that is read; after a larger one the connection may end before the reason arrives.
-/// Unit: bytes.
+/// Maximum size of a message that is read. After a larger one, the connection may end before the client
+/// gets the reason. Unit: bytes.
 const MOST_READ: usize = 64 << 10;
-/// The time that a client has to close a conversation that was ended.
+/// The time limit for a client to close a connection that the server ended.
 const FAREWELL: Duration = Duration::from_secs(2);
-/// The status is sent no more often.
+/// The least time between two statuses.
 const STATUS_GAP: Duration = Duration::from_millis(250);
-/// A client is asked now and then whether it is there.
+/// The time between two pings of a client.
 const PING_GAP: Duration = Duration::from_secs(20);
-/// The number of attempts to hand a command to a busy renderer, and the time between them.
+/// Maximum number of attempts to pass a command to a busy renderer.
 const TRIES: usize = 500;
 const TRY_GAP: Duration = Duration::from_millis(20);
 
-/// The places of clients.
+/// The permits of clients, [`CLIENTS`] in all.
 pub(super) struct Clients(Arc<Semaphore>);
 
 impl Default for Clients {
@@ -43,7 +43,7 @@ impl Default for Clients {
     }
 }
 
-/// Begins a conversation.
+/// Begins the connection of a client.
 pub(super) async fn live(
     State(site): State<Arc<Site>>,
     upgrade: Result<WebSocketUpgrade, WebSocketUpgradeRejection>,
@@ -72,11 +72,11 @@ struct Client {
     _place: OwnedSemaphorePermit,
 }
 
-/// Why a conversation ends.
+/// The reason why a connection ends.
 enum End {
-    /// The client ended it, or cannot be reached.
+    /// The client ended the connection, or cannot be reached.
     Gone,
-    /// The server does, for this reason.
+    /// The server ends the connection, for this reason.
     Refused(CloseFrame),
 }
 
@@ -111,7 +111,7 @@ impl Client {
         }
     }
 
-    /// Sends statuses and frames, and passes commands on, to the end.
+    /// Sends statuses and frames, and passes commands to the renderer, until the connection ends.
     async fn exchange(&mut self) -> Result<(), End> {
         let mut status_due = Instant::now();
         let mut ping = interval(PING_GAP);
@@ -154,7 +154,7 @@ impl Client {
         }
     }
 
-    /// Hands a command to the renderer. While that is too busy, the client is not listened to.
+    /// Passes a command to the renderer. While the renderer is too busy, no further message of the client is read.
     async fn pass_on(&mut self, command: Option<Command>) -> Result<(), End> {
         let Some(command) = command else {
             return Ok(());
@@ -182,7 +182,7 @@ async fn changed_after(
     status.changed().await
 }
 
-/// Returns the command in a message. None: it has none, as the answer to a ping.
+/// Returns the command in a message. None: the message has none, such as the answer to a ping.
 fn heard(message: Option<Result<Message, axum::Error>>) -> Result<Option<Command>, End> {
     match message {
         None | Some(Ok(Message::Close(_))) => Err(End::Gone),
@@ -204,7 +204,7 @@ fn command(text: &str) -> Result<Command, End> {
     })
 }
 
-/// Returns the reason for a client whose message cannot be read.
+/// Returns the end of a connection whose message cannot be read.
 fn broken(error: axum::Error) -> End {
     use tungstenite::Error;
     match error.into_inner().downcast_ref::<Error>() {
@@ -229,7 +229,7 @@ fn close(code: u16, reason: &str) -> End {
     End::Refused(CloseFrame { code, reason })
 }
 
-/// Ends a connection whose renderer is gone.
+/// Returns the end of a connection whose renderer is gone.
 fn gone(_: watch::error::RecvError) -> End {
     close(close_code::AWAY, "the render has ended")
 }

@@ -1,8 +1,8 @@
-//! The server: a page, the state of the render, its picture and what is in it, over HTTP and a
-//! WebSocket. It serves what is embedded or rendered, and reads no file.
+//! The server: a page, the status of the render, its picture, and reports about pixels, over HTTP and a
+//! WebSocket. It serves embedded and rendered data, and reads no file.
 //!
-//! On an address that other machines can reach, clients need a random token. A client that does not
-//! read is disconnected after a while: it costs one encoded frame until then, and nobody waits for it.
+//! On an address that other machines can reach, clients need a random token. A client that does not read
+//! is disconnected after a while. Until then it costs one encoded frame, and the renderer does not wait for it.
 
 mod access;
 mod assets;
@@ -25,7 +25,7 @@ use std::thread::JoinHandle;
 use tokio::runtime::Builder;
 use tokio::sync::{Semaphore, watch};
 
-/// Threads that encode images.
+/// Number of threads that encode images.
 const ENCODERS: usize = 2;
 
 /// The state that the answers to all clients share.
@@ -33,11 +33,11 @@ pub(crate) struct Site {
     client: ClientHandle,
     access: Access,
     live: live::Clients,
-    /// Answers at once that take the memory of a film.
+    /// The permits for simultaneous answers that need the memory of a film.
     large: Semaphore,
 }
 
-/// A server that runs.
+/// A running server.
 #[derive(Debug)]
 pub struct Server {
     thread: Option<JoinHandle<()>>,
@@ -46,9 +46,9 @@ pub struct Server {
 }
 
 impl Server {
-    /// Serves the renderer behind `client` on `listener`, in a thread of its own.
+    /// Serves the renderer behind `client` on `listener`, in a separate thread.
     ///
-    /// Errors: the system gives no thread, no random numbers, or not the listener's address.
+    /// Errors: the system gives no thread, no random numbers, or no address of the listener.
     pub fn start(listener: TcpListener, client: ClientHandle) -> io::Result<Self> {
         listener.set_nonblocking(true)?;
         let access = Access::new(listener.local_addr()?)?;
@@ -89,7 +89,7 @@ impl Server {
         })
     }
 
-    /// Returns the address, with the token where there is one.
+    /// Returns the URL, with the token if there is one.
     pub fn url(&self) -> &str {
         &self.url
     }
@@ -106,9 +106,9 @@ impl Drop for Server {
     }
 }
 
-/// Returns a listener on `address`; where its port is taken, on one of the next `more`.
+/// Returns a listener on `address`, or if its port is taken, on one of the next `more` ports.
 ///
-/// Errors: all of them are taken, or the address is not this machine's.
+/// Errors: all of these ports are taken, or the address is not this machine's.
 pub fn listen(address: SocketAddr, more: u16) -> io::Result<TcpListener> {
     let mut ports = address.port()..=address.port().saturating_add(more);
     loop {

@@ -1,4 +1,4 @@
-//! The query of a request, behind its question mark.
+//! The query of a request: the part of its URL after the question mark.
 
 use super::error::Refusal;
 use crate::status::LaneId;
@@ -7,7 +7,7 @@ use axum::http::request::Parts;
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
 
-/// A query; one that is wrong is refused as JSON.
+/// A query. If it is wrong, the answer is a refusal as JSON.
 pub(super) struct Asked<T>(pub(super) T);
 
 impl<S: Sync, T: DeserializeOwned> FromRequestParts<S> for Asked<T> {
@@ -21,14 +21,14 @@ impl<S: Sync, T: DeserializeOwned> FromRequestParts<S> for Asked<T> {
     }
 }
 
-/// Which lane.
+/// The query for a lane.
 #[derive(Clone, Copy, Debug, Deserialize)]
 pub(super) struct OfLane {
     #[serde(default)]
     pub(super) lane: LaneId,
 }
 
-/// Which pixel of the whole film.
+/// The query for a pixel of the whole film.
 #[derive(Clone, Copy, Debug, Deserialize)]
 pub(super) struct OfPixel {
     #[serde(default)]
@@ -37,7 +37,7 @@ pub(super) struct OfPixel {
     pub(super) y: u32,
 }
 
-/// Which sample of a pixel.
+/// The query for a sample of a pixel.
 #[derive(Clone, Copy, Debug, Deserialize)]
 pub(super) struct OfSample {
     #[serde(default)]

@@ -1,4 +1,4 @@
-//! Which request is answered by what, and what all answers have in common.
+//! The routes of requests, and the checks and headers that all answers share.
 
 use super::error::Refusal;
 use super::{Site, assets, images, inspect, live};
@@ -10,11 +10,11 @@ use axum::response::{IntoResponse, Response};
 use axum::routing::get;
 use std::sync::Arc;
 
-/// The page is of modules and styles of this server, and of nothing else.
+/// The content security policy: the page loads only scripts and styles of this server.
 const POLICY: &str = "default-src 'self'; base-uri 'none'; form-action 'none'; \
                       frame-ancestors 'none'; object-src 'none'";
 
-/// Returns all answers.
+/// Returns the router of all pages and data that the viewer serves.
 pub(super) fn router(site: &Arc<Site>) -> Router {
     Router::new()
         .route("/", get(assets::index))
@@ -37,7 +37,7 @@ pub(super) fn router(site: &Arc<Site>) -> Router {
         .with_state(Arc::clone(site))
 }
 
-/// Refuses what comes from others.
+/// Refuses requests without access.
 async fn guard(State(site): State<Arc<Site>>, request: Request, next: Next) -> Response {
     match site.access.check(request.uri(), request.headers()) {
         Ok(()) => next.run(request).await,
@@ -45,7 +45,7 @@ async fn guard(State(site): State<Arc<Site>>, request: Request, next: Next) -> R
     }
 }
 
-/// Gives an answer the headers of all.
+/// Adds the headers that all answers share.
 async fn dress(request: Request, next: Next) -> Response {
     let mut response = next.run(request).await;
     let headers = [

@@ -14,7 +14,7 @@ use glam::DVec3;
 
 /// A camera without the film's size.
 pub(super) struct CameraSettings {
-    /// Seconds between opening and closing of the shutter.
+    /// Time between opening and closing of the shutter. Unit: seconds.
     pub(super) exposure_time: f32,
     /// The position. Space: world.
     pub(super) eye: DVec3,
@@ -157,7 +157,7 @@ impl CameraSettings {
         matches!(self.view, View::Spherical(_))
     }
 
-    /// Returns the camera for a film of `resolution`, with the view of one of `own_resolution`.
+    /// Returns the camera for a film of `resolution`, with the view that a film of `own_resolution` has.
     pub(super) fn camera(
         &self,
         resolution: [u32; 2],

@@ -46,7 +46,7 @@ pub(super) fn read(
     of_spectrum(&spectrum, parameter, purpose).map(Some)
 }
 
-/// Returns the colour of a spectrum. That of a light has luminance 1, as the format demands.
+/// Returns the colour of a spectrum. The colour of a light has luminance 1, as the format demands.
 fn of_spectrum(spectrum: &Spectrum, parameter: &Parameter, purpose: Purpose) -> Result<Rgb, Fault> {
     if !spectrum.is_positive() {
         let message = format!("the spectrum `{}` has negative values", parameter.name);
@@ -68,7 +68,7 @@ fn above_one(parameter: &Parameter) -> Fault {
     Fault::scene(parameter.value_span, message)
 }
 
-/// Maximum emission, below which products with areas and distances stay finite.
+/// Maximum emission. Up to it, products with areas and distances stay finite.
 const BRIGHTEST: f32 = 1e12;
 
 /// Refuses emission that is NaN or too large to compute with.

@@ -39,7 +39,7 @@ impl Document for SceneDescription {
     }
 }
 
-/// The log that begins with the texts of `description`.
+/// Returns the log that begins with the texts of `description`.
 pub(super) fn log(description: &SceneDescription, options: &import::LoadOptions) -> Log {
     let mut log = Log::new(options, description.texts.clone(), description.stored);
     log.warnings.clone_from(&description.warnings);
@@ -50,7 +50,7 @@ pub(super) fn log(description: &SceneDescription, options: &import::LoadOptions)
 }
 
 impl Context<'_> {
-    /// The map from the space of something in the world, at the first time, to where it goes.
+    /// Returns the map from a local space to the render space, at the first time.
     pub(super) fn place(&self, world_from_local: &Transforms) -> DAffine3 {
         self.layout.render_from_world() * world_from_local.start
     }

@@ -18,7 +18,7 @@ use bidir::texture::{Beyond, Change, ColorTexture, ImageFilter, ImageMap, Mappin
 use std::ops::Range;
 use std::sync::Arc;
 
-/// The warning for a power that a shape has several times.
+/// The warning for a shape of several faces, each of which has the given power.
 const POWER_OF_EACH: &str = "`power` is that of each face of a mesh, as in pbrt-v4: the mesh has as many times the power as it has \
      faces; divide `power` by their number, or give `L`";
 
@@ -26,12 +26,12 @@ const POWER_OF_EACH: &str = "`power` is that of each face of a mesh, as in pbrt-
 #[derive(Clone)]
 pub(super) struct AreaEmission {
     radiance: [f32; 3],
-    /// A texture over the surface's parameters that scales the radiance, and its mean luminance.
+    /// A texture over the surface's parameters that scales the radiance, and the mean luminance of the texture.
     pattern: Option<(ColorTexture, f32)>,
     sides: EmissionSides,
-    /// The power of each face in the render space, and its place. None: the file gives the radiance.
+    /// The power of each face in the render space, and the place of the parameter. None: the file gives the radiance.
     power: Option<(f32, Span)>,
-    /// The name of its light group.
+    /// The name of the light group.
     pub(super) group: Option<String>,
     span: Span,
 }
@@ -68,7 +68,7 @@ impl AreaEmission {
         })
     }
 
-    /// Returns the emission of a shape. If the file gives power, every face has to be a shape of its own: see
+    /// Returns the emission of a shape. If the file gives power, every face has to be a separate shape: see
     /// [`parts`](Self::parts).
     pub(super) fn of(&self, shape: &Shape) -> Result<Emission, Fault> {
         let factor = match self.power {
@@ -114,7 +114,7 @@ impl AreaEmission {
         }
     }
 
-    /// Returns the parts of a placed shape that are lights of their own.
+    /// Returns the parts of a placed shape that are separate lights.
     pub(super) fn parts(&self, geometry: &Geometry, shape: Shape) -> Vec<Shape> {
         match (self.power, geometry, shape) {
             (Some(_), Geometry::Mesh(faces), Shape::Mesh(mesh)) => {

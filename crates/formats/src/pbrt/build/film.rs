@@ -11,14 +11,14 @@ use crate::pbrt::scene::{ColorSpace, Entity, FilmDescription};
 use crate::source::{Fault, SourceMap, Span};
 use bidir::film::{Aov, FilmSettings};
 
-/// A film with the other properties of its description.
+/// A film, with the properties of its description that are not in [`FilmSettings`].
 pub(super) struct BuiltFilm {
     /// The film.
     pub(super) settings: FilmSettings,
     /// Width and height in the file, which determine the camera's view, so that another size shows the same
     /// picture.
     pub(super) own_resolution: [u32; 2],
-    /// The place of the size. None: the caller's options give it.
+    /// The place in the file that gives the size. None: the caller's options give the size.
     pub(super) place: Option<Span>,
     /// The name of the image.
     pub(super) output: Option<String>,
@@ -88,7 +88,7 @@ fn default_film() -> FilmDescription {
     }
 }
 
-/// The factor of light.
+/// Returns the factor on pixel values: exposure time (s) · ISO / 100. Errors: it is not finite.
 fn exposure(reader: &mut Reader<'_, '_>, camera: &CameraSettings) -> Result<f32, Fault> {
     let iso = reader.float_within("iso", 100.0, [0.0, f32::MAX])?;
     let exposure = camera.exposure_time * iso / 100.0;
@@ -103,7 +103,7 @@ fn exposure(reader: &mut Reader<'_, '_>, camera: &CameraSettings) -> Result<f32,
     Err(Fault::scene(span, message))
 }
 
-/// Says so where another size than the file's has another shape: its pixels are not square.
+/// Warns if `resolution` has another aspect ratio than the file's: pixels are not square.
 fn warn_of_stretching(context: &mut Context<'_>, span: Span, own: [u32; 2], resolution: [u32; 2]) {
     let aspect = |[width, height]: [u32; 2]| f64::from(width) / f64::from(height);
     let stretch = aspect(own) / aspect(resolution);

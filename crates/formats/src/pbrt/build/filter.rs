@@ -20,8 +20,8 @@ const NARROW: f32 = 0.25;
 
 /// Builds the pixel filter, or returns the format's default.
 ///
-/// If `camera` sees all around, it is a box of one pixel, as no filter crosses the edges of the film, which
-/// meet.
+/// If `camera` sees all around, returns a box of one pixel: opposite edges of the film meet, but no filter
+/// crosses them.
 pub(super) fn build(context: &mut Context<'_>, camera: &CameraSettings) -> Result<Filter, Fault> {
     let pixel = Filter::new(FilterKind::Box, Vec2::splat(0.5));
     let Some(entity) = &context.document.filter else {
@@ -76,9 +76,9 @@ fn read_kind(reader: &mut Reader<'_, '_>, entity: &Entity) -> Result<(FilterKind
     })
 }
 
-/// Returns the radius of the box with the same maximum as the filter, along one axis. Splats are scaled by
-/// the filter, but MIS weights ignore it: the variance of the light image grows with the maximum, and no
-/// other strategy compensates.
+/// Returns the radius of the box with the same maximum as the filter, along one axis. The filter scales
+/// splats, but MIS weights ignore it: the variance of the light image grows with the maximum, and no other
+/// strategy compensates.
 fn effective_radius(kind: FilterKind, radius: f32) -> f32 {
     let height = Filter::new(kind, Vec2::splat(radius)).eval(Vec2::ZERO);
     0.5 / height.sqrt()

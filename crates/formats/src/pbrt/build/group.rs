@@ -1,7 +1,7 @@
 //! Light groups: `string lightgroup`, our own parameter of every light.
 //!
 //! With `Attribute "light" "string lightgroup" "lamps"`, the scene stays valid for other programs:
-//! parameters of an attribute that are not used are no error.
+//! unused parameters of an `Attribute` are not an error.
 
 use super::reader::Reader;
 use crate::source::Fault;

@@ -18,7 +18,7 @@ pub(super) type Key = (PathBuf, String);
 /// The parameters of an `imagemap`.
 pub(super) struct ImageSettings {
     path: PathBuf,
-    /// The place of the file's name.
+    /// The place of the image file's name.
     span: Span,
     encoding: Option<Encoding>,
     change: Change,
@@ -71,7 +71,7 @@ impl ImageSettings {
         }
     }
 
-    /// Returns the image of these settings, whose texels `texels` makes.
+    /// Returns the texture of these settings. `texels` converts the image to texels.
     pub(super) fn map<const N: usize>(
         &self,
         context: &mut Context<'_>,

@@ -185,7 +185,7 @@ fn illuminance(image: &Image<3>) -> f32 {
     2.0 * PI * (sum / (width * height) as f64) as f32
 }
 
-/// Returns the rotation or reflection of a map; a uniform scale has no effect on directions.
+/// Returns the rotation or reflection of a map, without its uniform scale, which does not change directions.
 fn rotation(reader: &mut Reader<'_, '_>, matrix: &DMat3) -> Result<Mat3, Fault> {
     let scale = matrix.x_axis.length();
     let scaled = *matrix * (1.0 / scale);

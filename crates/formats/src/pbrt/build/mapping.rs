@@ -24,7 +24,7 @@ fn from_world(context: &mut Context<'_>, texture: &TextureDescription) -> Result
     Err(Fault::scene(span, message))
 }
 
-/// Returns the space of a texture of three dimensions.
+/// Returns the space of a three-dimensional texture.
 pub(super) fn space(
     context: &mut Context<'_>,
     texture: &TextureDescription,
@@ -49,7 +49,7 @@ pub(super) fn direction(
     })
 }
 
-/// Reads the map from points of a surface to those of a texture of two dimensions.
+/// Reads the map from points of a surface to points of a two-dimensional texture.
 pub(super) fn read(
     texture: &TextureDescription,
     reader: &mut Reader<'_, '_>,

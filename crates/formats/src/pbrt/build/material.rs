@@ -24,15 +24,16 @@ use bidir::texture::{ColorTexture, FloatTexture, Mix, Scale};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// A material, the part of the surface that has it, and what it fills.
+/// A material, with its coverage of the surface and the contents of the volume inside.
 pub(super) struct Built {
     pub(super) material: Material,
-    /// None: all. Rays pass through the rest, which is an `interface` of a mixture.
+    /// The part of the surface that has the material. Rays pass through the rest, which is the `interface` of a
+    /// mixture. None: all of the surface.
     pub(super) coverage: Option<FloatTexture>,
     /// The medium within the surface.
     pub(super) content: Option<Recipe>,
-    /// The priority and the index of refraction of what it bounds. None: its index is that of the inside over that of
-    /// the outside, whatever these are.
+    /// The priority and the index of refraction of the volume inside. None: the file gives no priority, and the index
+    /// is the ratio of inside to outside.
     pub(super) filling: Option<(i32, f32)>,
 }
 
@@ -68,10 +69,10 @@ impl<'a> Materials<'a> {
         }
     }
 
-    /// Builds material number `index`; one without an entity is the default material.
+    /// Builds material number `index`. A material without an entity is the default material.
     ///
-    /// None: the surface is not visible, and rays pass through it, shadow rays included. Such a shape does
-    /// not emit, and can be left out as it bounds no medium.
+    /// None: the surface is not visible, and all rays pass through it, also shadow rays. Its shapes do not emit,
+    /// and can be left out if they bound no medium.
     pub(super) fn build(
         &mut self,
         context: &mut Context<'_>,
@@ -206,7 +207,7 @@ impl<'a> Materials<'a> {
 }
 
 impl Built {
-    /// The material on a part of what it covers.
+    /// Returns the material with its coverage times `part`.
     fn covering(self, part: FloatTexture) -> Self {
         let coverage = match self.coverage {
             None => part,
@@ -230,10 +231,10 @@ fn inverted(amount: FloatTexture) -> FloatTexture {
     }))
 }
 
-/// Mixes two materials of which neither is an `interface`, though their parts may be.
+/// Mixes two materials, neither of which is an `interface`, although their parts may be.
 ///
-/// With coverages c₁ and c₂ and an amount a, c = (1 - a) c₁ + a c₂ is covered, the part a c₂ / c of it by the
-/// second.
+/// With coverages c₁ and c₂ and the amount a, the coverage is c = (1 - a) c₁ + a c₂; the second material has the part
+/// a c₂ / c of it.
 fn mixed(
     context: &mut Context<'_>,
     span: Span,
@@ -261,7 +262,7 @@ fn mixed(
     Ok(built.covering(FloatTexture::Constant(covered)))
 }
 
-/// The value of a texture that is the same everywhere, between 0 and 1. None: it is not.
+/// Returns the value of a constant texture, clamped to `[0, 1]`. None: the texture is not constant.
 fn constant(texture: &FloatTexture) -> Option<f32> {
     match texture {
         FloatTexture::Constant(value) => Some(value.clamp(0.0, 1.0)),
@@ -284,7 +285,7 @@ fn grey() -> Material {
     }
 }
 
-/// Converts heights from the world to the unit of a space.
+/// Converts heights from world units to the unit of `space`.
 fn in_space(height: FloatTexture, space: &RenderSpace) -> FloatTexture {
     if *space == RenderSpace::WORLD {
         return height;
@@ -295,20 +296,20 @@ fn in_space(height: FloatTexture, space: &RenderSpace) -> FloatTexture {
     }))
 }
 
-/// The index of refraction where the file has none.
+/// The default index of refraction.
 const GLASS: f32 = 1.5;
-/// The index of refraction of `subsurface` where the file has none.
+/// The default index of refraction of `subsurface`.
 const WATER: f32 = 1.33;
 
-/// The names of a roughness: in both directions, along u, along v.
+/// The names of roughness parameters: for both directions, along u, along v.
 const SURFACE: [&str; 3] = ["roughness", "uroughness", "vroughness"];
-/// The names of the roughness of a layer's interface.
+/// The names of the roughness parameters of a layer's interface.
 const INTERFACE: [&str; 3] = [
     "interface.roughness",
     "interface.uroughness",
     "interface.vroughness",
 ];
-/// The names of the roughness of the metal under a layer.
+/// The names of the roughness parameters of the metal under a layer.
 const METAL: [&str; 3] = [
     "conductor.roughness",
     "conductor.uroughness",
@@ -370,7 +371,7 @@ impl Parameters<'_, '_, '_> {
         })
     }
 
-    /// Reads how many facets scatter light, which pbrt-v4 does not ask.
+    /// Reads whether facets scatter light once or several times, a parameter that pbrt-v4 does not have.
     fn facet_scattering(&mut self) -> Result<FacetScattering, Fault> {
         Ok(if self.reader.bool("multiscatter", false)? {
             FacetScattering::Multiple
@@ -379,7 +380,7 @@ impl Parameters<'_, '_, '_> {
         })
     }
 
-    /// Reads the index of refraction of a metal, whose parts are called `eta` and `k`.
+    /// Reads the complex index of refraction of a metal; `eta` and `k` are the names of its parts.
     fn conductor_index(
         &mut self,
         eta: &'static str,
@@ -418,7 +419,7 @@ impl Parameters<'_, '_, '_> {
         })
     }
 
-    /// Reads the surface of something of this index of refraction.
+    /// Reads the surface of a dielectric with this index of refraction.
     fn dielectric(&mut self, eta: f32) -> Result<Material, Fault> {
         Ok(Material::Dielectric {
             eta,
@@ -442,7 +443,7 @@ impl Parameters<'_, '_, '_> {
         Ok(Material::CoatedConductor(material))
     }
 
-    /// Reads a layer, whose index and roughness have these names.
+    /// Reads a coat; `eta` and `roughness` are the names of its parameters.
     fn coat(
         &mut self,
         eta: &'static str,
@@ -478,7 +479,7 @@ impl Parameters<'_, '_, '_> {
         })
     }
 
-    /// Returns the substitute of a material that is not supported, whose parameters are not checked.
+    /// Returns the substitute of a material that is not supported. Does not check its parameters.
     fn substitute(&mut self, kind: &str) -> Result<Material, Fault> {
         let span = self.reader.span();
         let what = format!("the material `{kind}`");

@@ -31,7 +31,7 @@ fn warn_of_repairs(reader: &mut Reader<'_, '_>, span: Span, mesh: &PlyMesh) {
     }
 }
 
-/// The attributes of vertices; lists are empty, or as long as the positions.
+/// The attributes of vertices. Each list is empty or has one value per position.
 struct Vertices {
     positions: Vec<[f32; 3]>,
     normals: Vec<[f32; 3]>,
@@ -56,7 +56,7 @@ impl Vertices {
     }
 }
 
-/// Empties the values of an attribute of which there is not one per vertex, as pbrt-v4 does.
+/// Drops the values of an attribute unless there is one per vertex, as pbrt-v4 does.
 fn drop_unless_per_vertex<T>(
     reader: &mut Reader<'_, '_>,
     (name, values): (&str, &mut Vec<T>),
@@ -144,7 +144,7 @@ fn triples(values: Option<&[f32]>) -> Vec<[f32; 3]> {
     values.unwrap_or_default().as_chunks::<3>().0.to_vec()
 }
 
-/// Reads faces of `N` corners; without a list, the vertices are one face.
+/// Reads faces of `N` corners. Without a list of indices, the `N` vertices are one face.
 fn faces<const N: usize>(
     reader: &mut Reader<'_, '_>,
     vertices: usize,

@@ -1,7 +1,7 @@
-//! From a [`SceneDescription`] to a scene that can be rendered.
+//! Builds a scene to render from a [`SceneDescription`].
 //!
-//! Colours are linear Rec. 709 throughout: a spectrum becomes one here. Objects are shared by their instances (`object`). Quadrics keep their outside in front under mirroring
-//! transformations, where the reference program contradicts itself.
+//! All colours are linear Rec. 709: spectra are converted here. Instances share their object (`object`). The front of
+//! a quadric is its outside, also under mirroring transformations, where the reference program contradicts itself.
 
 mod camera;
 mod color;
@@ -49,12 +49,12 @@ use texture::Textures;
 
 type Assembly = import::Assembly<Span>;
 
-/// Reads a scene file with all that it refers to; `-` is standard input.
+/// Reads a scene file with all files that it refers to; `-` is standard input.
 pub fn load(path: &Path, options: &LoadOptions) -> Result<Loaded> {
     load_from(path, options, &Files::default())
 }
 
-/// The same as [`load`], with files from where `files` says.
+/// Reads a scene as [`load`] does, from `files`.
 pub fn load_from(path: &Path, options: &LoadOptions, files: &Files) -> Result<Loaded> {
     build(&super::parse_file_from(path, files)?, options)
 }
@@ -65,11 +65,11 @@ pub fn build(description: &SceneDescription, options: &LoadOptions) -> Result<Lo
     import::load(description, options, log, Builder::gather)
 }
 
-/// The warning for a medium within a surface that has one of its own.
+/// The warning for a shape's inside medium that the medium of its material replaces.
 const REPLACED: &str =
     "the medium within the shape has no effect: the material `subsurface` has one of its own";
 
-/// The warning for a volume that is none.
+/// The warning for shapes that do not enclose a volume.
 const ENCLOSES_NOTHING: &str =
     "the shapes of a material with `priority` enclose nothing: it has no effect";
 
@@ -78,7 +78,7 @@ struct Builder<'a> {
     assembly: Assembly,
     textures: Textures<'a>,
     media: Media,
-    /// By index; None where there is no surface.
+    /// The materials by index. None: the surface is not visible.
     materials: Vec<Option<Surface>>,
     /// The emission of the last shape.
     last_emission: Option<(Arc<Entity>, Arc<AreaEmission>)>,
@@ -87,16 +87,16 @@ struct Builder<'a> {
 /// A material in the scene.
 struct Surface {
     id: MaterialId,
-    /// The part of a surface that has it. None: all.
+    /// The part of a surface that has the material. None: all of it.
     coverage: Option<FloatTexture>,
-    /// The medium within.
+    /// The medium inside, of `subsurface`.
     content: Option<MediumId>,
-    /// The priority and the index of refraction of what it bounds. None: it has none.
+    /// The priority and the index of refraction of the volume inside. None: the file gives no priority.
     filling: Option<(i32, f32)>,
 }
 
 impl<'a> Builder<'a> {
-    /// Reads everything and puts it in its place.
+    /// Builds all parts of the description and places them.
     fn gather(context: &mut Context<'a>) -> Gathered<Span> {
         let description = context.document;
         let lens = camera::read(context)?;
@@ -126,7 +126,7 @@ impl<'a> Builder<'a> {
         Ok((builder.assembly, view))
     }
 
-    /// Puts the medium of the camera where it is.
+    /// Sets the medium at the position of the camera.
     fn add_camera_medium(&mut self, context: &mut Context<'_>, eye: DVec3) -> Result<(), Fault> {
         let camera = &context.document.camera;
         let named = camera.as_ref().and_then(|it| it.medium.outside.as_ref());
@@ -169,7 +169,7 @@ impl<'a> Builder<'a> {
         Ok(())
     }
 
-    /// Adds a shape where it goes.
+    /// Adds a shape to its destination.
     fn add_shape(
         &mut self,
         context: &mut Context<'_>,
@@ -245,7 +245,7 @@ impl<'a> Builder<'a> {
         Ok(())
     }
 
-    /// The parts of a shape that emit each for itself, in the group of their light.
+    /// Returns the parts of a shape that are separate lights, each with its emission, and sets their light group.
     fn emitting_parts(
         &mut self,
         geometry: &Geometry,
@@ -267,7 +267,7 @@ impl<'a> Builder<'a> {
             .collect()
     }
 
-    /// Reads the emission of a shape. Shapes that follow an `AreaLightSource` share it, and its image.
+    /// Reads the emission of a shape. The shapes after an `AreaLightSource` share its emission and image.
     fn emission(
         &mut self,
         context: &mut Context<'_>,
@@ -295,7 +295,7 @@ impl<'a> Builder<'a> {
     }
 }
 
-/// Returns what fills the shapes of a material with this priority and index, with this medium.
+/// Returns the contents of volumes with this priority, index of refraction and medium.
 fn content((priority, index): (i32, f32), medium: MediumId) -> VolumeContent {
     VolumeContent {
         volume: Volume {
@@ -308,7 +308,7 @@ fn content((priority, index): (i32, f32), medium: MediumId) -> VolumeContent {
     }
 }
 
-/// The product of two coverages.
+/// Returns the product of two coverages. None: opaque.
 fn all_of(first: Option<FloatTexture>, second: Option<FloatTexture>) -> Option<FloatTexture> {
     match (first, second) {
         (Some(texture), Some(factor)) => {
@@ -318,7 +318,7 @@ fn all_of(first: Option<FloatTexture>, second: Option<FloatTexture>) -> Option<F
     }
 }
 
-/// The materials of shapes, by index.
+/// Returns the indices of the materials that shapes have.
 fn used_materials(description: &SceneDescription) -> BTreeSet<usize> {
     let of_objects = description.objects.iter().flat_map(|object| &object.shapes);
     let shapes = description.shapes.iter().chain(of_objects);

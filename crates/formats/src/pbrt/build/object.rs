@@ -1,8 +1,8 @@
 //! Objects and their instances.
 //!
-//! An object that stands in one place is put there, as if it were no object. One that stands in
-//! several is shared: its shapes are kept once, and rays are taken to its space. Shapes of an object that
-//! emit are lights of the world, one for each place; the format leaves undefined what they do.
+//! The shapes of an object with one instance are added to the world. An object with several instances is
+//! shared: its shapes are kept once, and rays are transformed to its space. Its shapes that emit are copied
+//! to the world for each instance; the format does not define their effect.
 
 use super::Builder;
 use super::context::Context;

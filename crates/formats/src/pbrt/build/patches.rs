@@ -14,9 +14,9 @@ const CELLS: usize = 16;
 /// Patches that share vertices.
 pub(super) struct PatchMesh {
     pub(super) positions: Vec<[f32; 3]>,
-    /// The normals: empty, or as many as positions.
+    /// The normals: none, or one per position.
     pub(super) normals: Vec<[f32; 3]>,
-    /// The texture coordinates: empty, or as many as positions. By default those of each patch.
+    /// The texture coordinates: one per position, or none. Then they are the (u, v) of each patch.
     pub(super) uvs: Vec<[f32; 2]>,
     /// The corners 00, 10, 01 and 11 of each patch.
     pub(super) patches: Vec<[u32; 4]>,
@@ -83,8 +83,8 @@ impl PatchMesh {
         blend(patch.map(|corner| self.uvs[corner as usize]), [u, v])
     }
 
-    /// Returns the corner `[i, j]` of the grid. On an edge, it is computed from the end with the lower index
-    /// to the other, so that both patches get the same point.
+    /// Returns the corner `[i, j]` of the grid. Interpolates an edge from its end with the lower index to the
+    /// other, so that both patches get the same point.
     fn point(&self, patch: &[u32; 4], [i, j]: [usize; 2], cells: usize) -> [f32; 3] {
         let [c00, c10, c01, c11] = *patch;
         let [u, v] = [i, j].map(|i| i as f64 / cells as f64);
@@ -102,8 +102,8 @@ impl PatchMesh {
         point.as_vec3().to_array()
     }
 
-    /// Returns the interpolated normal of the corners, or else that of a curved patch. None: the triangle's
-    /// geometric normal is right.
+    /// Returns the interpolated normal of the corners, or else the geometric normal of a curved patch. None: the
+    /// patch is flat, and the triangle's geometric normal is right.
     fn normal(&self, patch: &[u32; 4], [u, v]: [f64; 2], cells: usize) -> Option<[f32; 3]> {
         if !self.normals.is_empty() {
             return Some(blend(

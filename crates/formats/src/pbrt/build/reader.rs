@@ -1,4 +1,4 @@
-//! Reads an entity's parameters, and refuses those that are not read.
+//! Reads an entity's parameters, and refuses the parameters that nobody read.
 
 use super::context::Context;
 use crate::pbrt::known;
@@ -45,7 +45,7 @@ impl<'a, 'c> Reader<'a, 'c> {
         Some(self.find(kind, name)?.values.floats())
     }
 
-    /// Reads the only value of a parameter. Returns it with its place.
+    /// Reads the only value of a parameter. Returns the value with its place.
     fn one<T>(
         &mut self,
         kind: ParameterType,
@@ -140,7 +140,7 @@ impl<'a, 'c> Reader<'a, 'c> {
         Ok(found.map(|(text, span)| (text.as_str(), span)))
     }
 
-    /// Reads a string that names one of `choices`, by default the first; `what` is their kind.
+    /// Reads a string that names one of `choices`, by default the first; `what` names the kind of choice in the error.
     pub(super) fn choice<T: Copy>(
         &mut self,
         name: &'static str,

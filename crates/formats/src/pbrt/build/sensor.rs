@@ -9,7 +9,7 @@ use bidir::film::Sensor;
 
 /// The range of temperatures of the white balance. Unit: K.
 const WHITES: [f32; 2] = [1000.0, 25000.0];
-/// The temperature below which white is that of a blackbody, and from which it is daylight. Unit: K.
+/// Temperature from which white is daylight; below it, white is a blackbody. Unit: K.
 const COOLEST_DAYLIGHT: f32 = 4000.0;
 
 /// Reads the sensor parameters that all films have. `exposure` is applied after the sensor.

@@ -11,7 +11,7 @@ use bidir::integrator::IntegratorKind;
 use bidir::sampler::SamplerKind;
 use bidir::view::TextureFiltering;
 
-/// Everything that is neither scene nor film.
+/// Builds the settings of a render: integrator, sampler, seed, and the film's output and layers.
 pub(super) fn build(context: &mut Context<'_>, film: &BuiltFilm) -> Result<SceneSettings, Fault> {
     let (integrator, max_depth) = integrator(context)?;
     let mut settings = SceneSettings {

@@ -25,7 +25,7 @@ pub(super) enum Geometry {
 }
 
 impl Geometry {
-    /// Reads a shape and its coverage (None: it is opaque). None: the shape is not supported and left out.
+    /// Reads a shape and its coverage (None: opaque). None: the shape is not supported and left out.
     pub(super) fn read(
         context: &mut Context<'_>,
         textures: &mut Textures<'_>,
@@ -84,7 +84,7 @@ impl Geometry {
         }
     }
 
-    /// Returns two corners of a box around a quadric. None: the shape is a mesh.
+    /// Returns the lowest and highest corner of a quadric's bounding box. None: the shape is a mesh.
     fn quadric_box(&self) -> Option<[DVec3; 2]> {
         let (radius, low, high) = match self {
             Self::Mesh(_) => return None,
@@ -103,9 +103,9 @@ impl Geometry {
         }
     }
 
-    /// Returns the shape of a description under a map, and adds it to `survey`. A reflection does not change the front: of
-    /// a quadric it is the outside, of a mesh it follows from the order of corners in its own space. Errors: it extends
-    /// too far.
+    /// Returns the shape mapped by `world_from_local`, and adds it to `survey`. A reflection does not change the
+    /// front: the outside of a quadric; for a mesh, the side given by the order of corners in its own space. Errors:
+    /// it extends too far.
     pub(super) fn place(
         &self,
         world_from_local: &DAffine3,
@@ -144,7 +144,7 @@ impl Geometry {
     }
 }
 
-/// Returns a mesh with these vertices, where a map puts it.
+/// Returns a mesh with the attributes of `mesh` under a map, and with these mapped positions.
 fn with_vertices(
     mesh: &PlyMesh,
     positions: Vec<Vec3>,
@@ -163,7 +163,7 @@ fn with_vertices(
     }
 }
 
-/// Returns the orientation in the file, which does not depend on the shape's place.
+/// Returns the orientation in the file, which does not depend on the shape's transformation.
 fn orientation(shape: &ShapeDescription) -> Orientation {
     if shape.reverse_orientation {
         Orientation::Reversed

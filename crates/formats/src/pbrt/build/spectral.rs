@@ -51,7 +51,7 @@ fn spectrum(context: &mut Context<'_>, parameter: &Parameter) -> Result<Spectrum
     }
 }
 
-/// Returns a named spectrum of the format, or else that of a file.
+/// Returns the format's spectrum of this name, or else reads the file of this name.
 fn named(context: &mut Context<'_>, parameter: &Parameter, name: &str) -> Result<Spectrum, Fault> {
     if let Some(spectrum) = spectra::named(name) {
         return Ok(spectrum);
@@ -113,8 +113,8 @@ pub(super) fn read_eta(
     positive(reader, name, eta)
 }
 
-/// Reads an index of refraction that depends on the wavelength, and is replaced by one that does not. None: the
-/// file has none.
+/// Reads an index of refraction that depends on the wavelength, and replaces it by a constant one. None: the file
+/// has none.
 fn spectral_eta(
     reader: &mut Reader<'_, '_>,
     name: &'static str,

@@ -1,5 +1,5 @@
-//! Loop's subdivision of triangle meshes: each step splits every triangle in four and smooths; finally,
-//! points and normals move to the limit surface of infinitely many steps \[Loop87\].
+//! Loop's subdivision of triangle meshes \[Loop87\]. Each step splits every triangle in four and smooths;
+//! finally, points move to the limit surface of infinitely many steps and get its normals.
 //!
 //! With n neighbours p_j and the weight β(n), 3/16 for n = 3 and 3/8n else \[Warren95\]:
 //!
@@ -21,12 +21,12 @@ pub(super) struct ControlMesh {
 /// The reason why a mesh cannot be subdivided.
 type Reason = String;
 
-/// Stands for no half-edge.
+/// The index that stands for no half-edge.
 const NONE: u32 = u32::MAX;
 
-/// The directed edges of a mesh: number 3i + k begins at corner k of triangle i.
+/// The directed edges of a mesh: half-edge 3i + k begins at corner k of triangle i.
 ///
-/// A step of subdivision splits each half-edge in two, whose neighbours follow by arithmetic \[Vanhoey22\].
+/// A step of subdivision splits each half-edge in two. The neighbours of the halves follow by arithmetic \[Vanhoey22\].
 struct HalfEdges {
     /// The half-edges in the opposite direction, or [`NONE`] on a border.
     twins: Vec<u32>,
@@ -102,8 +102,8 @@ impl ControlMesh {
         self.triangles[h as usize / 3][h as usize % 3]
     }
 
-    /// Returns the weighted sum of a vertex and its ring: `weight` for each neighbour, or `border` for the two
-    /// along a border.
+    /// Returns the weighted mean of a vertex and its ring. Each neighbour has the weight `weight`, or on a border,
+    /// the two along it have `border`.
     fn mixed(&self, v: usize, ring: &Ring, weight: f64, border: f64) -> DVec3 {
         let point = |&v: &u32| self.points[v as usize];
         match (&*ring.neighbours, ring.is_border) {
@@ -163,7 +163,7 @@ fn border_tangents(v: DVec3, ring: &[DVec3]) -> [DVec3; 2] {
     [*first - *last, inwards]
 }
 
-/// Returns β.
+/// Returns β(n).
 fn smoothing(n: f64) -> f64 {
     if n < 3.5 { 3.0 / 16.0 } else { 3.0 / (8.0 * n) }
 }
@@ -235,7 +235,7 @@ impl HalfEdges {
         Ok(())
     }
 
-    /// Returns the half-edges of `mesh`, the result of the next step.
+    /// Returns the half-edges after one more subdivision step, whose mesh is `mesh`.
     ///
     /// Triangle i becomes 4i + k at its corner k, and 4i + 3 in the middle.
     fn refined(&self, mesh: &ControlMesh) -> Self {

@@ -1,7 +1,7 @@
-//! Textures, which are built when they are first used, for the purpose of that use.
+//! Builds textures for their first use, once for each [`Purpose`].
 //!
-//! Numbers and colours share the code that is generic over [`Element`]. A texture's parameters are a
-//! [`Source`]; only used ones become textures, and only then are images read.
+//! The code is generic over [`Element`], a number or a colour. The parameters of every texture become a
+//! [`Source`]; only the sources of used textures become textures, which reads their images.
 
 use super::color::{self, Purpose};
 use super::context::Context;
@@ -21,7 +21,7 @@ use bidir::texture::{ColorTexture, FloatTexture, ImageMap, Texture, Value};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-/// The built textures by number and purpose, for which values are checked.
+/// The built textures by number and purpose. The purpose determines the valid values.
 type Built<T> = BTreeMap<(usize, Purpose), Texture<T>>;
 
 /// The textures of a scene.
@@ -204,8 +204,8 @@ impl<'a> Textures<'a> {
         Err(known::unknown(span, &what, name, names))
     }
 
-    /// Refuses a part that texture number `user` cannot have: images exist before all others; then numbers
-    /// are made, then colours, each in the order of the file.
+    /// Refuses a part that is built after texture number `user`. The order is: images, then textures of numbers,
+    /// then of colours, each in the order of the file.
     pub(super) fn check_order(&self, part: usize, user: usize, span: Span) -> Result<(), Fault> {
         let (part_of, user_of) = (&self.described[part], &self.described[user]);
         let is_image = matches!(part_of.entity.kind.as_str(), "imagemap" | "ptex");

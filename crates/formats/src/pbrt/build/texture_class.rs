@@ -15,7 +15,7 @@ use bidir::texture::{
 };
 use std::sync::Arc;
 
-/// The parameters of a texture. Its images are not read and its parts not built yet.
+/// The parameters of a texture, before its images are read and its parts are built.
 pub(super) enum Source<T: Element> {
     /// A texture without parts.
     Whole(Texture<T>),
@@ -190,7 +190,7 @@ impl Class<'_, '_, '_> {
         }
     }
 
-    /// Refuses a class that has only values of another kind.
+    /// Refuses a class whose values are only of another kind.
     fn expect(&self, kind: TextureKind) -> Result<(), Fault> {
         if self.texture.kind == kind {
             return Ok(());

@@ -9,10 +9,10 @@ use bidir::medium::{Grid, Medium};
 use bidir::texture::fractal_noise;
 use rayon::prelude::*;
 
-/// The cells along the longest side: almost two for a period of the finest octave of a cloud in the unit cube.
+/// Number of cells along the longest side: almost two per period of the finest octave, for a cloud in the unit cube.
 const CELLS: f64 = 128.0;
 
-/// A cloud that was read.
+/// The parameters of a cloud.
 struct Cloud {
     low: Vec3,
     high: Vec3,
@@ -21,9 +21,9 @@ struct Cloud {
     frequency: f32,
 }
 
-/// Reads a cloud: noise in a box, thinner the higher.
+/// Reads a cloud: noise in a box, which gets thinner with height.
 pub(super) fn read(reader: &mut Reader<'_, '_>, transforms: &Transforms) -> Result<Recipe, Fault> {
-    /// Beyond, a cloud is noise from cell to cell.
+    /// Maximum value of the parameters. Beyond it, adjacent cells are independent.
     const MOST: f32 = 1e4;
     let place = super::grid::place(reader, transforms)?;
     let [low, high] = [
@@ -52,7 +52,7 @@ pub(super) fn read(reader: &mut Reader<'_, '_>, transforms: &Transforms) -> Resu
 }
 
 impl Cloud {
-    /// The densities of all cells. None: the box has no volume.
+    /// Returns the densities of all cells. None: the box has no volume.
     fn grid(&self, place: Affine3A) -> Option<Grid<1>> {
         let extent = self.high.as_dvec3() - self.low.as_dvec3();
         let parts = extent / extent.max_element() * CELLS;
@@ -71,8 +71,8 @@ impl Cloud {
         Grid::new(size, values, place)
     }
 
-    /// The density at a point, in `[0, 1]` \[PBRT4, §11.4.5\]. Noise disturbs the place at which noise is asked for,
-    /// by wisps.
+    /// Returns the density at a point, in `[0, 1]` \[PBRT4, §11.4.5\]. For wisps, noise moves the point at which the
+    /// noise is evaluated.
     fn density_at(&self, p: Vec3) -> f32 {
         let mut at = p * self.frequency;
         let mut reach = 0.05 * self.wispiness;

@@ -1,4 +1,4 @@
-//! Light of media: L_e, by a colour, by colours of cells, or by their temperatures.
+//! Emission of media, L_e: a colour, a colour for each cell, or a temperature for each cell.
 
 use super::super::color::{self, Purpose, check_emission, to_rec709};
 use super::super::reader::Reader;
@@ -10,12 +10,12 @@ use bidir::medium::{Glow, Medium};
 use bidir::spectrum::Rgb;
 use std::sync::LazyLock;
 
-/// The temperature up to which nothing glows. Unit: K.
+/// Temperature up to which L_e is 0. Unit: K.
 const COLD: f32 = 100.0;
 /// The largest temperature. Unit: K.
 const HOTTEST: f32 = 1e8;
 
-/// Gives a medium its light, if it has any.
+/// Adds emission to a medium. Errors: it emits too much light.
 pub(super) fn add(span: Span, medium: Medium, glow: Option<Glow>) -> Result<Medium, Fault> {
     let Some(glow) = glow else { return Ok(medium) };
     medium
@@ -23,7 +23,7 @@ pub(super) fn add(span: Span, medium: Medium, glow: Option<Glow>) -> Result<Medi
         .ok_or_else(|| Fault::scene(span, "the medium emits too much light"))
 }
 
-/// Reads L_e of a medium that is the same everywhere.
+/// Reads L_e of a homogeneous medium. None: it does not emit.
 pub(super) fn even(reader: &mut Reader<'_, '_>) -> Result<Option<Glow>, Fault> {
     let radiance = color::read(reader, "Le", Purpose::Illuminant)?;
     let scale = reader.float_within("Lescale", 1.0, [0.0, f32::MAX])?;
@@ -31,7 +31,7 @@ pub(super) fn even(reader: &mut Reader<'_, '_>) -> Result<Option<Glow>, Fault> {
     radiance.map(glow).transpose()
 }
 
-/// Reads L_e of a medium of densities: a colour or temperatures, times a factor for each cell.
+/// Reads L_e of a `uniformgrid`: a colour or temperatures, times a factor for each cell. None: it does not emit.
 pub(super) fn of_cells(reader: &mut Reader<'_, '_>, cells: Cells) -> Result<Option<Glow>, Fault> {
     let radiance = color::read(reader, "Le", Purpose::Illuminant)?;
     let factors = reader.find(ParameterType::Float, "Lescale");
@@ -57,8 +57,8 @@ pub(super) fn of_cells(reader: &mut Reader<'_, '_>, cells: Cells) -> Result<Opti
     grid(reader, values.collect::<Result<_, _>>()?, cells)
 }
 
-/// Reads L_e of a medium of colours, which the format does not normalise: white has the luminance of a spectrum that
-/// is 1 everywhere.
+/// Reads L_e of an `rgbgrid`, which the format does not normalise: white has the luminance of a spectrum that is 1
+/// everywhere. None: it does not emit.
 pub(super) fn of_colors(reader: &mut Reader<'_, '_>, cells: Cells) -> Result<Option<Glow>, Fault> {
     let scale = reader.float_within("Lescale", 1.0, [0.0, f32::MAX])? * spectra::LUMINANCE_OF_ONE;
     let Some(parameter) = reader.find(ParameterType::Rgb, "Le") else {
@@ -72,7 +72,7 @@ pub(super) fn of_colors(reader: &mut Reader<'_, '_>, cells: Cells) -> Result<Opt
     grid(reader, values.collect::<Result<_, _>>()?, cells)
 }
 
-/// Reads L_e of black bodies of the temperatures of cells.
+/// Reads the temperature of each cell, and returns L_e of black bodies. None: the file has no temperatures.
 fn temperatures(reader: &mut Reader<'_, '_>, cells: Cells) -> Result<Option<Vec<Rgb>>, Fault> {
     let [offset, scale] = kelvins(reader)?;
     let Some(parameter) = reader.find(ParameterType::Float, "temperature") else {
@@ -83,7 +83,7 @@ fn temperatures(reader: &mut Reader<'_, '_>, cells: Cells) -> Result<Option<Vec<
     black_bodies(parameter.value_span, values, to_kelvin).map(Some)
 }
 
-/// The light of the temperatures of a file's cells.
+/// The map from the temperatures in a file to L_e.
 pub(super) struct Heat {
     offset: f32,
     scale: f32,
@@ -102,7 +102,7 @@ impl Heat {
         })
     }
 
-    /// L_e of cells whose temperatures stand at `span`.
+    /// Returns L_e of cells with these temperatures; `span` is the place of errors.
     pub(super) fn glow(&self, span: Span, values: &[f32], cells: Cells) -> Result<Glow, Fault> {
         let to_kelvin = |value| (value - self.offset) * self.scale;
         let values = black_bodies(span, values, to_kelvin)?.into_iter();
@@ -111,14 +111,15 @@ impl Heat {
     }
 }
 
-/// Reads the offset of a file's numbers, and the scale that leads to K.
+/// Reads `[offset, scale]`, which map numbers of the file to (number - offset) · scale. Unit: K.
 fn kelvins(reader: &mut Reader<'_, '_>) -> Result<[f32; 2], Fault> {
     let old = reader.float("temperaturecutoff", 0.0)?;
     let offset = reader.float("temperatureoffset", old)?;
     Ok([offset, reader.float("temperaturescale", 1.0)?])
 }
 
-/// L_e of black bodies, by Planck's law relative to its peak, as the format has it. The values stand at `span`.
+/// Returns L_e of black bodies, relative to the peak of Planck's law, as the format defines it; `span` is the place of
+/// errors.
 fn black_bodies(
     span: Span,
     values: &[f32],
@@ -135,7 +136,7 @@ fn black_bodies(
     values.iter().map(radiance).collect()
 }
 
-/// L_e of a black body from a table, between whose entries it is linear in 1/T, as log L_e nearly is.
+/// Returns L_e of a black body from a table. Interpolates linearly in 1/T, as log L_e is nearly linear in it.
 fn black_body(kelvin: f32) -> Rgb {
     const STEPS: usize = 4096;
     static TABLE: LazyLock<Vec<Rgb>> = LazyLock::new(|| {

@@ -1,4 +1,4 @@
-//! Media of which a file has the numbers, cell by cell.
+//! Media whose scene file has a value for each cell of a grid: `uniformgrid` and `rgbgrid`.
 
 use super::super::color::to_rec709;
 use super::super::reader::Reader;
@@ -75,17 +75,17 @@ pub(super) fn rgb(reader: &mut Reader<'_, '_>, transforms: &Transforms) -> Resul
     glow::add(reader.span(), medium.ok_or_else(|| too_dense(any))?, light)
 }
 
-/// The cells of a box.
+/// The size and the placement of a grid of cells.
 #[derive(Clone, Copy)]
 pub(super) struct Cells {
-    /// Their numbers along each axis.
+    /// Number of cells along each axis.
     pub(super) size: [usize; 3],
-    /// The place of the box, as a unit cube.
+    /// The map from the unit cube to the box in the render space.
     pub(super) place: Affine3A,
 }
 
 impl Cells {
-    /// The number of cells, of which a parameter has values.
+    /// Returns the number of all cells.
     pub(super) fn count(&self) -> usize {
         self.size.iter().product()
     }
@@ -97,7 +97,7 @@ fn cells(reader: &mut Reader<'_, '_>, transforms: &Transforms) -> Result<Cells, 
     Ok(Cells { size, place })
 }
 
-/// Reads the corners of the box, and places the unit cube there.
+/// Reads the corners of the box, and returns the map from the unit cube to it, in the render space.
 pub(super) fn place(
     reader: &mut Reader<'_, '_>,
     transforms: &Transforms,
@@ -115,7 +115,7 @@ pub(super) fn place(
     placed(reader, transforms, cube)
 }
 
-/// The place of a unit cube that the medium's own space has at `cube`.
+/// Returns the map from the unit cube to the render space; `cube` maps the unit cube to the medium's own space.
 pub(super) fn placed(
     reader: &mut Reader<'_, '_>,
     transforms: &Transforms,
@@ -136,13 +136,14 @@ pub(super) fn placed(
     })
 }
 
-/// Reads the numbers of cells along each axis.
+/// Reads the number of cells along each axis.
 fn size(reader: &mut Reader<'_, '_>) -> Result<[usize; 3], Fault> {
     let mut count = |name| Ok(reader.integer(name, 1, 1)? as usize);
     Ok([count("nx")?, count("ny")?, count("nz")?])
 }
 
-/// The values of a parameter that has so many channels for each cell, none of them below 0.
+/// Returns the values of a parameter with `channels` numbers for each cell. Errors: one is negative or not finite, or
+/// their number is wrong.
 pub(super) fn numbers(
     parameter: &Parameter,
     size: [usize; 3],
@@ -160,7 +161,7 @@ pub(super) fn numbers(
     Ok(values)
 }
 
-/// The values of a parameter that has so many channels for each cell.
+/// Returns the values of a parameter with `channels` numbers for each cell. Errors: their number is wrong.
 pub(super) fn signed_numbers(
     parameter: &Parameter,
     size: [usize; 3],
@@ -185,7 +186,7 @@ fn too_dense(parameter: &Parameter) -> Fault {
     Fault::scene(parameter.value_span, message)
 }
 
-/// The grid of values that stand at `span`.
+/// Returns the grid of these values; `span` is the place of errors.
 pub(super) fn build<const N: usize>(
     span: Span,
     values: Vec<[f32; N]>,

@@ -1,34 +1,34 @@
-//! The albedo with which a deep layer of an isotropic medium under a smooth surface reflects a given part of diffuse
-//! light.
+//! Finds the albedo α with which a deep layer of an isotropic medium, under a smooth surface, reflects a given part of
+//! diffuse light.
 //!
-//! Within, radiance at the cosine μ comes back from below as
+//! Inside, the layer returns the radiance I_down that goes down as radiance I_up, at the cosine μ:
 //!
 //! I_up(μ) = α/2 H(μ) ∫ H(ν) ν / (μ + ν) I_down(ν) dν, 1 / H(μ) = √(1 - α) + α/2 ∫ ν H(ν) / (μ + ν) dν
 //!
-//! \[Chandrasekhar60, §37\], and the surface sends some of it down again: I_down = e + F I_up, where e is the light that
-//! enters. Integrals are sums over the points of Gauss on both sides of the critical angle.
+//! \[Chandrasekhar60, §37\]. The surface reflects some of it down again: I_down = e + F I_up, where e is the light that
+//! enters. Integrals are Gaussian quadratures on both sides of the critical angle.
 
 use bidir::bsdf::fresnel::dielectric;
 
-/// Points and weights of Gauss in `[-1, 1]`, those above 0 \[Press07, §4.6\].
+/// Points and weights of Gaussian quadrature in `[-1, 1]`, only the points above 0 \[Press07, §4.6\].
 const GAUSS: [[f64; 2]; 4] = [
     [0.183_434_642_495_649_8, 0.362_683_783_378_362],
     [0.525_532_409_916_329, 0.313_706_645_877_887_3],
     [0.796_666_477_413_626_7, 0.222_381_034_453_374_5],
     [0.960_289_856_497_536_3, 0.101_228_536_290_376_3],
 ];
-/// An iteration ends when nothing changes by more than this, or after so many steps.
+/// An iteration ends when no value changes by as much as this, or after [`STEPS`] steps.
 const CHANGE: f64 = 1e-7;
 const STEPS: usize = 4096;
 
-/// A direction within the layer.
+/// A direction inside the layer.
 #[derive(Clone, Copy, Debug)]
 struct Point {
-    /// μ.
+    /// The cosine μ.
     cos: f64,
-    /// dμ.
+    /// The quadrature weight dμ.
     weight: f64,
-    /// F.
+    /// The internal reflectance F of the surface.
     reflectance: f64,
 }
 
@@ -36,12 +36,12 @@ struct Point {
 #[derive(Debug)]
 pub(super) struct Layer {
     points: Vec<Point>,
-    /// The radiance in each direction within that diffuse light of radiance 1 outside makes.
+    /// e: for each direction inside, the radiance that enters from diffuse light of radiance 1 outside.
     entering: Vec<f64>,
 }
 
 impl Layer {
-    /// A layer under a surface of this relative index of refraction.
+    /// Returns a layer under a surface of the relative index of refraction `eta`.
     pub(super) fn new(eta: f32) -> Self {
         let square = f64::from(eta) * f64::from(eta);
         let critical = (1.0 - 1.0 / square).max(0.0).sqrt();
@@ -59,7 +59,7 @@ impl Layer {
         Self { points, entering }
     }
 
-    /// 1 - α with which the layer returns `part` of the diffuse light that enters.
+    /// Returns the 1 - α for which `part` of the diffuse light that enters comes back.
     pub(super) fn absorption(&self, part: f64) -> f64 {
         let [mut low, mut high] = [0.0, 1.0];
         for _ in 0..24 {
@@ -74,7 +74,7 @@ impl Layer {
         low * low
     }
 
-    /// The part of the diffuse light that enters and that a layer of this albedo returns.
+    /// Returns the part of the entering diffuse light that comes back from a layer of this albedo.
     fn reflectance(&self, albedo: f64) -> f64 {
         let h = self.chandrasekhar(albedo);
         let up = converged(vec![0.0; self.points.len()], |up| {
@@ -102,7 +102,7 @@ impl Layer {
         flux(&up, &leaves) / flux(&self.entering, &|at| at.weight * at.cos)
     }
 
-    /// H of every point.
+    /// Returns H at each of the points.
     fn chandrasekhar(&self, albedo: f64) -> Vec<f64> {
         converged(vec![1.0; self.points.len()], |h| {
             let inverse = |at: &Point| {
@@ -119,7 +119,7 @@ impl Layer {
     }
 }
 
-/// Repeats a step until nothing changes.
+/// Repeats `step` until no value changes by [`CHANGE`].
 fn converged(mut values: Vec<f64>, step: impl Fn(&[f64]) -> Vec<f64>) -> Vec<f64> {
     for _ in 0..STEPS {
         let next = step(&values);
@@ -133,7 +133,7 @@ fn converged(mut values: Vec<f64>, step: impl Fn(&[f64]) -> Vec<f64>) -> Vec<f64
     values
 }
 
-/// The points of Gauss in a range, and their weights.
+/// Returns the points of Gaussian quadrature in a range, with their weights.
 fn nodes([from, to]: [f64; 2]) -> impl Iterator<Item = [f64; 2]> {
     let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
     let signed = GAUSS.into_iter().flat_map(|[x, w]| [[-x, w], [x, w]]);

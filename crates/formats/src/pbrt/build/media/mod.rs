@@ -1,4 +1,4 @@
-//! Participating media, and which of them are on the sides of shapes.
+//! Participating media, and the media on both sides of each shape.
 
 mod cloud;
 mod glow;
@@ -21,18 +21,18 @@ use bidir::spectrum::Rgb;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// The media of a scene that something lies in.
+/// The media in use, by name.
 #[derive(Default)]
 pub(super) struct Media {
     built: BTreeMap<Arc<str>, MediumId>,
     clouds: usize,
 }
 
-/// Makes a medium that was read. Media that nothing lies in are never made.
+/// Builds a medium whose parameters were read. Only media in use are built.
 pub(super) type Recipe = Box<dyn FnOnce() -> Result<Medium, Fault>>;
 
 impl Media {
-    /// The media on both sides of a shape.
+    /// Returns the media on both sides of a shape.
     pub(super) fn sides(
         &mut self,
         context: &mut Context<'_>,
@@ -46,7 +46,7 @@ impl Media {
         })
     }
 
-    /// A medium by name, which is built when it is first asked for. Without a name it is the vacuum.
+    /// Returns the medium of this name, and builds it for its first use. Without a name, returns vacuum.
     pub(super) fn find(
         &mut self,
         context: &mut Context<'_>,
@@ -75,7 +75,7 @@ impl Media {
         Ok(built)
     }
 
-    /// Checks the media that nothing lies in.
+    /// Checks the parameters of unused media.
     pub(super) fn check_unused(&self, context: &mut Context<'_>) -> Result<(), Fault> {
         for medium in &context.document.media {
             if !self.built.contains_key(medium.name.as_str()) {
@@ -86,7 +86,7 @@ impl Media {
     }
 }
 
-/// Reads a medium of a kind that is known to be one.
+/// Reads the parameters of a medium, whose type the parser has checked.
 fn read(context: &mut Context<'_>, medium: &MediumDescription) -> Result<Recipe, Fault> {
     let mut reader = Reader::new(context, &medium.entity);
     let built = match medium.entity.kind.as_str() {
@@ -113,7 +113,7 @@ fn homogeneous(reader: &mut Reader<'_, '_>) -> Result<Medium, Fault> {
     glow::add(reader.span(), medium, light)
 }
 
-/// The factor of all coefficients.
+/// Reads the factor on all coefficients.
 fn scale(reader: &mut Reader<'_, '_>) -> Result<f32, Fault> {
     reader.float_within("scale", 1.0, [0.0, f32::MAX])
 }
@@ -126,7 +126,7 @@ fn phase(reader: &mut Reader<'_, '_>) -> Result<HenyeyGreenstein, Fault> {
     })
 }
 
-/// σ_a and σ_s times a factor, per unit of length of the scene that is built.
+/// Returns σ_a and σ_s times `scale`, in the render space. Unit: 1 / its unit of length.
 fn scaled(reader: &Reader<'_, '_>, given: [Rgb; 2], scale: f32) -> Result<Coefficients, Fault> {
     let scale = scale * reader.context.layout.space.unit as f32;
     let [absorption, scattering] = given.map(|sigma| sigma.map(|channel| channel * scale));
@@ -134,7 +134,7 @@ fn scaled(reader: &Reader<'_, '_>, given: [Rgb; 2], scale: f32) -> Result<Coeffi
     Coefficients::new(absorption, scattering).ok_or_else(|| reader.fault(message))
 }
 
-/// σ_a and σ_s as they are given. Unit: 1 / the scene's unit of length.
+/// Reads `sigma_a` and `sigma_s`. None: the file does not have it. Unit: 1 / the scene's unit of length.
 fn own_coefficients(reader: &mut Reader<'_, '_>) -> Result<[Option<Rgb>; 2], Fault> {
     Ok([
         color::read(reader, "sigma_a", Purpose::Unbounded)?,
@@ -142,7 +142,7 @@ fn own_coefficients(reader: &mut Reader<'_, '_>) -> Result<[Option<Rgb>; 2], Fau
     ])
 }
 
-/// σ_a and σ_s: those of the preset, if there is one. Unit: 1 / the scene's unit of length.
+/// Reads σ_a and σ_s: the preset's, if there is one, else the file's or 1. Unit: 1 / the scene's unit of length.
 fn coefficients(reader: &mut Reader<'_, '_>) -> Result<[Rgb; 2], Fault> {
     let given = own_coefficients(reader)?;
     if let Some(known) = preset(reader, "preset")? {
@@ -151,7 +151,7 @@ fn coefficients(reader: &mut Reader<'_, '_>) -> Result<[Rgb; 2], Fault> {
     Ok(given.map(|given| given.unwrap_or([1.0; 3])))
 }
 
-/// σ_a and σ_s of the substance that a parameter names. None: the file names none.
+/// Reads the name of a substance, and returns its σ_a and σ_s. None: the file names none.
 fn preset(reader: &mut Reader<'_, '_>, parameter: &'static str) -> Result<Option<[Rgb; 2]>, Fault> {
     let named = reader.string(parameter)?;
     let Some((name, span)) = named.filter(|(name, _)| !name.is_empty()) else {
@@ -167,7 +167,7 @@ fn preset(reader: &mut Reader<'_, '_>, parameter: &'static str) -> Result<Option
     Ok(None)
 }
 
-/// Reduced scattering and absorption of substances, in 1/mm \[Jensen01\].
+/// Substances, each with its reduced scattering coefficient and its absorption coefficient, in 1/mm \[Jensen01\].
 const PRESETS: [(&str, Rgb, Rgb); 12] = [
     ("Apple", [2.29, 2.39, 1.97], [0.0030, 0.0034, 0.046]),
     ("Chicken1", [0.15, 0.21, 0.38], [0.015, 0.077, 0.19]),

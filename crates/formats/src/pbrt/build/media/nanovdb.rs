@@ -10,13 +10,13 @@ use crate::source::{Fault, Span};
 use bidir::medium::{Coefficients, Glow, HenyeyGreenstein, Medium};
 use glam::{DAffine3, DVec3};
 
-/// A grid of a medium, and the box of its cells that is read.
+/// A grid, and the box of its cells to read.
 struct Part {
     grid: Grid,
     within: CellBox,
 }
 
-/// The content of a medium that was read.
+/// The parameters and grids of a medium.
 struct Smoke {
     span: Span,
     density: Part,
@@ -27,8 +27,8 @@ struct Smoke {
     phase: HenyeyGreenstein,
 }
 
-/// Reads a medium of the densities of a file, which are linear between the cells that it numbers, and fade over one
-/// cell around those that are active.
+/// Reads a medium from the densities of a file. They are interpolated linearly between the centres of cells, and fade
+/// to the background over one cell around the active ones.
 pub(super) fn read(reader: &mut Reader<'_, '_>, transforms: &Transforms) -> Result<Recipe, Fault> {
     let Some((name, span)) = reader.string("filename")? else {
         return Err(reader.fault("the medium has no `filename`"));
@@ -95,7 +95,7 @@ pub(super) fn read(reader: &mut Reader<'_, '_>, transforms: &Transforms) -> Resu
     Ok(Box::new(move || smoke.medium()))
 }
 
-/// True where two maps differ by rounding at most.
+/// Returns true if two maps differ only by rounding.
 fn are_close(a: DAffine3, b: DAffine3) -> bool {
     let (a, b) = (a.to_cols_array(), b.to_cols_array());
     let size = a.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
@@ -131,7 +131,7 @@ impl Smoke {
     }
 }
 
-/// The cells of a box, each around its number.
+/// Returns the cells to read, placed so that the centre of each is its index.
 fn cells(
     reader: &mut Reader<'_, '_>,
     transforms: &Transforms,

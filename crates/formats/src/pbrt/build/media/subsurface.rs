@@ -1,7 +1,7 @@
 //! The media within surfaces of the material `subsurface`.
 //!
-//! Light walks through them as through any medium. Where the file asks for a reflectance, the albedo of the medium is
-//! that of a deep layer that returns this part of the diffuse light which enters.
+//! Paths scatter in them as in any medium. If the file gives a reflectance, the albedo of the medium is chosen so
+//! that a deep layer returns this part of the diffuse light that enters.
 
 use super::super::reader::Reader;
 use super::layer::Layer;
@@ -12,7 +12,7 @@ use bidir::medium::{Coefficients, HenyeyGreenstein, Medium};
 use bidir::spectrum::Rgb;
 use color::Purpose;
 
-/// σ_a and σ_s of whole milk, 1/mm: those of the format where the file says nothing.
+/// σ_a of whole milk, the format's default, with [`SCATTERING`], its σ_s. Unit: 1/mm.
 const ABSORPTION: Rgb = [0.0011, 0.0024, 0.014];
 const SCATTERING: Rgb = [2.55, 3.21, 3.77];
 
@@ -21,11 +21,11 @@ const SCATTERING: Rgb = [2.55, 3.21, 3.77];
 enum Given {
     /// σ_a and σ_s.
     Coefficients([Rgb; 2]),
-    /// The part of diffuse light that comes back, and 1/σ_t.
+    /// The part of diffuse light that comes back, and the mean free path 1/σ_t.
     Reflectance(Rgb, Rgb),
 }
 
-/// Reads the medium within a surface of this relative index of refraction.
+/// Reads the medium inside a surface of the relative index of refraction `eta`.
 pub(in super::super) fn read(reader: &mut Reader<'_, '_>, eta: f32) -> Result<Recipe, Fault> {
     for name in ["sigma_a", "sigma_s", "reflectance", "mfp"] {
         let constant = "its default is used instead";
@@ -75,8 +75,8 @@ pub(in super::super) fn read(reader: &mut Reader<'_, '_>, eta: f32) -> Result<Re
     }))
 }
 
-/// σ_a and σ_s with which a deep layer returns this part of the diffuse light that enters. Scattering that is not even
-/// counts like even scattering with 1 - g of the coefficient.
+/// Returns the σ_a and σ_s for which a deep layer returns the part `reflectance` of the diffuse light that enters.
+/// By similarity, anisotropic scattering counts as isotropic scattering with (1 - g) σ_s.
 fn of_reflectance(
     reflectance: Rgb,
     mean_free_path: Rgb,
