@@ -2,7 +2,7 @@
 
 use crate::image::Pixels;
 
-/// A division of images into square blocks; blocks at the right and lower border may be smaller.
+/// A division of images into square blocks. Blocks at the right and lower border may be smaller.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Blocks {
     size: [usize; 2],

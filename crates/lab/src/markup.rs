@@ -2,7 +2,7 @@
 
 use std::fmt::{self, Display, Formatter};
 
-/// An element with its attributes and what is in it.
+/// An element with its attributes and content.
 #[derive(Clone, Debug)]
 pub(crate) struct Element {
     name: &'static str,
@@ -17,7 +17,7 @@ enum Node {
     Code(String),
 }
 
-/// An element without attributes and content.
+/// Returns an element without attributes and content.
 pub(crate) fn element(name: &'static str) -> Element {
     Element {
         name,
@@ -51,7 +51,7 @@ impl Element {
         self
     }
 
-    /// Content of `script` and `style`, where HTML knows no escapes.
+    /// Adds the content of a `script` or `style` without escapes, which HTML does not have there.
     pub(crate) fn code(mut self, code: impl Into<String>) -> Self {
         let code = code.into();
         debug_assert!(!code.contains("</"), "the code ends its element");
@@ -59,12 +59,12 @@ impl Element {
         self
     }
 
-    /// Elements of HTML that have no end.
+    /// Returns true for elements of HTML that have no end tag.
     fn is_void(&self) -> bool {
         self.name == "meta"
     }
 
-    /// Elements within a line; a reader of the source wants to see others begin on a line of their own.
+    /// Returns true for elements within a line. All others begin on a new line, so that the source can be read.
     fn is_inline(&self) -> bool {
         self.name == "b"
     }
@@ -94,7 +94,7 @@ impl Display for Element {
     }
 }
 
-/// A text as it stands in content and in attributes.
+/// Escapes a text for content and attributes.
 fn escaped(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
     for character in text.chars() {
@@ -112,7 +112,7 @@ fn escaped(text: &str) -> String {
     escaped
 }
 
-/// JSON as it stands in a `script`: nothing in it can end the element, or begin a comment.
+/// Escapes JSON for a `script`, so that nothing in it can end the element or begin a comment.
 pub(crate) fn script_json(json: &str) -> String {
     json.replace('<', "\\u003c")
 }

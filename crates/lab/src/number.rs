@@ -1,6 +1,6 @@
 //! Numbers as texts for people.
 
-/// Formats a number with three significant digits, or with all of a whole number.
+/// Formats a number with three significant digits, a whole number with all digits.
 pub(crate) fn number(value: f64) -> String {
     let size = value.abs();
     let is_whole = value.fract().abs() < f64::EPSILON;

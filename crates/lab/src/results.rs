@@ -20,7 +20,7 @@ pub struct Results {
     pub description: String,
     /// The program with its version.
     pub program: String,
-    /// The machine that it ran on.
+    /// The machine that the experiment ran on.
     pub machine: Machine,
     /// The scenes.
     pub scenes: Vec<SceneInfo>,
@@ -28,7 +28,7 @@ pub struct Results {
     pub methods: Vec<MethodInfo>,
     /// The budgets.
     pub budgets: Vec<BudgetInfo>,
-    /// One for each render.
+    /// The records, one for each render.
     pub records: Vec<Record>,
     /// Figures of the strategies (s, t), one entry for each scene of the description's pyramid.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -60,7 +60,7 @@ pub struct SceneInfo {
     pub name: String,
     /// The file, as it was named.
     pub file: String,
-    /// Hash of everything read for it.
+    /// Hash of everything read for the scene.
     pub digest: String,
     /// Width and height. Unit: pixels.
     pub size: [usize; 2],
@@ -89,7 +89,7 @@ pub struct MethodInfo {
 pub enum BudgetKind {
     /// Samples per pixel.
     Samples,
-    /// Rays of all kinds per pixel, those of training included.
+    /// Rays of all kinds per pixel, including training.
     Rays,
     /// Time of rendering and training, without reading and writing. Unit: seconds.
     Seconds,
@@ -103,7 +103,7 @@ impl BudgetKind {
         ("seconds", Self::Seconds),
     ];
 
-    /// Returns the name of the measure of its cost, with the unit.
+    /// Returns the name of the cost that the budget limits, with the unit.
     pub fn cost(self) -> &'static str {
         match self {
             Self::Samples => "samples per pixel",
@@ -113,7 +113,7 @@ impl BudgetKind {
     }
 }
 
-/// A budget, which a render uses up.
+/// A budget of renders.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BudgetInfo {
     /// Its name in this experiment, such as `64 spp`.
@@ -267,7 +267,7 @@ pub enum Verdict {
 }
 
 impl Verdict {
-    /// The verdict in words.
+    /// Returns the verdict in words.
     pub fn words(self) -> &'static str {
         match self {
             Self::Reproduced => "reproduced",

@@ -41,7 +41,7 @@ const MESHES: [File; 71] = files!["meshes/" ".ply"
     "uplighter-lining" "uplighter-stand" "wardrobe-doors" "wardrobe-knobs" "worktop-slab"
 ];
 
-/// The folder at the beginning of their names.
+/// The folder at the beginning of the names of the scenes.
 const FOLDER: &str = "scenes";
 
 /// Returns the embedded scenes, without access to the disk.

@@ -20,8 +20,8 @@ use std::path::PathBuf;
 
 type Result<T> = std::result::Result<T, ExperimentError>;
 
-/// Runs of several methods in one scene with the same budget and seed: one machine renders all runs that
-/// are compared with each other.
+/// Runs of several methods in one scene with the same budget and seed. They are compared with each other, so
+/// one machine renders all of them.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Block {
     /// The name of the scene.
@@ -37,11 +37,11 @@ pub struct Block {
 /// A scene of an experiment with its reference.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PreparedScene {
-    /// Its name.
+    /// The name of the scene.
     pub name: String,
-    /// Its file.
+    /// The scene file.
     pub path: PathBuf,
-    /// All files read for it.
+    /// All files read for the scene.
     pub files: Vec<PathBuf>,
     /// The reference of its images.
     pub reference: Pixels,
@@ -58,12 +58,12 @@ pub struct Prepared {
     folder: PathBuf,
 }
 
-/// A finished run with its image, if that is kept.
+/// A finished run.
 #[derive(Clone, Debug)]
 pub struct Done {
     /// The record.
     pub record: Record,
-    /// The image, kept for the first seed only.
+    /// The image. None: the run has not the first seed.
     pub image: Option<Pixels>,
 }
 
@@ -95,7 +95,7 @@ pub fn prepare(
     }))
 }
 
-/// Groups the runs without a record, in order.
+/// Groups the runs without a record into blocks, in order.
 fn blocks(run_set: &RunSet<'_>, journal: &Journal) -> Vec<Block> {
     let mut blocks: Vec<Block> = Vec::new();
     for (run, _) in run_set.runs().filter(|(run, _)| !journal.has(run)) {

@@ -7,7 +7,7 @@ use std::path::Path;
 /// A built-in description.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Builtin {
-    /// Its name, which replaces a file name on the command line.
+    /// The name, which replaces a file name on the command line.
     pub name: &'static str,
     text: &'static str,
 }
@@ -34,7 +34,7 @@ impl Builtin {
 
     /// Reads the experiment, with the project's scenes in memory.
     ///
-    /// Errors: those of [`Experiment::read`].
+    /// Errors: as [`Experiment::read`].
     pub fn experiment(self) -> Result<Experiment, ExperimentError> {
         let file = Path::new("experiments").join(self.name);
         Experiment::read_with(self.text, &file.with_extension("toml"), &scenes::files())

@@ -35,7 +35,7 @@ macro_rules! figures {
     };
 }
 
-/// The names of the numbers of a pass; those of the second half are without weights.
+/// The names of the numbers of a pass. The numbers of the second half are computed without weights.
 pub const FIGURES: [&str; 18] = figures![
     " per sample"
     ": orders of magnitude"
@@ -52,8 +52,8 @@ pub const FIGURES: [&str; 18] = figures![
 const BINS: u32 = 2;
 
 impl Contributions {
-    /// Returns the histogram that a figure describes: the left edge of each bin of log10, and the fraction
-    /// of all contributions in it.
+    /// Returns the histogram for a figure: of weighted or unweighted contributions. Each bin is the left edge
+    /// in log10, and the fraction of all contributions in the bin.
     pub fn histogram(&self, figure: &str) -> &[[f64; 2]] {
         if figure.starts_with("unweighted") {
             &self.unweighted
@@ -140,7 +140,7 @@ fn figures(values: &[f64], samples: f64) -> [f64; FIGURES.len() / 2] {
     ]
 }
 
-/// Takes one sample of every pixel; returns the terms of its connections, without and with weight.
+/// Takes one sample of every pixel. Returns the terms of all connections, each without and with its weight.
 fn terms(loaded: &LoadedScene<'_>, settings: &Settings, pass: u64) -> Vec<[f64; 2]> {
     let Subject { scene, view, .. } = &loaded.subject;
     let film = view.film();
@@ -171,14 +171,15 @@ fn quantile(values: &[f64], part: f64) -> Option<f64> {
     values.get(index.min(values.len().checked_sub(1)?)).copied()
 }
 
-/// Computes the share of the sum that belongs to the largest fraction `part` of ascending `values`.
+/// Computes the share of the sum of ascending `values` that the largest ones have; `part` is the fraction of values
+/// that count as largest.
 fn share_of_largest(values: &[f64], part: f64) -> f64 {
     let small = ((1.0 - part) * values.len() as f64) as usize;
     let total: f64 = values.iter().sum();
     values[small.min(values.len())..].iter().sum::<f64>() / total
 }
 
-/// Computes the fraction of ascending `values`, the largest first, that makes up `share` of their sum.
+/// Computes the smallest fraction of ascending `values` that makes up `share` of their sum.
 fn part_with(values: &[f64], share: f64) -> f64 {
     let enough = share * values.iter().sum::<f64>();
     let mut sum = 0.0;
@@ -190,8 +191,8 @@ fn part_with(values: &[f64], share: f64) -> f64 {
     count.count() as f64 / values.len() as f64
 }
 
-/// Makes the histogram of ascending `values` by log10: the left edge of each bin, and the fraction of all
-/// values in it.
+/// Makes the histogram of log10 of ascending `values`: the left edge of each bin, and the fraction of all
+/// values in the bin.
 fn histogram(values: &[f64]) -> Vec<[f64; 2]> {
     let bin = |value: &f64| (libm::log10(*value) * f64::from(BINS)).floor() as i64;
     let (Some(first), Some(last)) = (values.first().map(bin), values.last().map(bin)) else {

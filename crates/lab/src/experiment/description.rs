@@ -1,4 +1,4 @@
-//! The reader of descriptions: from TOML to an [`Experiment`].
+//! Reads descriptions in TOML.
 
 mod claims;
 mod scene;
@@ -21,14 +21,14 @@ use std::path::Path;
 
 type Result<T> = std::result::Result<T, ExperimentError>;
 
-/// The most bytes that repetition makes: a small file must not fill the memory.
+/// Maximum number of bytes that repetitions add, as a small file must not fill the memory.
 const MOST_REPEATED: usize = 64 << 20;
 /// The default number of seeds.
 const SEEDS: u64 = 10;
 /// The keys of the whole description.
 const TOP: &str = "title description seeds first-seed size threads metrics pyramid pyramid-spp \
     pyramid-scenes contributions quick settings scene method budget claim table";
-/// The hint for a setting without effect on an integrator that another table sets.
+/// The hint for a setting that has no effect on the integrator, if another table sets the integrator.
 const INHERITED: &str =
     "[settings] sets this integrator: give the method its own, or leave the setting out";
 /// The keys of `[[budget]]`.
@@ -45,7 +45,7 @@ const PYRAMID_SPP: u64 = 64;
 const CONTRIBUTIONS_SPP: u64 = 16;
 
 impl Experiment {
-    /// Reads a description; `file` is its name in messages, and its scenes are relative to that folder.
+    /// Reads a description. `file` is its name in messages; paths of scenes are relative to its folder.
     ///
     /// Errors: [`ExperimentError::Description`], with line and column.
     pub fn read(text: &str, file: &Path) -> Result<Self> {
@@ -152,7 +152,7 @@ fn quick(top: &mut Section<'_>) -> Result<Quick> {
     Ok(quick?.unwrap_or(default))
 }
 
-/// Reads the method whose strategies are rendered, with samples per pixel and scenes.
+/// Reads the method whose strategies are rendered, and the samples per pixel and scenes for them.
 fn pyramid(
     top: &mut Section<'_>,
     names: &Names,
@@ -207,7 +207,7 @@ fn metrics(top: &mut Section<'_>) -> Result<Vec<Metric>> {
     Ok(metrics)
 }
 
-/// Reads all tables `[[key]]`, at least one; their names differ also as parts of file names.
+/// Reads all tables `[[key]]`. Errors: there is none; two names are equal, also as parts of file names.
 fn all<'a, T>(
     top: &mut Section<'a>,
     key: &'static str,

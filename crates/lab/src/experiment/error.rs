@@ -6,7 +6,7 @@ use std::fmt;
 use std::path::PathBuf;
 use thiserror::Error;
 
-/// An error that prevents the results of an experiment, by its cause.
+/// The cause why an experiment has no results.
 #[derive(Debug, Error)]
 pub enum ExperimentError {
     /// The description is invalid.
@@ -46,7 +46,7 @@ pub enum ExperimentError {
     Elsewhere {
         /// The folder.
         folder: PathBuf,
-        /// The differing parts, as recorded and here.
+        /// The differing parts, each with the recorded value and the present one.
         difference: String,
     },
     /// The image of a reference cannot be used.
@@ -142,7 +142,7 @@ pub struct Place {
 }
 
 impl Place {
-    /// Gives an error about a file the place that names the file; an error within the file keeps its own.
+    /// Returns the error at the place that names the file. An error at a place within the file keeps that place.
     pub(super) fn of_named(place: Option<&Self>, error: formats::Error) -> ExperimentError {
         use formats::ErrorKind::{Io, MissingFile};
         let is_absent = matches!(error.kind(), MissingFile | Io) && error.line().is_none();

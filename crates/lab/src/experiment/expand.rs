@@ -14,20 +14,20 @@ use toml::de::{DeTable, DeValue};
 
 type Result<T> = std::result::Result<T, ExperimentError>;
 
-/// The most combinations of one key: texts of a few bytes must not fill the memory.
+/// Maximum number of combinations of one key, as texts of a few bytes must not fill the memory.
 const MOST: usize = 10_000;
 
 /// Replacement texts by the names of their placeholders.
 pub(super) type Binding = Vec<(String, String)>;
 
 impl Section<'_> {
-    /// Expands `for`; without it, returns the table itself.
+    /// Returns a copy of the table for each combination of its `for`, or without `for`, the table itself.
     pub(super) fn expanded(mut self) -> Result<Vec<Self>> {
         let bindings = self.bindings("for")?;
         bindings.iter().map(|binding| self.bound(binding)).collect()
     }
 
-    /// Reads all combinations listed in the key `key`; without it, returns a single empty one.
+    /// Reads all combinations of the lists in the key `key`, or without this key, returns a single empty one.
     ///
     /// Errors: a list is empty, or there are more than [`MOST`].
     pub(super) fn bindings(&mut self, key: &str) -> Result<Vec<Binding>> {
@@ -58,7 +58,7 @@ impl Section<'_> {
 
     /// Copies the table and replaces the placeholders of a binding.
     ///
-    /// Errors: the copies of a description have more bytes than it may have.
+    /// Errors: the copies have more bytes than repetitions may add.
     pub(super) fn bound(&self, binding: &Binding) -> Result<Self> {
         let copying = Copying {
             binding,
@@ -82,7 +82,7 @@ fn binding(name: &str, element: Entry<'_>) -> Result<Binding> {
     parts.collect()
 }
 
-/// Copies values and replaces the placeholders of a binding, as long as there is `room` for the bytes.
+/// Copies values and replaces the placeholders of a binding, while the bytes fit in `room`.
 struct Copying<'b> {
     binding: &'b Binding,
     room: &'b Cell<usize>,
@@ -116,7 +116,8 @@ impl Copying<'_> {
         Some(Spanned::new(value.span(), copy))
     }
 
-    /// Replaces placeholders one after another, those within replacements too: a text may double with each.
+    /// Replaces placeholders one after another, also within replacements: each may double the text. None: the text
+    /// does not fit in `room`.
     fn text<'a>(&self, text: &Cow<'a, str>) -> Option<Cow<'a, str>> {
         self.take(text.len())?;
         let mut text = text.clone();

@@ -161,7 +161,7 @@ impl Experiment {
 }
 
 impl BudgetSpec {
-    /// Returns the same budget with another amount, by which it is named.
+    /// Returns the budget with another amount, and named by it.
     fn of(&self, amount: f64) -> Self {
         Self {
             methods: self.methods.clone(),

@@ -10,7 +10,7 @@ use std::fmt::Write;
 
 /// Computes the hash of an experiment; `given` holds the existing reference of each scene, if any.
 ///
-/// Threads and machine are left out, as they change only times.
+/// The hash excludes threads and machine, which change only times.
 pub(super) fn identity(
     experiment: &Experiment,
     scenes: &[LoadedScene<'_>],

@@ -14,7 +14,7 @@ type Result<T> = std::result::Result<T, ExperimentError>;
 
 /// The name of the file.
 pub(super) const FILE: &str = "records.ndjson";
-/// The version of its format.
+/// The version of the file's format.
 const FORMAT: u32 = 3;
 
 /// The first line.

@@ -39,7 +39,7 @@ fn rows(heading: &str) -> Vec<Vec<&'static str>> {
         .collect()
 }
 
-/// Returns the names in code of the first cells below `heading`.
+/// Returns the names in backticks in the first cells of the rows below `heading`.
 fn names(heading: &str) -> BTreeSet<&'static str> {
     let cells = rows(heading).into_iter().map(|row| row[0]);
     cells

@@ -15,9 +15,9 @@ use std::path::PathBuf;
 pub(super) struct LoadedScene<'a> {
     pub(super) spec: &'a SceneSpec,
     pub(super) subject: Subject,
-    /// The settings of the file, over the defaults.
+    /// The settings of the file, or else the defaults.
     pub(super) settings: Settings,
-    /// The scene as it was read.
+    /// The scene that was read.
     pub(super) read: Loaded,
 }
 
@@ -25,11 +25,11 @@ pub(super) struct LoadedScene<'a> {
 #[derive(Clone)]
 pub(super) struct Reference {
     pub(super) pixels: Pixels,
-    /// A description of how it was made.
+    /// A description of how the reference was made.
     pub(super) words: String,
     /// The image file, relative to the folder of the results. None: it lies elsewhere.
     pub(super) image: Option<String>,
-    /// Its own mean square error. None: unknown.
+    /// The mean square error of the reference. None: unknown.
     pub(super) mse: Option<f64>,
 }
 
@@ -84,9 +84,9 @@ impl<'a> LoadedScene<'a> {
         methods.any(|other| other.name == method.name)
     }
 
-    /// Returns the settings of a method here.
+    /// Returns the settings of a method in this scene.
     ///
-    /// Errors: it is not bidirectional, so that it lacks the requested `figures`.
+    /// Errors: the method is not bidirectional, so that it lacks the requested `figures`.
     pub(super) fn bidirectional(
         &self,
         method: &MethodSpec,
@@ -100,7 +100,7 @@ impl<'a> LoadedScene<'a> {
         Err(self.refusal(method, text, Some("give the method integrator = \"bdpt\"")))
     }
 
-    /// Makes the error of a method in this scene.
+    /// Returns the error of a method in this scene.
     pub(super) fn refusal(
         &self,
         method: &MethodSpec,
@@ -115,7 +115,7 @@ impl<'a> LoadedScene<'a> {
         }
     }
 
-    /// Begins a render of this scene. None: the host asked to stop in training.
+    /// Begins a render of this scene. None: the host asked to stop during training.
     pub(super) fn begin(
         &self,
         settings: &Settings,

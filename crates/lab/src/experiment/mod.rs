@@ -31,8 +31,8 @@
 //! # Strategies
 //!
 //! If [`Experiment::pyramid`] names a method, its strategies are rendered once in each scene, after the
-//! references and before all runs, and are stored with the records. Records do not depend on it and their
-//! times exclude it: added to a description later, it is rendered alone.
+//! references and before all runs, and are stored with the records. Records and their times do not depend on
+//! it: if it is added to a description later, only the strategies are rendered.
 //!
 //! # Order
 //!
@@ -152,17 +152,17 @@ pub struct Seeds {
 /// A scene of an experiment.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SceneSpec {
-    /// Its name, unique also as part of a file name.
+    /// The name, unique also as part of a file name.
     pub name: String,
     /// The file, as messages and results name it.
     pub file: String,
     /// The path of the file.
     pub path: PathBuf,
-    /// The source of its files.
+    /// The source of the scene's files.
     pub source: SceneSource,
-    /// Width and height of its images. None: those of the experiment or of the scene file.
+    /// Width and height of the scene's images. None: the experiment or the scene file gives them.
     pub size: Option<[u32; 2]>,
-    /// The reference of its images.
+    /// The reference of the scene's images.
     pub reference: ReferenceSpec,
     /// Required or optional.
     pub presence: Presence,
@@ -179,7 +179,7 @@ pub enum SceneSource {
     Disk,
     /// Memory.
     Memory(Files),
-    /// A room, which is made when the scene is loaded.
+    /// A generated room, which is made when the scene is loaded.
     Room(Room),
 }
 

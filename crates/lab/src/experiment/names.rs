@@ -2,7 +2,7 @@
 
 use bidir::names::UnknownName;
 
-/// Looks up the value of a name.
+/// Returns the value of the name `given`. Errors: the name is not in the list.
 pub(super) fn value_of<T: Copy>(names: &[(&str, T)], given: &str) -> Result<T, UnknownName> {
     let found = names.iter().find(|(name, _)| *name == given);
     let known: Vec<&str> = names.iter().map(|(name, _)| *name).collect();

@@ -7,7 +7,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 /// The host of an experiment: receives events, supplies the clocks, and can stop the run.
 ///
-/// Only one thread at a time calls it.
+/// Only one thread at a time calls its methods.
 pub trait Observer: Send {
     /// Receives an event.
     fn notify(&mut self, event: Event<'_>);
@@ -27,23 +27,23 @@ pub trait Observer: Send {
     }
 }
 
-/// An observer as the host of a render.
+/// The host of a render, which passes its progress to an observer.
 pub(super) struct Host<'a> {
     observer: Mutex<&'a mut dyn Observer>,
     flag: Arc<AtomicBool>,
     samples: AtomicU64,
     samples_per_pass: u64,
-    /// The event of a pass, by the number of those before it. None: nobody hears of it.
+    /// Returns the event of a pass, given the number of passes before it. None: there is no event.
     event: &'a (dyn Fn(u64) -> Option<Event<'a>> + Sync),
 }
 
 impl<'a> Host<'a> {
-    /// Hosts a render in silence.
+    /// Returns a host without events.
     pub(super) fn new(observer: &'a mut dyn Observer) -> Self {
         Self::telling(observer, 1, &|_| None)
     }
 
-    /// Tells the observer of each pass that begins.
+    /// Returns a host that notifies the observer of the beginning of each pass.
     pub(super) fn telling(
         observer: &'a mut dyn Observer,
         samples_per_pass: u64,

@@ -18,7 +18,7 @@ pub fn check_description(file: &Path, folder: &Path) -> Result<()> {
     check_all([file], &always(folder))
 }
 
-/// Fails if a file of the results would replace a file of a scene, of an existing reference, or another
+/// Fails if a file of the results would replace a file of a scene or of an existing reference, or another
 /// file of the results.
 pub(super) fn check(
     experiment: &Experiment,
@@ -56,7 +56,7 @@ fn always(folder: &Path) -> Vec<PathBuf> {
         .into()
 }
 
-/// Returns the names of the images of a scene, which only the first seed has.
+/// Returns the names of the images of a scene. Only runs with the first seed have images.
 fn images(experiment: &Experiment, loaded: &LoadedScene<'_>) -> Vec<String> {
     let renders = experiment.renders(&loaded.spec.name);
     let images = renders.map(|(budget, method)| {

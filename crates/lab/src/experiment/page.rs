@@ -38,7 +38,7 @@ pub fn write_page(
     Ok(formats::file::replace(&folder.join(PAGE), page.as_bytes())?)
 }
 
-/// The images of each pyramid by the names of their layers; that of the picture is empty.
+/// Reads the images of each pyramid by the names of their layers; the name of the picture is empty.
 fn layers(folder: &Path, results: &Results) -> Result<Vec<BTreeMap<String, Pixels>>> {
     let read = |pyramid: &Pyramid| {
         let file = formats::image::read_layers(&folder.join(&pyramid.images))?;

@@ -1,7 +1,7 @@
 //! Images of each strategy (s, t) of one method, rendered once in every scene, apart from the runs.
 //!
-//! Images of strategies take kilobytes per pixel, and the report shows them as small tiles: scenes with larger
-//! images are rendered at the size of a tile.
+//! Images of strategies take kilobytes per pixel, and the report shows them as small tiles. Therefore scenes with
+//! larger images are rendered at the size of a tile.
 
 use super::error::ExperimentError;
 use super::journal::Journal;
@@ -38,8 +38,8 @@ pub(super) fn complete(
     Ok(End::Complete)
 }
 
-/// Returns the description's pyramids so far; the journal may also contain pyramids of earlier versions of
-/// the description.
+/// Returns the pyramids in the journal that the description asks for. The journal may also contain pyramids of
+/// earlier versions of the description.
 pub(super) fn found(
     experiment: &Experiment,
     scenes: &[LoadedScene<'_>],
@@ -189,7 +189,7 @@ impl PyramidRun<'_> {
     }
 }
 
-/// Converts the figures of a strategy. None: it has no images.
+/// Converts the figures of a strategy to an entry of the results. None: the strategy has no images.
 fn strategy(figures: &Figures) -> Option<StrategyInfo> {
     let images = figures.images?;
     Some(StrategyInfo {

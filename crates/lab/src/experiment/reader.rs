@@ -1,7 +1,7 @@
 //! Tables of TOML with the positions of their entries.
 //!
-//! Readers first check a [`Section`] for unknown keys: a misspelt key is reported before the required key
-//! that is then missing.
+//! Readers first check a [`Section`] for unknown keys, so that the error for a misspelt required key names the
+//! misspelt one, not the missing one.
 
 use super::error::{ExperimentError, Fault, Place};
 use bidir::names::nearest;
@@ -19,7 +19,7 @@ type Result<T> = std::result::Result<T, ExperimentError>;
 pub(super) struct Source<'a> {
     pub(super) file: &'a Path,
     pub(super) text: &'a str,
-    /// Bytes that repetition may still make.
+    /// The number of bytes that repetitions may still add.
     pub(super) room: &'a Cell<usize>,
 }
 
@@ -47,7 +47,7 @@ impl<'a> Source<'a> {
         }
     }
 
-    /// Makes an error at a place.
+    /// Returns an error at a place.
     fn fault(self, place: Range<usize>, message: String, hint: Option<String>) -> ExperimentError {
         let place = self.at(&place);
         ExperimentError::Description(Fault {
@@ -62,7 +62,7 @@ impl<'a> Source<'a> {
 #[derive(Clone, Debug)]
 pub(super) struct Section<'a> {
     pub(super) source: Source<'a>,
-    /// The place of its head.
+    /// The place of the table's head.
     place: Range<usize>,
     /// The entries not yet taken.
     pub(super) table: DeTable<'a>,
@@ -77,8 +77,7 @@ pub(super) struct Entry<'a> {
 }
 
 impl<'a> Section<'a> {
-    /// Refuses unknown keys, and suggests the nearest one of the words of `known`. Keys in `old` are accepted but
-    /// never suggested.
+    /// Refuses unknown keys, and suggests the nearest word of `known`. Accepts keys in `old`, but never suggests them.
     pub(super) fn only(&self, known: &str, old: &[&str]) -> Result<()> {
         let is_known = |name: &str| known.split(' ').any(|known| known == name);
         let is_unknown = |name: &str| !is_known(name) && !old.contains(&name);
@@ -183,7 +182,7 @@ impl<'a> Section<'a> {
         pairs.collect()
     }
 
-    /// Makes an error about the whole table.
+    /// Returns an error about the whole table.
     pub(super) fn fault(&self, message: impl Into<String>) -> ExperimentError {
         self.source.fault(self.place.clone(), message.into(), None)
     }
@@ -198,17 +197,17 @@ impl<'a> Entry<'a> {
         }
     }
 
-    /// Returns its place.
+    /// Returns the place of the value.
     pub(super) fn at(&self) -> Place {
         self.source.at(&self.place)
     }
 
-    /// Makes an error about this value.
+    /// Returns an error about this value.
     pub(super) fn fault(&self, message: impl Into<String>) -> ExperimentError {
         self.source.fault(self.place.clone(), message.into(), None)
     }
 
-    /// Makes an error about this value, with a remedy if there is one.
+    /// Returns an error about this value, with a remedy if there is one.
     pub(super) fn fault_with<'h>(
         &self,
         message: impl Into<String>,
@@ -238,7 +237,7 @@ impl<'a> Entry<'a> {
         }
     }
 
-    /// Reads a text, or a number as written: the value of a flag.
+    /// Reads the value of a flag: a text, or a number as it is written.
     pub(super) fn written(&self) -> Result<&str> {
         match &self.value {
             DeValue::Integer(number) if number.radix() == 10 => Ok(number.as_str()),
@@ -248,7 +247,7 @@ impl<'a> Entry<'a> {
         }
     }
 
-    /// Reads the elements of a list; `kind` names it in the error.
+    /// Reads the elements of a list; `kind` names the elements in the error.
     pub(super) fn list(self, kind: &str) -> Result<Vec<Self>> {
         let fault = self.fault(format!("expected {kind}"));
         let DeValue::Array(array) = self.value else {
@@ -307,7 +306,7 @@ impl<'a> Entry<'a> {
         number.ok_or_else(|| self.fault("expected a number above 0"))
     }
 
-    /// Parses a text; an error gets its place.
+    /// Parses a text by `read`. An error gets the place of the text.
     pub(super) fn read<T, E: Display>(
         &self,
         read: impl FnOnce(&str) -> std::result::Result<T, E>,

@@ -37,9 +37,9 @@ pub(super) fn given(loaded: &LoadedScene<'_>) -> Result<Option<Reference>> {
 }
 
 /// Obtains the references of all scenes; `given` holds the existing ones. Leaves out optional scenes whose
-/// reference is contradicted, with a warning. None: the observer stopped it.
+/// estimators disagree, with a warning. None: the observer stopped it.
 ///
-/// Errors: those of [`obtain`]; no scene is left.
+/// Errors: as [`obtain`]; no scene is left.
 pub(super) fn obtain_all<'a>(
     experiment: &'a Experiment,
     scenes: Vec<LoadedScene<'a>>,
@@ -86,7 +86,7 @@ pub(super) fn obtain_all<'a>(
     }
 }
 
-/// Returns the reference of the scene that this one names as having the same light.
+/// Returns the reference of the scene with the same light that this scene names. None: it names none.
 fn shared(ready: &RunSet<'_>, loaded: &LoadedScene<'_>) -> Option<Reference> {
     let ReferenceSpec::Of(name) = &loaded.spec.reference else {
         return None;
@@ -142,7 +142,7 @@ pub(super) fn written(loaded: &LoadedScene<'_>, setup: &Setup) -> Vec<PathBuf> {
     }
 }
 
-/// Reads an existing reference; `name` is its folder within that of the results. None: it lies elsewhere.
+/// Reads an existing reference; `name` is its folder within the folder of the results. None: it is elsewhere.
 fn load(loaded: &LoadedScene<'_>, folder: &Path, name: Option<&str>) -> Result<Reference> {
     let of_scene = |error| failed(loaded, error);
     let reference = references::Reference::load(folder).map_err(of_scene)?;
@@ -185,7 +185,7 @@ fn read(path: &Path, loaded: &LoadedScene<'_>) -> Result<Pixels> {
     finite(pixels, path, loaded)
 }
 
-/// Refuses pixels that are not finite, where errors would not be finite either.
+/// Refuses an image with pixels that are not finite, as errors against it would not be finite either.
 fn finite(pixels: Pixels, path: &Path, loaded: &LoadedScene<'_>) -> Result<Pixels> {
     let is_bad = |pixel: &[f32; 3]| !pixel.iter().all(|channel| channel.is_finite());
     let Some(first) = pixels.data.iter().position(is_bad) else {
@@ -212,7 +212,7 @@ fn unusable(
     }
 }
 
-/// Computes the mean square error of an image from its variance layer. None: it has none.
+/// Computes the mean square error of an image from its variance layer. None: it has no such layer.
 fn stored_mse(path: &Path) -> Option<f64> {
     let layers = formats::image::read_layers(path).ok()?;
     let mse = Pixels::layer(&layers, "Variance.")?.mean()?;
@@ -236,7 +236,7 @@ fn plan(loaded: &LoadedScene<'_>, recipe: &ReferenceRecipe) -> Plan {
     Plan::new(&loaded.settings, recipe.spp, [&picture, &cross_check])
 }
 
-/// Returns the folder of a reference within that of the results; its name contains a hash of the plan.
+/// Returns the folder of a reference within the folder of the results. Its name contains a hash of the plan.
 fn folder(loaded: &LoadedScene<'_>, plan: &Plan) -> String {
     let settings = plan.estimators.each_ref().map(texts);
     let [width, height] = loaded.size();

@@ -4,8 +4,8 @@
 //! light is the same for every k, and so are the paths, contributions and errors; only the tree of the
 //! intersector grows, and with it the cost of a ray. More objects or bumps would also change the light, so
 //! that errors could no longer be compared. The limitation: flat faces are the best case for many
-//! triangles, since a ray meets few of their boxes. The number of triangles from which optimisations pay
-//! is therefore an upper bound.
+//! triangles, since a ray meets few of their boxes. Therefore a measured number of triangles from which an
+//! optimisation pays is an upper bound.
 
 use formats::scene::Files;
 use std::fmt::Write;
@@ -64,18 +64,18 @@ impl Room {
         ((self.triangles as f64 / whole as f64).sqrt().round() as usize).max(1)
     }
 
-    /// Returns the exact number of triangles, without those of the light.
+    /// Returns the exact number of triangles, without the triangles of the light.
     fn count(self) -> usize {
         2 * faces().len() * self.division() * self.division()
     }
 
-    /// Returns the name of its scene file.
+    /// Returns the name of the room's scene file.
     pub(super) fn name(self) -> PathBuf {
         let (light, triangles) = (self.light.name(), self.count());
         format!("room-{light}-{triangles}-{}.pbrt", self.albedo).into()
     }
 
-    /// Makes the scene file and its mesh.
+    /// Returns the scene file and its mesh, in memory.
     pub(super) fn files(self) -> Files {
         let mesh = format!("room-{}.ply", self.count());
         let scene = Arc::from(self.text(&mesh).as_bytes());

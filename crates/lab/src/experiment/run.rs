@@ -29,7 +29,7 @@ pub(super) struct Rendered {
     picture: Picture,
     spp: u64,
     time: Moment,
-    /// The part of `time` before the first pass.
+    /// The part of the time before the first pass.
     training: Moment,
     rays: Rays,
     connections_blocked: u64,
@@ -39,7 +39,7 @@ pub(super) struct Rendered {
 #[derive(Clone, Copy)]
 struct Moment {
     seconds: f64,
-    /// Of all threads. None: the host does not measure it.
+    /// The processor time of all threads. None: the host does not measure it.
     processor_seconds: Option<f64>,
 }
 
@@ -143,7 +143,7 @@ impl Run<'_> {
             && record.budget == self.budget.name
     }
 
-    /// Returns the name of its image, relative to the folder of the results.
+    /// Returns the name of the run's image, relative to the folder of the results.
     pub(super) fn image(&self) -> String {
         let names = [&self.scene.spec.name, &self.budget.name, &self.method.name];
         let [scene, budget, method] = names.map(|name| file_name(name));
@@ -183,7 +183,7 @@ fn rays(session: &Session<'_>) -> Rays {
     }
 }
 
-/// Computes the metrics; values that are not finite are left out, as JSON cannot hold them.
+/// Computes the metrics by name. Leaves out values that are not finite, as JSON cannot hold them.
 fn distances(
     picture: &Picture,
     reference: &Reference,

@@ -38,9 +38,9 @@ pub struct Setup {
 /// The treatment of existing records.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Start {
-    /// Keeps them and renders the missing ones. Refuses records of another experiment, machine or program.
+    /// Keeps the records and renders the missing ones. Refuses records of another experiment, machine or program.
     Resume,
-    /// Removes them; references of the same scene and settings stay.
+    /// Removes the records. References of the same scene and settings stay.
     Anew,
 }
 
@@ -49,7 +49,7 @@ pub enum Start {
 pub enum End {
     /// Every render has a record.
     Complete,
-    /// The observer stopped it; running it again continues.
+    /// The observer stopped the experiment. Running it again continues.
     Stopped,
 }
 
@@ -103,7 +103,7 @@ pub(super) struct Started<'a> {
     pub(super) run_set: RunSet<'a>,
     pub(super) key: RecordsKey,
     pub(super) journal: Journal,
-    /// Complete if the images of strategies are.
+    /// [`End::Complete`] if the images of strategies are complete.
     pub(super) end: End,
 }
 
@@ -154,8 +154,8 @@ pub(super) fn start<'a>(
     }))
 }
 
-/// Refuses methods whose strategies make no path in a scene, and warns of methods that lose light, once for
-/// all that lose the same.
+/// Refuses methods whose strategies make no path in a scene. Warns of methods that lose light, once for all
+/// methods that lose the same light.
 fn check_strategies(
     experiment: &Experiment,
     scenes: &[LoadedScene<'_>],
@@ -209,7 +209,7 @@ fn loss(method: &MethodSpec, loaded: &LoadedScene<'_>) -> Result<Option<String>>
     Ok(Some(text))
 }
 
-/// Refuses a setting without effect on the integrator that the scene file sets.
+/// Refuses a setting of the method that has no effect on the scene file's integrator.
 fn check_effect(method: &MethodSpec, loaded: &LoadedScene<'_>) -> Result<()> {
     let request = &method.request;
     let integrator = loaded.settings.integrator;
@@ -234,7 +234,7 @@ impl Absent {
 }
 
 impl Machine {
-    /// The processor's name where the system gives none.
+    /// The processor's name if the system gives none.
     pub const UNKNOWN: &'static str = "unknown";
 
     /// Describes this machine; [`run`] fills in the number of threads.
@@ -277,7 +277,7 @@ pub(super) struct RunSet<'a> {
     pub(super) experiment: &'a Experiment,
     pub(super) setup: &'a Setup,
     pub(super) scenes: Vec<LoadedScene<'a>>,
-    /// One for each scene.
+    /// The references, one for each scene.
     pub(super) references: Vec<Reference>,
     /// The omitted scenes.
     pub(super) absent: Vec<Absent>,
@@ -356,7 +356,7 @@ impl RunSet<'_> {
         }
     }
 
-    /// Sorts the records into the order of the runs; other machines may have added them in any order.
+    /// Sorts the records into the order of the runs, as other machines may have added them in any order.
     fn ordered(&self, records: &[Record]) -> Vec<Record> {
         let record = |(run, _): (Run<'_>, _)| {
             let mut records = records.iter();
@@ -365,7 +365,7 @@ impl RunSet<'_> {
         self.runs().filter_map(record).collect()
     }
 
-    /// Returns the methods with their settings; a setting that differs between scenes is "the scene's".
+    /// Returns the methods with their settings. The value of a setting that differs between scenes is "the scene's".
     fn methods(&self) -> Vec<MethodInfo> {
         let methods = self.experiment.methods.iter().map(|method| {
             let mut settings: BTreeMap<String, String> = BTreeMap::new();

@@ -2,8 +2,8 @@
 //!
 //! With X, Y, Z relative to the white of Rec. 709 (D65):
 //!
-//! - opponent colours YCxCz: Y' = 116 Y - 16, Cx = 500 (X - Y), Cz = 200 (Y - Z); linear, so that
-//!   filtering them is filtering light;
+//! - opponent colours YCxCz: Y' = 116 Y - 16, Cx = 500 (X - Y), Cz = 200 (Y - Z). They are linear in light, so
+//!   that a filter of them is a filter of light;
 //! - L\*a\*b\*: the same formulas of f(X), f(Y), f(Z), where f is a cube root with a linear toe.
 
 use super::Plane;

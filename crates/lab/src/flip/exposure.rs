@@ -5,7 +5,7 @@
 //!   T(x) = (k_0 x² + k_1 x + k_2) / (k_3 x² + k_4 x + k_5),
 //!
 //! for each channel, clamped to [0, 1]. Let x_t be the light with T(x_t) = 0.85. The first exposure maps the
-//! reference's brightest pixel to x_t, the last one its median:
+//! reference's brightest pixel to x_t, the last one the reference's median:
 //!
 //!   start = log2(x_t / max Y),   stop = log2(x_t / median Y),   count = max(2, ⌈stop - start⌉).
 
@@ -37,7 +37,7 @@ pub struct Exposures {
     pub start: f64,
     /// The last. Unit: stops.
     pub stop: f64,
-    /// Their number, at least 1.
+    /// The number of exposures, at least 1.
     pub count: usize,
 }
 

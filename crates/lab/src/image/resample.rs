@@ -25,8 +25,8 @@ pub fn resample(image: &Pixels, size: [usize; 2]) -> Pixels {
     Pixels { size, data }
 }
 
-/// Divides a line into `to` and into `from` equal parts. Returns the parts of the second division that
-/// overlap each part of the first, with the fraction of the latter that they cover.
+/// Divides a line into `to` and into `from` equal parts. For each of the `to` parts, returns the `from` parts
+/// that overlap it, each with the fraction of the `to` part that it covers.
 fn overlaps(from: usize, to: usize) -> Vec<Vec<(usize, f64)>> {
     let part = |i: usize| {
         // In units of 1 / (from · to), all ends are whole numbers.

@@ -16,10 +16,11 @@
 //!
 //! `relmse_block` compares means over *blocks* of 16 × 16 pixels, counted from the top left; blocks at the
 //! right and lower border are smaller, and the weight of a block is its number of pixels. Uncorrelated noise
-//! of pixels averages out in it; noise that neighbours share, such as from common light subpaths, remains.
+//! of pixels averages out within a block; noise that neighbours share, such as from common light subpaths,
+//! remains.
 //!
-//! A pixel that is not finite makes every metric over it not finite. It counts as the worst error, so that
-//! trimming excludes it. A metric over no pixels is NaN.
+//! A metric is not finite if one of its pixels is not. Such a pixel counts as the worst error, so that trimming
+//! excludes it. A metric over no pixels is NaN.
 
 mod map;
 
@@ -81,8 +82,8 @@ impl Metric {
         found.map_or("", |(name, _)| name)
     }
 
-    /// Returns the exponent k with which the metric of an unbiased estimate falls, as samples^-k. None: FLIP,
-    /// which has no such law.
+    /// Returns the exponent k of the law by which the metric of an unbiased estimate decreases: samples^-k. None:
+    /// FLIP, which has no such law.
     pub fn order(self) -> Option<f64> {
         match self {
             Self::Rmse | Self::RmseTrimmed | Self::Mape => Some(0.5),
@@ -96,7 +97,7 @@ impl Metric {
         !matches!(self, Self::Flip | Self::FlipHdr)
     }
 
-    /// Computes the error of every pixel; for trimmed metrics, also of the excluded ones.
+    /// Computes the error of every pixel, including those that trimmed metrics exclude.
     pub fn errors(self, pair: &Pair<'_>) -> ErrorMap {
         let of = |error: fn(f64, f64) -> f64| ErrorMap::of_channels(pair, error);
         match self {

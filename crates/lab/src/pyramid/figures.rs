@@ -11,9 +11,9 @@ use bidir::stats::StrategyCounts;
 pub struct Figures {
     /// The strategy.
     pub strategy: Strategy,
-    /// Its contributions, by their fate.
+    /// The counts of its contributions, by their fate.
     pub counts: StrategyCounts,
-    /// The numbers of its images. None: the film keeps none of it.
+    /// The numbers of its images. None: the film keeps no images of it.
     pub images: Option<ImageFigures>,
 }
 
@@ -22,17 +22,17 @@ pub struct Figures {
 pub struct ImageFigures {
     /// The mean luminance of the weighted image.
     pub mean: f64,
-    /// The variance of what a pass adds to a pixel of it, in the mean pixel. None: less than two
-    /// passes, or none of them in this session.
+    /// The variance of a pixel of the weighted image in one pass, averaged over pixels. None: fewer than
+    /// two passes, or none of them in this session.
     pub variance: Option<f64>,
     /// The mean luminance of the raw image. None: the film has none.
     pub raw_mean: Option<f64>,
-    /// Values that are in the weighted image, but too large for the raw one.
+    /// The number of values in the weighted image that are too large for the raw one.
     pub raw_dropped: u64,
 }
 
 impl Figures {
-    /// All strategies that something was counted of, shorter paths first.
+    /// Returns the numbers of all strategies with counts, shorter paths first.
     pub fn all(session: &Session<'_>) -> Vec<Self> {
         let moments: Vec<_> = session.strategy_moments().collect();
         let (film, stats) = (session.film(), session.stats());
@@ -53,7 +53,7 @@ impl Figures {
         rows.collect()
     }
 
-    /// The blocked part of the traced rays. None: none was traced.
+    /// Returns the fraction of traced shadow rays that are blocked. None: no ray was traced.
     pub fn blocked_share(&self) -> Option<f64> {
         let StrategyCounts {
             traced, blocked, ..
@@ -62,12 +62,12 @@ impl Figures {
     }
 }
 
-/// The mean luminance of a part of a film's picture.
+/// Returns the mean luminance of a part of a film's picture.
 pub(super) fn mean(film: &Film, part: usize) -> f64 {
     mean_of(film, film.part_pixels(part))
 }
 
-/// The mean luminance of an image of a film.
+/// Returns the mean luminance of an image with the pixels of a film's crop.
 pub(super) fn mean_of(film: &Film, pixels: impl Iterator<Item = [f32; 3]>) -> f64 {
     let sum: f64 = pixels.map(|pixel| f64::from(luminance(pixel))).sum();
     sum / film.settings().crop.area().max(1) as f64

@@ -1,8 +1,8 @@
 //! Images and numbers of each strategy (s, t), weighted and raw, of a film that keeps them.
 //!
-//! Weighted images add up to the picture. A raw image is C/π, without the weight: all of one number
-//! n = s + t of vertices show the same light, as far as their strategies can make its paths, each with
-//! the noise that it would have alone [Veach97, fig. 10.2].
+//! Weighted images add up to the picture. A raw image is C/π, without the weight. All raw images with the same
+//! number n = s + t of vertices show the same light, except for paths that a strategy cannot make, each with
+//! the noise of its strategy alone [Veach97, fig. 10.2].
 
 mod figures;
 
@@ -13,18 +13,18 @@ use bidir::film::{Film, LayerImage, Layers};
 use bidir::path::Strategy;
 use formats::film::Developed;
 
-/// The most vertices of the paths whose strategies are shown where nobody says it.
+/// The default maximum number of vertices of paths whose strategies have images.
 pub const VERTICES: u16 = 6;
-/// The most pixels of an image from side to side, and from top to bottom, where an experiment shows
-/// them as tiles: images that are larger are shown no better.
+/// Maximum width and height of an image that an experiment shows as a tile. Larger ones would not look
+/// better. Unit: pixels.
 pub const TILE: usize = 128;
 
-/// The kind of the images of strategies.
+/// The kind of an image of a strategy.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// Each strategy with its weight: they add up to the picture.
+    /// With MIS weights: these images add up to the picture.
     Weighted,
-    /// Each strategy alone, without its weight.
+    /// Without MIS weights: each image is the estimate of its strategy alone.
     Raw,
 }
 
@@ -37,7 +37,7 @@ impl Kind {
     }
 }
 
-/// The picture of a film with the images of strategies alone, as layers.
+/// Develops a film, with only the images of strategies as layers.
 pub fn developed(film: &Film) -> Developed {
     let layers = film.layers();
     let names = layers.part_names().enumerate();
@@ -53,22 +53,22 @@ pub fn developed(film: &Film) -> Developed {
     }
 }
 
-/// The mean luminance of a film's picture.
+/// Returns the mean luminance of a film's picture.
 pub fn mean(film: &Film) -> f64 {
     figures::mean_of(film, film.develop().pixels.into_iter())
 }
 
-/// The mean luminance of what paths add that are longer than those with images of their own.
+/// Returns the mean luminance that longer paths add, whose strategies have no images.
 pub fn mean_of_longer(film: &Film) -> f64 {
     longer(film).map_or(0.0, |part| figures::mean(film, part))
 }
 
-/// The part of paths that are longer than those with images of their own. None: there are no such images.
+/// Returns the index of the film's part for longer paths, whose strategies have no images. None: no strategy has one.
 fn longer(film: &Film) -> Option<usize> {
     film.layers().part_names().position(|name| name == "longer")
 }
 
-/// The image of a strategy, as large as the film. None: the film keeps none.
+/// Returns the image of a strategy, in the size of the film's crop. None: the film keeps no such image.
 pub fn strategy_image(film: &Film, kind: Kind, strategy: Strategy) -> Option<Pixels> {
     let part = kind.part(film.layers(), strategy)?;
     let crop = &film.settings().crop;

@@ -10,8 +10,8 @@ use serde::{Deserialize, Serialize};
 const BLOCKS: usize = 8;
 /// The smallest side of a block: means of few pixels have heavy tails. Unit: pixels.
 const SMALLEST_BLOCK: usize = 8;
-/// The fewest effective samples of a mean that is compared. With fewer, a mean without its rare bright samples is too
-/// small, and so is its variance.
+/// The least number of effective samples of a mean that is compared. With fewer, a mean that misses rare bright
+/// samples is too small, and so is its variance.
 const ENOUGH: f64 = 64.0;
 
 /// The result of the agreement test.
@@ -19,22 +19,22 @@ const ENOUGH: f64 = 64.0;
 pub struct Agreement {
     /// True if p ≥ level.
     pub agree: bool,
-    /// The p-value: the smaller one of both parts, corrected for their number.
+    /// The p-value: the smaller one of the two parts (film and blocks), corrected for their number.
     pub p: f64,
     /// The level of the test.
     pub level: f64,
     /// A description of the test.
     pub test: String,
-    /// Replicates of each estimator.
+    /// Number of replicates of each estimator.
     pub replicates: usize,
-    /// Comparisons in all: three channels of the film, and of every block.
+    /// Number of comparisons: three channels of the film, and of every block.
     pub comparisons: usize,
     /// The side of a block. Unit: pixels.
     pub block: usize,
-    /// Effective samples of the mean of a block, of the estimator that has fewer. None: the film is black.
+    /// Number of effective samples of a block's mean, for the estimator that has fewer. None: the film is black.
     #[serde(default)]
     pub effective: Option<f64>,
-    /// False where even the mean of the film has too few of them for a verdict.
+    /// False if even the mean of the film has too few effective samples for a verdict.
     #[serde(default = "yes")]
     pub decided: bool,
     /// The channel whose film means differ most.
@@ -60,8 +60,9 @@ const fn yes() -> bool {
 }
 
 impl Renders<'_> {
-    /// The effective number of samples of a mean over `block` × `block` pixels: N samples have N E\[x\]² / E\[x²\],
-    /// with the mean of E\[x²\] / E\[x\]² over blocks, as some have missed what is rare. The fewest of all channels.
+    /// Returns the effective number of samples of a mean over `block` × `block` pixels, for the channel that has the
+    /// fewest. N samples have N E\[x\]² / E\[x²\]; E\[x²\] / E\[x\]² is averaged over blocks, as some blocks miss
+    /// rare samples.
     fn effective(&self, block: usize) -> f64 {
         let [mean, variance] = self.whole;
         let blocks = Blocks::new(mean.size, block);
@@ -85,7 +86,7 @@ impl Renders<'_> {
     }
 }
 
-/// Compares the renders of two estimators. None: there are too few, or no pixels.
+/// Compares the renders of two estimators. None: there are too few replicates, or no pixels.
 pub(super) fn agreement(renders: &[Renders<'_>; 2]) -> Option<Agreement> {
     let [a, b] = renders.each_ref().map(|renders| renders.replicates);
     let size = a.first()?.size;

@@ -16,7 +16,7 @@ use std::collections::BTreeMap;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
-/// The first seed: far from those that people choose.
+/// The first seed, far from the seeds that people choose.
 const SEEDS: u64 = 1 << 40;
 /// The prefixes of the film names of both estimators.
 const NAMES: [&str; 2] = ["picture", "against"];
@@ -24,7 +24,7 @@ const NAMES: [&str; 2] = ["picture", "against"];
 /// The host of [`make`].
 #[derive(Clone, Copy)]
 pub struct Host<'a> {
-    /// Receives progress, may supply a clock, and may ask to stop; a later [`make`] continues.
+    /// Receives progress, may supply a clock, and may ask to stop. After a stop, a later [`make`] continues.
     pub progress: &'a dyn Progress,
     /// Receives the number of samples in existing films.
     pub found: &'a dyn Fn(u64),
@@ -141,7 +141,7 @@ fn finish(
     })
 }
 
-/// Returns the settings of the first replicate of estimator number `index`.
+/// Returns `settings` with the seed of the first replicate of estimator number `index`.
 fn seeded(settings: &Settings, index: u64) -> Settings {
     let seeds = settings.seed.wrapping_mul(2).wrapping_add(index);
     Settings {

@@ -1,8 +1,8 @@
 //! References: images that errors are measured against, with evidence that they are right.
 //!
 //! Two different estimators render a reference. Each makes [`REPLICATES`] replicates: renders of n passes
-//! with seeds of their own. Welch's t-test compares the replicates of both, on the mean of the film and on
-//! blocks of pixels, at [`LEVEL`]. A reference whose estimators disagree is written, but
+//! with different seeds. Welch's t-test compares the replicates of the two estimators, on the mean of the film
+//! and on blocks of pixels, at [`LEVEL`]. A reference whose estimators disagree is written, but
 //! [`Reference::load`] refuses it.
 //!
 //! The image is the mean Σ_p X_p / N over all N = REPLICATES · n passes of the *first* estimator; the second
@@ -11,7 +11,7 @@
 //! would get the largest weight. The variance of a pixel is Σ_p (X_p - X̄)² / (N (N - 1)): exact for the
 //! independent sampler, somewhat too large for stratified ones. It has N - 1 degrees of freedom.
 //!
-//! Seeds are far from those that people choose, so that a measured image shares no sample with its
+//! Seeds are far from the seeds that people choose, so that a measured image shares no sample with its
 //! reference.
 //!
 //! A reference is a folder:
@@ -46,7 +46,7 @@ use bidir::film::{FilmSettings, MergeError, Picture};
 use std::path::{Path, PathBuf};
 use thiserror::Error;
 
-/// Replicates of each estimator.
+/// Number of replicates of each estimator.
 pub const REPLICATES: u64 = 16;
 /// The level of the agreement test: the rate of false alarms.
 pub const LEVEL: f64 = 1e-3;
@@ -55,7 +55,7 @@ pub const LEVEL: f64 = 1e-3;
 const PICTURE: &str = "picture.exr";
 const AGAINST: &str = "against.exr";
 const PROVENANCE: &str = "provenance.json";
-/// The name of the folder of films in that of a reference.
+/// The name of the folder of films in the folder of a reference.
 pub const FILMS: &str = "films";
 
 /// An error of making or using a reference.
@@ -94,7 +94,7 @@ pub enum Error {
         /// The cause.
         reason: String,
     },
-    /// Its estimators disagree.
+    /// The estimators of the reference disagree.
     #[error("{}: refused: its estimators disagree (p = {p:e} at level {LEVEL})", folder.display())]
     Disagree {
         /// The folder of the reference.
@@ -110,7 +110,7 @@ pub enum Error {
     TooLong {
         /// The folder of the reference.
         folder: PathBuf,
-        /// Samples per pixel of its longest replicate, times the number of replicates.
+        /// Samples per pixel of the longest replicate, times the number of replicates.
         found: u64,
         /// Requested samples per pixel.
         requested: u64,
@@ -180,14 +180,14 @@ impl Reference {
         })
     }
 
-    /// Refuses it unless it belongs to the scene with this digest and to this film.
+    /// Refuses the reference unless it belongs to the scene with this digest and to this film.
     pub fn check(&self, digest: &str, film: &FilmSettings) -> Result<(), Error> {
         self.provenance.check(&self.folder, digest, film)
     }
 
-    /// Computes its own mean square error: the mean variance of pixels and channels.
+    /// Computes the mean square error of the reference: the mean variance of pixels and channels.
     ///
-    /// None: it is not finite, or there are no pixels.
+    /// None: the error is not finite, or there are no pixels.
     pub fn mse(&self) -> Option<f64> {
         self.variance.mean().filter(|mse| mse.is_finite())
     }

@@ -9,9 +9,9 @@ use bidir::settings::Request;
 /// The settings of a reference.
 #[derive(Clone, Debug)]
 pub struct Plan {
-    /// The estimator of the image, and that of the cross-check. Their layers are ignored.
+    /// The estimator of the image, and the estimator of the cross-check. Their layers are ignored.
     pub estimators: [Settings; 2],
-    /// Samples per pixel of each, including existing ones. Rounded up to a multiple of [`REPLICATES`].
+    /// Samples per pixel of each estimator, including existing ones. Rounded up to a multiple of [`REPLICATES`].
     pub spp: u64,
 }
 
@@ -39,8 +39,8 @@ impl Plan {
         }
     }
 
-    /// Makes the plan that adds `more` samples per pixel to a reference. None: it has settings that this
-    /// program does not know.
+    /// Makes the plan that adds `more` samples per pixel to a reference. None: the reference has settings that
+    /// this program does not know.
     pub fn extended(provenance: &Provenance, more: u64) -> Option<Self> {
         let [first, second] = provenance.estimators.each_ref().map(|record| {
             let mut request = Request::read(&record.settings)?;

@@ -33,7 +33,7 @@ pub struct Provenance {
     pub resolution: [u32; 2],
     /// Left, top, right, bottom of the rendered rectangle, the last two exclusive. Unit: pixels.
     pub crop: [u32; 4],
-    /// The estimator of the image, and that of the cross-check.
+    /// The estimator of the image, and the estimator of the cross-check.
     pub estimators: [EstimatorRecord; 2],
     /// The test of their agreement.
     pub agreement: Agreement,
@@ -50,7 +50,7 @@ pub struct EstimatorRecord {
     pub settings: BTreeMap<String, String>,
     /// Samples per pixel, of all replicates together.
     pub spp: u64,
-    /// Number of replicates, each with a seed of its own.
+    /// Number of replicates, each with a different seed.
     pub replicates: u64,
     /// The seed of the scene, which determines the seeds of the replicates.
     pub seed: u64,
@@ -65,8 +65,8 @@ pub struct EstimatorRecord {
 }
 
 impl EstimatorRecord {
-    /// Summarizes it in a line, such as `bdpt, 4096 samples per pixel`, with the settings that differ from
-    /// the defaults of the integrator.
+    /// Summarizes the estimator in a line, such as `bdpt, 4096 samples per pixel`, with the settings that differ
+    /// from the defaults of the integrator.
     pub fn summary(&self) -> String {
         let defaults = self.defaults();
         let ignored = ["integrator", "max-depth", "sampler", "seed", "aov"];
@@ -80,7 +80,7 @@ impl EstimatorRecord {
         format!("{integrator}{named}, {} samples per pixel", self.spp)
     }
 
-    /// Returns the default settings of its integrator.
+    /// Returns the default settings of the estimator's integrator.
     fn defaults(&self) -> BTreeMap<String, String> {
         let integrator = self.settings.get("integrator");
         let integrator = integrator.and_then(|name| name.parse().ok());
@@ -125,7 +125,7 @@ impl Provenance {
         serde_json::from_str(&text).map_err(damaged)
     }
 
-    /// Writes it to the reference in `folder`.
+    /// Writes `provenance.json` to the reference in `folder`.
     pub(super) fn write(&self, folder: &Path) -> Result<(), Error> {
         let json = serde_json::to_string_pretty(self);
         let json = seal::sealed(&json.expect("it is numbers and texts")) + "\n";
@@ -163,8 +163,8 @@ impl Provenance {
         format!("{first}; {agree} with {second} (p = {p:.3}, level {level})")
     }
 
-    /// Refuses the reference in `folder` if it is unusable for any scene: its estimators disagree, or another
-    /// version of them made it.
+    /// Refuses the reference in `folder` if no scene can use it: its estimators disagree, or another version of
+    /// the estimators made it.
     pub fn check_usable(&self, folder: &Path) -> Result<(), Error> {
         let folder = folder.to_owned();
         let version = self.estimator_version;

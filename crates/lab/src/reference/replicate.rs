@@ -25,7 +25,7 @@ pub(super) struct Estimator<'a> {
     pub(super) resources: &'a Resources,
 }
 
-/// The replicates of an estimator, complete.
+/// The complete replicates of an estimator.
 pub(super) struct Replicates {
     /// All replicates in one film: pass p of replicate r is its pass r · n + p.
     pub(super) film: Film,
@@ -141,7 +141,7 @@ impl Estimator<'_> {
         Ok(limit.map(|_| render.into_file()))
     }
 
-    /// Returns the error of a film that cannot be continued, or of a render that cannot begin.
+    /// Returns the error for a film that cannot be continued, or for a render that cannot begin.
     fn refused(&self, path: &Path, error: OpenError) -> Error {
         match error {
             OpenError::OtherRender(difference) => Error::OtherRender {

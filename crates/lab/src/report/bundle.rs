@@ -1,23 +1,23 @@
-//! The modules of the page: the viewer serves them as files, and a report has them in one script.
+//! The script modules of the page. The viewer serves them as files; a report has all of them in one script.
 //!
-//! A script in a page cannot import another one unless the policy of the page lets it load something.
-//! In a report each module is therefore a function that gives what it exports.
+//! The policy of a report's page forbids loading, so a script in it cannot import another one. Therefore each
+//! module becomes a function in the report, which returns the exports of the module.
 
-/// The name of each module with its text.
+/// Returns the name of each module with its text.
 macro_rules! modules {
     ($($name:literal)*) => {
         [$(($name, include_str!(concat!("../../page/", $name, ".js")))),*]
     };
 }
 
-/// All modules, each behind those that it imports.
+/// All modules, each after the modules that it imports.
 const MODULES: [(&str, &str); 21] = modules![
     "dom" "format" "number" "glossary" "table" "axis" "plot" "sections" "falsecolor" "view"
     "pixels" "shaders" "picture" "stage" "gestures" "divider" "values" "tiles" "strategies"
     "images" "report"
 ];
 
-/// The text of the file `name` of a module. None: there is none.
+/// Returns the text of the module with the file name `name`. None: there is none.
 pub fn module(name: &str) -> Option<&'static str> {
     let stem = name.strip_suffix(".js")?;
     let mut modules = MODULES.iter();
@@ -26,7 +26,7 @@ pub fn module(name: &str) -> Option<&'static str> {
         .map(|(_, text)| *text)
 }
 
-/// All modules as one script.
+/// Returns all modules as one script.
 pub(super) fn script() -> String {
     let functions = MODULES.iter().map(|(name, text)| function(name, text));
     std::iter::once("const modules = {};\n".to_owned())
@@ -34,7 +34,7 @@ pub(super) fn script() -> String {
         .collect()
 }
 
-/// A module as a function. Imports and exports stand at the beginning of a line of their own.
+/// Converts a module to a function. Each import and export has to begin a line.
 fn function(name: &str, text: &str) -> String {
     let (mut body, mut exports) = (String::new(), Vec::new());
     for line in text.lines() {
@@ -57,7 +57,7 @@ fn function(name: &str, text: &str) -> String {
     format!("modules[\"{name}\"] = (() => {{\n{body}return {{ {exports} }};\n}})();\n")
 }
 
-/// The name in `function name(…`, `const name = …` and `class name …`.
+/// Returns the name in `function name(…`, `const name = …` or `class name …`.
 fn exported_name(declaration: &str) -> &str {
     let is_keyword = |word: &&str| !["async", "function", "const", "class"].contains(word);
     let mut words = declaration.split([' ', '(']);

@@ -1,16 +1,16 @@
-//! Maps of FLIP: what an observer sees between each render and the reference of its scene.
+//! Maps of FLIP: the difference that an observer sees between each render and the reference of its scene.
 
 use super::ReportImage;
 use crate::image::Pair;
 use crate::metric::Metric;
 use rayon::iter::{IntoParallelRefMutIterator, ParallelIterator};
 
-/// A page has maps for as many pixels of renders: half a million take about a second of one core in
-/// rooms, and nobody should wait for a page.
+/// Maximum number of pixels of all maps of a page, as half a million take about a second of one core for
+/// images of rooms.
 pub(super) const MOST_PIXELS: usize = 1 << 22;
 
-/// Gives renders their maps against the reference of their scene, where that has their size: the
-/// difference at the exposure at which it is seen best. In order, as far as `MOST_PIXELS` goes.
+/// Adds a map to each render whose scene has a reference of the same size: the largest difference over all
+/// exposures. Proceeds in order, and leaves out images that would exceed `MOST_PIXELS`.
 pub fn add_flip(images: &mut [ReportImage]) {
     let (mut left, mut wanted) = (MOST_PIXELS, Vec::new());
     let (references, renders): (Vec<_>, Vec<_>) =

@@ -1,12 +1,12 @@
-//! Pixels as they stand in the page: half floats in base64.
+//! Pixels of the page: half floats in base64.
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use half::f16;
 
-/// Rounds a number to a half float; beyond ±65504 to those, not to infinity.
+/// Rounds a number to a half float, and a finite number beyond ±65504 to ±65504.
 ///
-/// The viewer should show a very bright pixel, not a broken one. NaN and infinities stay.
+/// So the viewer shows a very bright pixel, not a broken one. NaN and infinities stay.
 fn to_half(value: f32) -> f16 {
     let largest = f32::from(f16::MAX);
     f16::from_f32(if value.is_finite() {

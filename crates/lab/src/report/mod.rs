@@ -1,18 +1,19 @@
-//! The report: what an experiment found, as one page that needs nothing else.
+//! The report: the results of an experiment as one self-contained page.
 //!
-//! [`html`] makes the page; it opens from a file, on paper, in the dark, without a network. It has the
-//! results as JSON, a style and a script: modules in `page/`, of which the viewer of renders has some,
-//! too (`bundle`). The script draws everything: verdicts, settings, claims, tables, plots, strategies, and
-//! the viewer that flips between images at the same place. Without it the page has the verdicts alone.
+//! [`html`] makes the page. It opens from a file without a network, prints on paper, and has a dark style. It
+//! contains the results as JSON, a style and a script. The script consists of the modules in `page/`, some of
+//! which the viewer of renders shares (`bundle`). It draws everything: verdicts, settings, claims, tables, plots,
+//! strategies, and the viewer that flips between images at the same place. Without scripts, the page shows only
+//! the verdicts.
 //!
-//! *Nothing leaves the page.* Its security policy forbids every request, and all scripts and styles but
-//! those that stand in it, by their hashes. Texts cannot become markup: in the JSON no `<` is left, and
-//! the script makes texts of them.
+//! *Nothing leaves the page.* Its security policy forbids every request, and allows only the scripts and styles
+//! of the page, by their hashes. Texts cannot become markup: the JSON contains no `<`, and the script inserts
+//! values only as text.
 //!
 //! *Pixels* are half floats in base64 (`half`), so that exposure works as on the original: 11 bits of
-//! precision, up to 65504. An image takes 8 bytes per pixel, and 1⅓ more where it has a map of FLIP.
+//! precision, up to 65504. An image takes 8 bytes per pixel, and 1⅓ more if it has a map of FLIP.
 //!
-//! This module measures nothing and concludes nothing: it shows [`Results`] as they are.
+//! This module only shows [`Results`]: it measures nothing and concludes nothing.
 
 mod bundle;
 mod flip;
@@ -37,44 +38,44 @@ use serde::{Serialize, Serializer};
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
 
-/// All that a page shows.
+/// The contents of a page.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Report<'a> {
     /// The results.
     pub results: &'a Results,
-    /// Tables that belong to no claim.
+    /// The tables that belong to no claim.
     pub tables: &'a [Table],
-    /// Plots that belong to no claim.
+    /// The plots that belong to no claim.
     pub plots: &'a [Plot],
     /// The images to flip between.
     pub images: &'a [ReportImage],
     /// The images of each pyramid of the results, by the names of their layers.
     #[serde(serialize_with = "layers")]
     pub layers: &'a [BTreeMap<String, Pixels>],
-    /// The command that makes the experiment again.
+    /// The command that repeats the experiment.
     pub command: &'a str,
 }
 
-/// An image to flip to; one scene has each name once.
+/// An image to flip to.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ReportImage {
-    /// The name of its scene.
+    /// The name of the scene.
     pub scene: String,
-    /// Its name.
+    /// The name of the image, unique in its scene.
     pub name: String,
-    /// True if the others of the scene are compared with it.
+    /// True if the other images of the scene are compared with this one.
     pub is_reference: bool,
     /// Its pixels.
     #[serde(flatten, serialize_with = "coded")]
     pub pixels: Pixels,
-    /// FLIP of every pixel, where the page should show it; see [`add_flip`].
+    /// FLIP of every pixel; see [`add_flip`]. None: the page shows no map.
     #[serde(serialize_with = "flip_bytes")]
     pub flip: Option<ErrorMap>,
 }
 
 const STYLE: &str = include_str!("../../page/report.css");
 
-/// The page. The same report gives the same bytes.
+/// Returns the page. Equal reports give equal bytes.
 pub fn html(report: &Report<'_>) -> String {
     let script = bundle::script();
     let head = head(&report.results.title, &script);
@@ -85,7 +86,7 @@ pub fn html(report: &Report<'_>) -> String {
     format!("<!DOCTYPE html>\n<html lang=\"en\">{head}{body}\n</html>\n")
 }
 
-/// The element with the data.
+/// Returns the element with the data of the page.
 fn data(report: &Report<'_>) -> Element {
     let data = Data {
         report,
@@ -114,7 +115,7 @@ fn head(title: &str, script: &str) -> Element {
         .child(element("style").code(STYLE))
 }
 
-/// Nothing may be loaded, sent or framed; this style and this script may run, and no other.
+/// Returns the security policy of the page: it loads, sends and frames nothing, and allows only its style and `script`.
 fn policy(script: &str) -> String {
     let hash = |code: &str| base64(&Sha256::digest(code.as_bytes()));
     format!(
@@ -125,7 +126,7 @@ fn policy(script: &str) -> String {
     )
 }
 
-/// The page for readers whose browser runs no scripts.
+/// Returns the content of the page for browsers that run no scripts.
 fn without_script(claims: &[Claim]) -> Vec<Element> {
     let line = |claim: &Claim| {
         let rest = format!(": {} {}", claim.claim, claim.found);
@@ -139,7 +140,7 @@ fn without_script(claims: &[Claim]) -> Vec<Element> {
         .collect()
 }
 
-/// The data of a page, as `page/results.js` describes them.
+/// The data of a page, in the form that `page/results.js` describes.
 #[derive(Serialize)]
 struct Data<'a> {
     #[serde(flatten)]

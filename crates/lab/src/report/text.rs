@@ -4,7 +4,7 @@ use crate::number::number;
 use crate::results::{Cell, Table};
 use formats::printable;
 
-/// A table with its caption, in columns, all of them [`printable`].
+/// Formats a table in columns, with its caption. All texts are [`printable`].
 pub fn table_text(table: &Table) -> String {
     let shown = |text: &String| printable(text).into_owned();
     let head = table.columns.iter().map(shown).collect();

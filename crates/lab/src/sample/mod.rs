@@ -1,8 +1,8 @@
 //! The report of one sample: both subpaths, the contribution of every strategy, the chosen shadow rays,
 //! and their visibility.
 //!
-//! A [`SampleReport`] is made of a [`Replay`](bidir::driver::Replay) of the driver. It is written as
-//! JSON, as a text (`Display`), and as a [picture](SampleReport::drawing).
+//! A [`SampleReport`] is made from a [`Replay`](bidir::driver::Replay) of the driver. It can be written as
+//! JSON, as a text (`Display`), and as a [drawing](SampleReport::drawing).
 
 mod drawing;
 mod report;

@@ -14,28 +14,28 @@ pub struct SampleReport {
     pub(super) pass: u64,
     pub(super) settings: SettingsText,
     pub(super) training: Option<TrainingReport>,
-    /// The lens point of the camera subpath; without one, the middle of the lens.
+    /// The lens point of the camera subpath, or without such a subpath, the middle of the lens.
     #[serde(skip)]
     pub(super) eye: Place,
     pub(super) camera: SubpathReport,
     pub(super) light: SubpathReport,
-    /// s = 0: lights that the camera subpath came to.
+    /// The hits, s = 0: lights that the camera subpath met.
     pub(super) hits: Vec<TermReport>,
-    /// s ≥ 1 and t ≥ 2: connections that are not zero before selection and visibility.
+    /// The candidates, s ≥ 1 and t ≥ 2: connections that are not zero before selection and visibility.
     pub(super) candidates: Vec<ConnectionReport>,
-    /// The connections that are.
+    /// The strategies of connections that are zero.
     pub(super) zeros: Vec<String>,
-    /// t = 1: splats.
+    /// The splats, t = 1.
     pub(super) light_image: Vec<ConnectionReport>,
-    /// The divisor of splats.
+    /// The number of light paths by which splats are divided.
     pub(super) light_paths: u64,
-    /// The light subpaths of the pass: fewer, where samples share them.
+    /// The number of light subpaths of the pass. It is smaller if samples share them.
     pub(super) light_subpaths: u64,
     /// The value that was added to the pixel.
     pub(super) value: Rgb,
     pub(super) value_of_hits: Rgb,
     pub(super) value_of_candidates: Rgb,
-    /// The value of candidates if all were traced: the expectation of every selection.
+    /// The value of all candidates, as if all were traced. Every selection has it as its expectation.
     pub(super) value_of_all_candidates: Rgb,
     pub(super) rays: u64,
     pub(super) dropped: u64,
@@ -66,9 +66,9 @@ pub(super) struct VertexReport {
 pub(super) struct TermReport {
     pub(super) s: u16,
     pub(super) t: u16,
-    /// C, unweighted, as if nothing were in the way.
+    /// C, unweighted and unoccluded.
     pub(super) contribution: Rgb,
-    /// w.
+    /// The MIS weight w.
     pub(super) weight: f32,
     /// w C.
     pub(super) value: Rgb,
@@ -82,24 +82,24 @@ pub(super) struct TermReport {
 pub(super) struct ConnectionReport {
     #[serde(flatten)]
     pub(super) term: TermReport,
-    /// The end of the light subpath: for s = 1 a light point of its own, in `lvc` a vertex of another
+    /// The end of the light subpath: for s = 1 a separately sampled light point, in `lvc` a vertex of another
     /// sample. The other end is vertex t - 1 of the camera subpath, or the lens.
     pub(super) light_end: Place,
     /// The selection among candidates. None: it is a splat.
     #[serde(flatten)]
     pub(super) choice: Option<Choice>,
-    /// Traced or not.
+    /// True if the ends are visible from each other, whether the ray was traced or not.
     pub(super) is_visible: bool,
-    /// The part of it that arrives.
+    /// The part of the value that arrives.
     pub(super) transmittance: f32,
-    /// The place where a splat lands, or would.
+    /// The pixel on which a splat lands, or would land if it were visible.
     #[serde(flatten)]
     pub(super) landing: Option<Landing>,
 }
 
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct Choice {
-    /// The selection score; null where none are chosen.
+    /// The selection score; null without selection.
     pub(super) score: Option<f32>,
     /// The probability of being chosen.
     pub(super) prob: f64,
@@ -144,7 +144,7 @@ impl SampleReport {
 }
 
 impl ConnectionReport {
-    /// Returns its value times its transmittance.
+    /// Returns the value times the transmittance.
     fn arriving(&self) -> Rgb {
         self.term.value.map(|channel| channel * self.transmittance)
     }

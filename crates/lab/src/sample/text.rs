@@ -1,4 +1,4 @@
-//! The report of a sample as a text: tables of the subpaths, of each kind of strategy, and the sums.
+//! The report of a sample as text: tables of the subpaths and of each kind of strategy, and the sums.
 
 use super::report::{ConnectionReport, SampleReport, SubpathReport, TermReport, VertexReport};
 use super::training::TrainingReport;
@@ -62,7 +62,7 @@ impl Display for SampleReport {
     }
 }
 
-/// Writes the terms of a kind, below their number and the heads of the columns.
+/// Writes the terms of a kind as a table: their number, the heads of the columns, and the rows.
 fn table(f: &mut Formatter<'_>, title: &str, columns: &str, rows: &[impl Display]) -> fmt::Result {
     writeln!(f, "\n{title}: {}", rows.len())?;
     if !rows.is_empty() {

@@ -4,16 +4,16 @@ use bidir::driver::Session;
 use bidir::stats::RayCounts;
 use serde::Serialize;
 
-/// The render before the first pass. Numbers that are not finite are null in JSON.
+/// The report of training. Numbers that are not finite are null in JSON.
 #[derive(Clone, Debug, Serialize)]
 pub struct TrainingReport {
-    /// Its samples.
+    /// The number of samples.
     pub samples: u64,
-    /// Of the image.
+    /// The mean luminance of the image.
     pub mean_luminance: f32,
-    /// The score from which a candidate is certainly traced.
+    /// The score from which on a candidate is certainly traced. None: the selection has no such score.
     pub threshold: Option<f32>,
-    /// Its rays.
+    /// The rays of training.
     pub rays: RayCounts,
     /// The plan of `auto`.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -21,7 +21,7 @@ pub struct TrainingReport {
 }
 
 impl TrainingReport {
-    /// None: there was none.
+    /// Returns the report of a session's training. None: there was no training.
     pub fn new(session: &Session<'_>) -> Option<Self> {
         let training = session.training()?;
         let rule = session.settings().shadow_rays;

@@ -14,18 +14,18 @@ use serde::Serialize;
 /// A point or a direction.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub(super) struct Place {
-    /// In the space of the scene's numbers, which drawings are made in.
+    /// The point, or the direction towards it. Space: render, in which drawings are made.
     #[serde(skip)]
     pub(super) point: Vec3,
-    /// In the world. The direction towards it where it is at infinity.
+    /// The point, or if it is at infinity, the direction towards it. Space: world.
     pub(super) position: [f32; 3],
     pub(super) is_infinite: bool,
-    /// Its image on the film through the sample's lens point, or beyond the edges, whatever is in between.
-    /// None: it is behind the camera, or the camera itself. Unit: pixels, from the top left.
+    /// The raster position of the point through the sample's lens point, without visibility; it may be outside
+    /// the film. None: the point is behind the camera, or is the lens point. Unit: pixels, from the top left.
     pub(super) raster: Option<[f32; 2]>,
 }
 
-/// The lens point of a sample.
+/// The lens point of a sample, from which its points are projected onto the film.
 pub(super) struct View<'a> {
     lanes: Lanes,
     space: RenderSpace,
@@ -34,8 +34,8 @@ pub(super) struct View<'a> {
 }
 
 impl<'a> View<'a> {
-    /// Views from the lens point of the camera subpath, so that what its ray hits lies in its pixel; without
-    /// a camera subpath, from the middle of the lens.
+    /// Returns the view from the lens point of the camera subpath, so that the surface its ray hits is in its
+    /// pixel. Without a camera subpath, returns the view from the middle of the lens.
     pub(super) fn new(session: &'a Session<'_>, replay: &Replay) -> Self {
         let camera = session.view().camera();
         let middle = || camera.sample_lens(|| Vec2::splat(0.5)).locus;

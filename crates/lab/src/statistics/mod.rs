@@ -24,7 +24,7 @@ fn students_t(freedom: f64) -> Option<impl ContinuousCDF<f64, f64>> {
     StudentsT::new(0.0, 1.0, freedom).ok()
 }
 
-/// Computes the number that Student's t exceeds with probability (1 - confidence) / 2.
+/// Computes the quantile of Student's t that t exceeds with probability (1 - confidence) / 2.
 ///
 /// None: there are fewer than two values, or `confidence` is not in (0, 1).
 fn t_quantile(count: usize, confidence: f64) -> Option<f64> {

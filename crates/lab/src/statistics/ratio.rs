@@ -4,7 +4,7 @@
 //! exp(mean ln(a_i / b_i)): the factors 2 and ½ cancel, and so do the scale of the scene and variations
 //! that both methods share under a seed.
 //!
-//! The interval is that of the mean log-ratio:
+//! The interval comes from an interval of the mean log-ratio:
 //!
 //! - with fewer than [`FEWEST`] pairs, or at a confidence beyond the bootstrap's resamples, Student's t
 //!   interval, which is exact for any number of normal log-ratios;

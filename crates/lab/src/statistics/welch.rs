@@ -10,10 +10,10 @@
 //! differences, and their means are closer to normal if pixels have heavy tails; small blocks detect local
 //! differences. Callers that test several sizes have to share the level among them.
 //!
-//! Variances come from replicates ([`welch_test`]), or with the images themselves ([`z_test`]). The
-//! latter adds the variances of a block's pixels, so pixels have to be uncorrelated, as those of the
-//! independent sampler are. The variance of few samples with heavy tails is too small where their
-//! mean is too small; then replicates are the better test.
+//! Variances come from replicates ([`welch_test`]), or with the images themselves ([`z_test`]). The latter
+//! adds the variances of a block's pixels, so pixels have to be uncorrelated, as with the independent sampler.
+//! If few samples with heavy tails have too small a mean, their variance is too small, too; then replicates
+//! are the better test.
 
 use super::interval::mean_and_variance;
 use super::students_t;
@@ -56,7 +56,7 @@ pub struct Difference {
     /// The means of both images over the block.
     #[serde(deserialize_with = "numbers")]
     pub means: [f64; 2],
-    /// Their difference. Unit: standard errors.
+    /// The difference of the means. Unit: standard errors.
     #[serde(deserialize_with = "number")]
     pub deviations: f64,
 }
@@ -95,7 +95,7 @@ pub fn z_test(a: &Estimated<'_>, b: &Estimated<'_>, block: usize) -> Option<Diff
 
 /// Compares the replicates of two estimators: independent renders with the same number of samples.
 ///
-/// None: there are fewer than two of either, their sizes are not the same, or there are no pixels.
+/// None: an estimator has fewer than two replicates, sizes differ, or there are no pixels.
 pub fn welch_test(a: &[Pixels], b: &[Pixels], block: usize) -> Option<Difference> {
     let size = a.first()?.size;
     let differ = a.iter().chain(b).any(|pixels| pixels.size != size);
@@ -110,7 +110,7 @@ pub fn welch_test(a: &[Pixels], b: &[Pixels], block: usize) -> Option<Difference
 /// Computes the relative bias of one of two estimators, in the mean of any channel over the whole film,
 /// that [`welch_test`] with [`WHOLE`] detects with a probability of at least 1/2 at `level`.
 ///
-/// With ν of the test, and the level α of one of its three comparisons, it is
+/// With ν of the test, and the level α of one of its three comparisons, the bias is
 /// max_c t_{1 - α/2}(ν) √(v_a + v_b) / ½ (m_a + m_b).
 ///
 /// None: the test is impossible, all channels are black, or a number is not finite.

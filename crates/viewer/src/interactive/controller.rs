@@ -121,7 +121,8 @@ impl RenderController {
         }
     }
 
-    /// Returns the index of the incomplete slot with the least rendering time. None: all are complete.
+    /// Returns the index of the incomplete slot with the least rendering time. None: all are complete, or the state
+    /// is not [`State::Rendering`].
     fn slot_behind(&self) -> Option<usize> {
         if self.state != State::Rendering {
             return None;

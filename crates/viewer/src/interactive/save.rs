@@ -51,7 +51,7 @@ impl Saved {
     }
 }
 
-/// Refuses names that contain a folder, begin with a dot, or do not end in `.exr`.
+/// Refuses names that are too long, have special characters or folders, begin with a dot, or do not end in `.exr`.
 fn check_name(name: &str) -> Result<(), String> {
     let is_plain = |c: char| c.is_alphanumeric() || matches!(c, ' ' | '.' | '-' | '_' | '+');
     let is_name = name.len() <= LONGEST && name.chars().all(is_plain) && !name.starts_with('.');

@@ -70,8 +70,8 @@ impl RenderSlot {
 }
 
 /// Returns the settings of a preview, without training: `auto` would try estimators for longer than a camera
-/// stands still. Bidirectional path tracing replaces estimators that need training, as it samples all of
-/// their paths. `roulette` is the requested Russian roulette.
+/// stands still. Bidirectional path tracing replaces `auto` and `lvc`, as it samples all of their paths.
+/// `roulette` is the requested Russian roulette.
 pub(super) fn without_training(
     wanted: &Settings,
     roulette: Option<Choice<PathRoulette>>,

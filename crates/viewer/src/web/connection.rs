@@ -119,7 +119,7 @@ impl AsyncWrite for Connection {
         })
     }
 
-    /// Returns true if the stream writes vectored; else each image would be copied once more.
+    /// Returns true: without vectored writes, each image would be copied once more.
     fn is_write_vectored(&self) -> bool {
         true
     }

@@ -8,10 +8,10 @@
 //!
 //! whose costs include training, as the columns of rays and seconds do. Several budgets of one kind give a
 //! plot of each metric over them. All intervals have 95 % confidence; a single seed gives a number without
-//! an interval. The numbers are [`Quantity`]s, as those of claims are.
+//! an interval. The numbers are [`Quantity`]s, like the numbers of claims.
 //!
-//! [`overruns`] finds renders that take far more rays than their budget, [`reference_noise`] the share of
-//! the errors that is noise of the reference.
+//! [`overruns`] finds renders that take far more rays than their budget. [`reference_noise`] computes which
+//! share of the errors is noise of the reference.
 
 mod curves;
 mod noise;

@@ -1,14 +1,14 @@
-//! The share of errors that is noise of the reference.
+//! The share of the reference's noise in measured errors.
 //!
-//! An image and its reference are independent, so the measured mean square error is the sum of the image's
-//! own and the reference's, which is the mean variance of its pixels. Errors are not corrected for it; a
-//! large share gives a warning.
+//! An image and its reference are independent, so the measured mean square error is the sum of two: the
+//! image's own, and the reference's, which is the mean variance of the reference's pixels. Errors are not
+//! corrected for it; a large share gives a warning.
 
 use super::records_of;
 use crate::results::{Record, Results, SceneInfo};
 use serde::Serialize;
 
-/// A share above this gives a warning.
+/// The share above which there is a warning.
 const LARGE: f64 = 0.1;
 
 /// The noise of a reference relative to the smallest error measured against it.

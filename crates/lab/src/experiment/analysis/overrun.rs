@@ -3,7 +3,7 @@
 use super::records_of;
 use crate::results::{BudgetInfo, BudgetKind, Results, SceneInfo};
 
-/// A multiple of the budget above this gives a warning.
+/// The multiple of the budget above which there is a warning.
 const LARGE: f64 = 1.25;
 
 /// Returns warnings about methods whose first pass takes far more rays than their budget.

@@ -8,7 +8,7 @@ use crate::results::{BudgetKind, Claim, Record, Results, Verdict};
 use crate::statistics::{Interval, RATIOS, ratio_interval};
 use std::collections::BTreeMap;
 
-/// Numbers by seed, or by the pass of contributions.
+/// Numbers by seed, or for contributions, by pass.
 type BySeed = BTreeMap<u64, f64>;
 
 /// The records of an experiment, with the description and the clock that evaluate them.
@@ -36,7 +36,7 @@ impl<'a> Findings<'a> {
         }
     }
 
-    /// Returns the number of a method in a scene, by seed.
+    /// Returns the numbers of a method in a scene, by seed.
     fn values(&self, of: &Quantity, scene: &str, method: &str) -> BySeed {
         if let Measure::Contributions(name) = of.measure {
             let all = self.results.contributions.iter();
@@ -84,7 +84,7 @@ impl<'a> Findings<'a> {
         }
     }
 
-    /// Returns the number and its divisor in a scene, for the seeds that have both.
+    /// Returns seed, number and divisor in a scene, for the seeds that have both numbers.
     pub(super) fn pairs(&self, of: &Quantity, scene: &str) -> Vec<(u64, f64, f64)> {
         let own = self.values(of, scene, &of.method);
         let other = match &of.over {
@@ -96,8 +96,8 @@ impl<'a> Findings<'a> {
         own.iter().filter_map(pair).collect()
     }
 
-    /// Computes the geometric mean over seeds of the ratio, with its interval. None: fewer than two seeds
-    /// have it, or a number is not positive.
+    /// Computes the geometric mean of the ratio over seeds, with its interval. None: fewer than two seeds have
+    /// the ratio, or a number is not positive.
     pub(super) fn interval(&self, of: &Quantity, confidence: f64) -> Option<Interval> {
         let own = self.pairs(of, &of.scene);
         let Some(than) = &of.than else {
@@ -113,7 +113,7 @@ impl<'a> Findings<'a> {
         ratio_interval(&a, &b, confidence)
     }
 
-    /// Returns the number of each seed, without divisor.
+    /// Returns the number for each seed, without the divisor.
     pub(in super::super) fn numbers(&self, of: &Quantity) -> Vec<f64> {
         let values = self.values(of, &of.scene, &of.method);
         values.into_values().collect()
@@ -180,7 +180,7 @@ fn part(name: &str, found: Option<Interval>) -> String {
     format!("{name}: {value:.digits$} [{low:.digits$}, {high:.digits$}]")
 }
 
-/// Returns the verdict on a statement about the range of all these numbers.
+/// Returns the verdict on the statement that all numbers with these intervals are in the expected range.
 fn verdict(intervals: &[Option<Interval>], expected: Expected) -> Verdict {
     let Expected { low, high } = expected;
     let known = intervals.iter().copied().collect::<Option<Vec<_>>>();

@@ -45,8 +45,8 @@ pub(super) struct Measured<'a> {
     pub(super) clock: Clock,
     /// Threads of the render.
     pub(super) threads: usize,
-    /// The full budget, over which the cost of training is distributed, in rays per pixel or in seconds.
-    /// None: the cost of the record itself.
+    /// The full budget B, in rays per pixel or in seconds, over which the cost of training is distributed.
+    /// None: the cost of the record.
     pub(super) full: Option<(Cost, f64)>,
 }
 
@@ -124,7 +124,7 @@ impl Measured<'_> {
         Some(all - training)
     }
 
-    /// Computes (c - T) · B / (B - T): the cost without training, scaled to the full budget.
+    /// Computes (c - T) · B / (B - T): the cost c without training T, scaled to the full budget B.
     fn weighed(&self, cost: Cost) -> Option<f64> {
         let [all, training] = self.cost(cost)?;
         let full = self.full.filter(|(kind, _)| *kind == cost);
@@ -173,7 +173,7 @@ impl FromStr for Measure {
     }
 }
 
-/// Returns the names of all measures that are no metric.
+/// Returns the names of all measures that are not metrics.
 #[cfg(test)]
 pub(in super::super) fn figure_names() -> Vec<String> {
     let all = all().into_iter();

@@ -20,8 +20,8 @@
 //!
 //!   MSE · (c - T) · B / (B - T),
 //!
-//! its MSE · cost under the budget B. B is the full budget, also in a quick run, whose training is as long.
-//! Metrics that are roots of squares are multiplied by the root of the cost.
+//! which is the render's MSE · cost under the budget B. B is the full budget, also in a quick run, whose
+//! training takes as long. Metrics that are roots of squares are multiplied by the root of the cost.
 
 mod judge;
 mod measure;
@@ -60,7 +60,7 @@ pub struct ClaimSpec {
     pub claim: String,
     /// A statement of others, or a goal.
     pub kind: ClaimKind,
-    /// The range of each of its numbers.
+    /// The range of each of the claim's numbers.
     pub expected: Expected,
     /// The numbers with their names, at least one.
     pub parts: Vec<(String, Quantity)>,
@@ -88,7 +88,7 @@ pub struct Quantity {
     pub method: String,
     /// The divisor.
     pub over: Over,
-    /// The scene whose ratio divides this one. None: no further division.
+    /// The scene whose ratio divides this ratio. None: no further division.
     pub than: Option<String>,
 }
 
@@ -129,7 +129,7 @@ pub enum Over {
 /// A table.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TableSpec {
-    /// Its claim or section.
+    /// The claim or section that has the table.
     pub place: TablePlace,
     /// The caption.
     pub caption: String,

@@ -15,7 +15,7 @@ pub(super) fn curves(spec: &PlotSpec, table: &Table) -> Plot {
     }
 }
 
-/// Makes the curve of column `y` over column `x`, with intervals if all its numbers have them.
+/// Makes the curve of column `y` over column `x`, with intervals if all numbers of `y` have them.
 fn curve(table: &Table, x: usize, y: usize) -> Series {
     let point = |row: &Vec<Cell>| Some((number(&row[x])?.0, number(&row[y])?));
     let points: Vec<_> = table.rows.iter().filter_map(point).collect();

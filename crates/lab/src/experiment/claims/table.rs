@@ -41,8 +41,8 @@ impl Findings<'_> {
         }
     }
 
-    /// Computes a mean, or a ratio with its interval; the ratio of a measured method to itself is 1, and that of
-    /// a single seed has no interval.
+    /// Computes a mean, or a ratio with its interval. The ratio of a measured method to itself is 1; the ratio of a
+    /// single seed has no interval.
     pub(in super::super) fn number(&self, of: &Quantity) -> Cell {
         let is_itself = |method: &String| *method == of.method && of.than.is_none();
         let found = match &of.over {
@@ -59,7 +59,7 @@ impl Findings<'_> {
         found.unwrap_or_else(|| Cell::Text("–".to_owned()))
     }
 
-    /// Returns the ratio of the only seed. None: there are none or several, or the divisor is not positive.
+    /// Returns the ratio of the only seed. None: there are no seeds or several, or the divisor is not positive.
     fn single_ratio(&self, of: &Quantity) -> Option<f64> {
         match self.pairs(of, &of.scene)[..] {
             [(_, value, divisor)] if divisor > 0.0 && of.than.is_none() => Some(value / divisor),

@@ -27,7 +27,7 @@ const PLOT: &str = "x curves label log";
 /// The names that quantities can refer to.
 #[derive(Default)]
 pub(super) struct Names {
-    /// Also of scenes that are not there.
+    /// The names of all scenes, including missing ones.
     pub(super) scenes: Vec<String>,
     pub(super) methods: Vec<String>,
     pub(super) budgets: Vec<BudgetKind>,

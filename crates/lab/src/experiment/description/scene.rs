@@ -142,7 +142,7 @@ fn room(section: &mut Section<'_>) -> Result<Room> {
     })
 }
 
-/// Joins `folder` and `file`, without detours such as `out/..`.
+/// Joins `folder` and `file`, and removes pairs such as `out/..`.
 fn joined(folder: &Path, file: &Path) -> PathBuf {
     let mut path = PathBuf::new();
     for part in folder.join(file).components() {
@@ -201,7 +201,7 @@ fn reference(
     }
 }
 
-/// Reads the settings that the expectation of the reference depends on; they are those of all methods.
+/// Reads the settings that the expectation of the reference depends on. All methods share them.
 fn reference_request(strategies: Option<Entry<'_>>, defaults: &Request) -> Result<Request> {
     let mut request = Request {
         strategies: defaults.strategies.clone(),
@@ -214,7 +214,7 @@ fn reference_request(strategies: Option<Entry<'_>>, defaults: &Request) -> Resul
     Ok(request)
 }
 
-/// Reads the integrator of the cross-check, which is not that of the reference.
+/// Reads the integrator of the cross-check. Errors: it is the integrator of the reference.
 fn cross_check_of(entry: &Entry<'_>) -> Result<IntegratorKind> {
     let mut request = Request::default();
     entry.read(|value| request.set("integrator", value))?;

@@ -11,15 +11,15 @@ use bidir::spectrum::luminance;
 
 /// The line between the ends of two subpaths: a candidate, or a splat.
 pub(super) struct Ray {
-    /// The class that gives it colour and dashes.
+    /// The CSS class, which determines colour and dashes.
     pub(super) class: &'static str,
     pub(super) light_end: Place,
     camera_end: Place,
-    /// True where the light end is no vertex of the light subpath.
+    /// True if the light end is not a vertex of the light subpath.
     pub(super) is_foreign: bool,
     /// Strategy and value, in words.
     title: String,
-    /// The expected contribution of a candidate; 0 of a splat, which is part of another pixel.
+    /// The luminance of a candidate's value times its probability; 0 for a splat, which is part of another pixel.
     pub(super) weight: f32,
 }
 
@@ -60,7 +60,8 @@ impl Ray {
         }
     }
 
-    /// The line, the wider the larger its share of the largest weight. None: both ends are infinite.
+    /// Returns the line, whose width grows with its weight relative to the largest one. None: both ends are at
+    /// infinity.
     pub(super) fn draw(&self, view: &View<'_>, largest: f32) -> Option<Element> {
         let (light, camera) = (self.light_end, self.camera_end);
         if light.is_infinite && camera.is_infinite {
@@ -79,12 +80,12 @@ impl Ray {
     }
 }
 
-/// A subpath that is drawn.
+/// A subpath in the drawing.
 pub(super) struct Walk {
     class: &'static str,
     letter: char,
     pub(super) places: Vec<Place>,
-    /// The direction in which it leaves the scene.
+    /// The direction in which the subpath leaves the scene.
     escape: Option<Vec3>,
 }
 
@@ -98,7 +99,7 @@ impl Walk {
         }
     }
 
-    /// The vertices on the page. One at infinity is on the border, as seen from the next.
+    /// Returns the vertices on the page. A vertex at infinity is on the border, in its direction from the next vertex.
     fn points(&self, view: &View<'_>) -> Vec<Vec2> {
         let middle = view.near_point(view.corner + 0.5 * view.size());
         let point = |i: usize| {
@@ -116,7 +117,7 @@ impl Walk {
         group.children(self.arrow(view)).children(marks)
     }
 
-    /// The arrow from the last vertex to the border, where the walk leaves the scene.
+    /// Returns the arrow from the last vertex to the border. None: the walk does not leave the scene.
     fn arrow(&self, view: &View<'_>) -> Option<Element> {
         let last = self.places.last().filter(|last| !last.is_infinite)?;
         let from = view.seen_from(last, last.point);
@@ -127,8 +128,8 @@ impl Walk {
         Some(polyline(&line).class("track escape"))
     }
 
-    /// The names of its vertices, inside the panel. Those of the two subpaths are on different sides,
-    /// those of successive vertices at different heights, as these may be close to each other.
+    /// Returns the names of the vertices, inside the panel. The two subpaths have their names on different sides,
+    /// and successive vertices have theirs at different heights, as vertices may be close to each other.
     pub(super) fn names(&self, view: &View<'_>) -> Element {
         let [min, max] = [view.corner + 12.0, view.corner + view.size() - 12.0];
         let side = if self.letter == 'z' { -14.0 } else { 14.0 };

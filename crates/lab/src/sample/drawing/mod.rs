@@ -1,8 +1,8 @@
-//! The picture of a sample, as SVG, in plan and elevation: both subpaths, the candidates, the traced
-//! shadow rays with the blocked ones among them, and the splats of the light image.
+//! The drawing of a sample, as SVG, in plan and elevation: both subpaths, the candidates, the traced shadow
+//! rays (arriving or blocked), and the splats of the light image.
 //!
-//! The scene is in it as outlines that rays find. The picture loads nothing, has no scripts, can be
-//! read on light and dark pages, and is the same bytes for the same sample.
+//! Outlines show the scene, which a grid of rays finds. The drawing loads nothing, has no scripts, is readable
+//! on light and dark pages, and has the same bytes for the same sample.
 
 mod figure;
 mod outline;
@@ -22,15 +22,15 @@ use figure::{Ray, Walk};
 use shapes::{circle, polyline, px, rectangle, text};
 use view::{LARGEST, View};
 
-/// The width of the picture. Unit: pixels, as of all lengths here.
+/// The width of the drawing. Unit: pixels, as for all lengths here.
 const WIDTH: f32 = 1000.0;
-/// Around everything.
+/// The margin around everything.
 const MARGIN: f32 = 24.0;
 /// The upper left corner of the plan.
 const PLAN: Vec2 = Vec2::new(MARGIN, 108.0);
 /// The left end of the first row of the legend.
 const LEGEND: Vec2 = Vec2::new(PLAN.x + LARGEST.x + 28.0, PLAN.y + 8.0);
-/// Between rows of the legend.
+/// The distance between rows of the legend.
 const ROW: f32 = 20.0;
 
 /// The class of each kind of line, and its meaning. Later kinds are drawn over earlier ones.
@@ -45,7 +45,7 @@ const KINDS: [[&str; 2]; 5] = [
 /// The lines of a sample.
 struct Figure {
     rays: Vec<Ray>,
-    /// Of the light and of the camera.
+    /// The light subpath and the camera subpath.
     walks: [Walk; 2],
 }
 
@@ -61,7 +61,7 @@ impl Figure {
         }
     }
 
-    /// All points that are not at infinity.
+    /// Returns all points that are not at infinity.
     fn points(&self) -> Vec<Vec3> {
         let vertices = self.walks.iter().flat_map(|walk| &walk.places);
         let places = vertices.chain(self.rays.iter().map(|ray| &ray.light_end));
@@ -84,7 +84,7 @@ impl Figure {
             .children(self.walks.iter().map(|walk| walk.names(view)))
     }
 
-    /// The meaning of lines and marks, and how many there are, beside the panels.
+    /// Returns the legend beside the panels: the meaning of lines and marks, and their number.
     fn legend(&self) -> Element {
         let line = |class| polyline(&[Vec2::ZERO, Vec2::X * 26.0]).class(class);
         let dot = circle(Vec2::X * 13.0, 2.8).class("light hollow");
@@ -112,8 +112,7 @@ impl Figure {
 }
 
 impl SampleReport {
-    /// The sample as a picture in the format SVG; `session` took it, and `name` is the
-    /// title of its scene.
+    /// Returns the drawing of the sample as SVG. `session` took the sample; `name` is the title of the scene.
     pub fn drawing(&self, session: &Session<'_>, name: &str) -> String {
         let figure = Figure::new(self);
         let views = View::both(session, &figure.points(), PLAN);
@@ -137,7 +136,7 @@ impl SampleReport {
         format!("Sample of pixel {x},{y} in pass {}", self.pass)
     }
 
-    /// The heading, with settings and results below it.
+    /// Returns the heading, with lines for settings and results below.
     fn head(&self, name: &str) -> [Element; 3] {
         let settings = ["integrator", "shadow-rays", "mis", "seed"];
         let settings = format!("{name}: {}", self.settings.line(&settings));

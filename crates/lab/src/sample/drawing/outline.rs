@@ -1,7 +1,7 @@
 //! Edges of the surfaces that a view sees, found by a grid of rays.
 //!
-//! In each cell of the grid a line joins the places where two neighbouring rays part (marching
-//! squares). The near plane cuts away nearer surfaces, so that a reader looks into rooms.
+//! In each cell of the grid, a line joins the points between neighbouring rays that hit different surfaces
+//! (marching squares). The near plane cuts away nearer surfaces, so that the inside of rooms is visible.
 
 use super::shapes::px;
 use super::view::View;
@@ -17,7 +17,7 @@ const HALVINGS: usize = 5;
 /// The least cosine between the normals of one surface.
 const LEAST_COSINE: f32 = 0.8;
 
-/// The place of a ray on the page, with point and normal of the first surface behind the near plane.
+/// A ray: its position on the page, with point and normal of the first surface behind the near plane.
 #[derive(Clone, Copy)]
 struct Sight {
     at: Vec2,
@@ -25,7 +25,7 @@ struct Sight {
 }
 
 impl View<'_> {
-    /// All edges in the panel.
+    /// Returns all edges in the panel.
     pub(super) fn outline(&self) -> Element {
         let [columns, rows] = (self.size() / CELL).to_array().map(|count| count as usize);
         let at = |x, y| self.corner + Vec2::new(x as f32, y as f32) * CELL;
@@ -49,7 +49,7 @@ impl View<'_> {
         Sight { at, hit }
     }
 
-    /// The edges in the cell between four rays, as steps of a path.
+    /// Returns the edges in the cell between four rays, as steps of a path.
     fn edges(&self, cell: [Sight; 4]) -> String {
         let places = (0..4).filter_map(|i| self.parting(cell[i], cell[(i + 1) % 4]));
         let places: Vec<_> = places.collect();
@@ -60,7 +60,7 @@ impl View<'_> {
         }
     }
 
-    /// The place between two rays where the surface of the first ends. None: both see one surface.
+    /// Returns the point between two rays where the surface of the first ends. None: both hit one surface.
     fn parting(&self, a: Sight, b: Sight) -> Option<Vec2> {
         if self.is_one_surface(a, b) {
             return None;

@@ -1,20 +1,20 @@
-//! Elements of SVG at places of the page.
+//! Elements of SVG at positions on the page.
 
 use crate::markup::{Element, element};
 use bidir::math::Vec2;
 
-/// A length on the page, to a tenth of a pixel.
+/// Formats a length on the page, rounded to a tenth of a pixel.
 pub(super) fn px(length: f32) -> String {
     // The sum turns -0 into 0.
     ((length * 10.0).round() / 10.0 + 0.0).to_string()
 }
 
-/// An element that has its place by `x` and `y`.
+/// Returns an element with the attributes `x` and `y`.
 fn placed(name: &'static str, at: Vec2) -> Element {
     element(name).with("x", px(at.x)).with("y", px(at.y))
 }
 
-/// A text that begins at `at`.
+/// Returns a text that begins at `at`.
 pub(super) fn text(at: Vec2, content: impl std::fmt::Display) -> Element {
     placed("text", at).text(content)
 }
@@ -29,7 +29,7 @@ pub(super) fn circle(at: Vec2, radius: f32) -> Element {
     circle.with("r", px(radius))
 }
 
-/// A line through `points`.
+/// Returns a line through `points`.
 pub(super) fn polyline(points: &[Vec2]) -> Element {
     let pairs = points.iter().map(|p| format!("{},{}", px(p.x), px(p.y)));
     element("polyline").with("points", pairs.collect::<Vec<_>>().join(" "))

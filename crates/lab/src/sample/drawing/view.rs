@@ -9,9 +9,9 @@ use bidir::driver::Session;
 use bidir::math::{Vec2, Vec3};
 use bidir::scene::Scene;
 
-/// The largest size of a panel. Unit: pixels of the page, as of all lengths on it.
+/// The largest size of a panel. Unit: pixels of the page, as for all lengths on it.
 pub(super) const LARGEST: Vec2 = Vec2::new(640.0, 480.0);
-/// Between the panels, where the lower one has its heading.
+/// The distance between the panels, which has room for the heading of the lower one.
 const GAP: f32 = 36.0;
 
 /// A box in the world: the smallest and the largest coordinates.
@@ -22,7 +22,7 @@ pub(super) struct View<'a> {
     pub(super) scene: &'a Scene,
     right: Vec3,
     up: Vec3,
-    /// The depth of the plane before which the scene is cut away.
+    /// The depth of the near plane, in front of which the scene is cut away.
     near: f32,
     /// The upper left corner in units of the world.
     min: Vec2,
@@ -35,7 +35,7 @@ pub(super) struct View<'a> {
 }
 
 impl<'a> View<'a> {
-    /// Plan and elevation, one below the other from `corner`, around the points of a sample.
+    /// Returns plan and elevation around the points of a sample, one below the other from `corner`.
     pub(super) fn both(session: &'a Session<'_>, points: &[Vec3], mut corner: Vec2) -> [Self; 2] {
         let scene = session.scene();
         let bounds = scene.bvh().bounds();
@@ -53,7 +53,7 @@ impl<'a> View<'a> {
         views
     }
 
-    /// A view that is not yet placed on the page.
+    /// Returns a view that is not yet placed on the page.
     fn new(scene: &'a Scene, [right, up]: [Vec3; 2], [sample, shown]: [Bounds; 2]) -> Self {
         let flat = |v: Vec3| Vec2::new(right.dot(v), -up.dot(v));
         let [a, b] = shown.map(flat);
@@ -75,28 +75,29 @@ impl<'a> View<'a> {
         self.extent * self.scale
     }
 
-    /// The direction in which the view looks.
+    /// Returns the direction in which the view looks.
     pub(super) fn away(&self) -> Vec3 {
         self.up.cross(self.right)
     }
 
-    /// A point or direction without its depth, to the right and down as on the page.
+    /// Returns a point or direction without its depth, in axes to the right and down as on the page.
     fn flat(&self, v: Vec3) -> Vec2 {
         Vec2::new(self.right.dot(v), -self.up.dot(v))
     }
 
-    /// The place of a point on the page.
+    /// Returns the position of a point on the page.
     fn at(&self, point: Vec3) -> Vec2 {
         self.corner + (self.flat(point) - self.min) * self.scale
     }
 
-    /// The point of the near plane that is seen at a place of the page.
+    /// Returns the point of the near plane at a position on the page.
     pub(super) fn near_point(&self, at: Vec2) -> Vec3 {
         let flat = (at - self.corner) / self.scale + self.min;
         self.right * flat.x - self.up * flat.y + self.away() * self.near
     }
 
-    /// The place of `place`; where it is infinite, its direction from `from`.
+    /// Returns the position of `place` on the page, or if it is at infinity, the point of the border in its direction
+    /// from `from`.
     pub(super) fn seen_from(&self, place: &Place, from: Vec3) -> Vec2 {
         if place.is_infinite {
             self.border(from, place.point)
@@ -105,8 +106,8 @@ impl<'a> View<'a> {
         }
     }
 
-    /// The place where a line from `point` along `direction` leaves the panel; that of the point where
-    /// the line goes along the view.
+    /// Returns the position where a line from `point` along `direction` leaves the panel, or if the line is along the
+    /// view, the position of `point`.
     pub(super) fn border(&self, point: Vec3, direction: Vec3) -> Vec2 {
         let (from, along) = (self.at(point), self.flat(direction));
         let ends = [self.corner, self.corner + self.size()];
@@ -116,7 +117,7 @@ impl<'a> View<'a> {
         from + along * lengths.reduce(f32::min).unwrap_or(0.0)
     }
 
-    /// The empty panel, with a heading above it: the size, and which way the axes go.
+    /// Returns the empty panel with its heading: the title, the size, and the directions of the axes.
     pub(super) fn panel(&self, title: &str) -> Element {
         let [width, height] = self.extent.to_array().map(|x| number(f64::from(x)));
         let [right, up] = [self.right, self.up].map(axis_name);
@@ -127,15 +128,15 @@ impl<'a> View<'a> {
     }
 }
 
-/// The smallest box around the points that are finite. None: there are none.
+/// Returns the smallest box around the finite points. None: there are none.
 fn around(points: &[Vec3]) -> Option<Bounds> {
     let finite = points.iter().filter(|point| point.is_finite());
     let boxes = finite.map(|point| [*point; 2]);
     boxes.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])])
 }
 
-/// The box of a sample with the scene as far as it is near: a large ground would leave no room for the
-/// sample.
+/// Returns the box of a sample, widened by the near part of the scene. The whole of a scene with a large ground
+/// would leave no room for the sample.
 fn with_surroundings(sample: Bounds, scene: Bounds) -> Bounds {
     let sizes = [sample, scene].map(|[min, max]| (max - min).max_element());
     let size = sizes.into_iter().find(|size| *size > 0.0).unwrap_or(1.0);
@@ -146,8 +147,8 @@ fn with_surroundings(sample: Bounds, scene: Bounds) -> Bounds {
     ]
 }
 
-/// The axes of the world that point right in both views, up, and away in the elevation, which shows the
-/// wider side of a sample of this size, as far as possible in the direction of the camera.
+/// Returns three axes of the world: right in both views; up; and away from the viewer in the elevation. The elevation
+/// shows the wider side of a sample of this size, and looks as far as possible in the direction of the camera.
 fn axes(pose: &Pose, size: Vec3) -> [Vec3; 3] {
     let up = pose.up.abs().max_position();
     let [a, b] = [(up + 1) % 3, (up + 2) % 3];
