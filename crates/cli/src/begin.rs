@@ -13,8 +13,8 @@ use std::time::{Duration, Instant};
 /// The time after which a message says that training is running.
 const LONG: Duration = Duration::from_secs(2);
 
-/// Begins and trains the render of a budget, which continues `earlier`. None: a signal or the end of the time came
-/// first.
+/// Begins and trains a render with this budget, which continues the film `earlier`. None: a signal or the end of the
+/// time came first.
 ///
 /// Errors: the film to continue belongs to another render; the session cannot begin.
 pub(crate) fn render(
@@ -48,7 +48,7 @@ pub(crate) fn render(
     Ok(Some(render))
 }
 
-/// Returns the form of progress. A replay as JSON has stdout to itself.
+/// Returns the form of progress. With --json, only the replay is on stdout.
 fn display(args: &RenderArgs, console: Console) -> Display {
     match console.display(args.output.talk) {
         Display::Lines(LineFormat::OpenJd) if args.json => Display::Silent,

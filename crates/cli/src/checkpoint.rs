@@ -13,9 +13,9 @@ use std::time::{Duration, Instant};
 /// A film file that is locked for this process.
 #[derive(Debug)]
 pub(crate) struct Checkpoint {
-    /// The name given by --checkpoint.
+    /// The name that --checkpoint gives.
     pub(crate) name: PathBuf,
-    /// The file itself, if the name is a link.
+    /// The path of the file, with links resolved.
     path: PathBuf,
     every: Duration,
     written: Instant,
@@ -25,10 +25,10 @@ pub(crate) struct Checkpoint {
 }
 
 impl Checkpoint {
-    /// Opens and locks the film file that the flags name, if any, and returns it with the film to continue from, if
-    /// any. It needs no scene, so that errors come before one is read.
+    /// Opens and locks the film file that the flags name, if any. Returns it with the film to continue from, if any.
+    /// It is called before the scene is read, so that errors come early.
     ///
-    /// Errors: another process has locked the file; it exists, without --resume or --restart; it is damaged.
+    /// Errors: another process has locked the file; the file exists, without --resume or --restart; it is damaged.
     pub(crate) fn open(args: &LongArgs) -> Result<(Option<Self>, Option<FilmFile>), Failure> {
         let Some(name) = &args.checkpoint else {
             return Ok((None, None));
@@ -93,8 +93,8 @@ pub(crate) fn mismatch(args: &LongArgs, error: &OpenError) -> Failure {
     Failure::new(Exit::FilmMismatch, message).with_hint(hint)
 }
 
-/// Returns true if `folder` or one below it has finished passes: a film file, or records of an experiment
-/// beyond their first line, which only identifies the experiment.
+/// Returns true if `folder` or a folder below it has finished passes: a film file, or records of an experiment
+/// after the first line, which only identifies the experiment.
 pub(crate) fn has_passes(folder: &Path) -> bool {
     let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
     entries.map(|entry| entry.path()).any(|path| {
@@ -139,7 +139,7 @@ fn check_existing(path: &Path, args: &LongArgs) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Reads the film file to continue from. The hint of a failure names the previous version.
+/// Reads the film file to continue from. The hint of a failure names FILE.previous.
 fn load(path: &Path) -> Result<FilmFile, Failure> {
     let previous = lock::previous(path);
     scene_io::read_film(path).map_err(|failure| {

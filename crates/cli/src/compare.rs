@@ -71,7 +71,7 @@ fn reference_files(reference: &Path) -> Vec<PathBuf> {
     vec![reference.to_owned()]
 }
 
-/// Compares every image, and warns if the noise of images, or of the pixels of one, is correlated.
+/// Compares every image. Warns if the noise of two images, or of the pixels of one image, is correlated.
 fn compare_all(
     args: &CompareArgs,
     images: &[PathBuf],
@@ -152,8 +152,8 @@ fn metrics(args: &MetricArgs) -> impl Iterator<Item = (&'static str, Metric)> {
     metrics.filter(move |(_, metric)| chosen(*metric))
 }
 
-/// Computes all metrics of a pair, without values if there is none as sizes differ, and writes the error map if one
-/// is requested.
+/// Computes all metrics of a pair, and writes the error map if one is requested. Without a pair, as sizes differ,
+/// metrics have no values.
 fn numbers(args: &MetricArgs, pair: Option<&Pair<'_>>) -> Result<Vec<Number>, Failure> {
     let mut numbers = Vec::new();
     for (name, metric) in metrics(args) {

@@ -1,6 +1,7 @@
 //! Messages on stderr and data on stdout: the only place that writes to either.
 //!
-//! The first write that fails is remembered, and makes a command that otherwise succeeds fail ([`lost`]).
+//! After a failed write, a command that otherwise succeeds fails with the error of the first such write
+//! ([`lost`]).
 //!
 //! Names and texts may come from untrusted files. The functions here write no control characters, except
 //! line feeds and tabs of data and the colours of this module. Callers make foreign text [`printable`]
@@ -14,7 +15,7 @@ use std::fmt;
 use std::io::{self, ErrorKind, IsTerminal, Write};
 use std::sync::OnceLock;
 
-/// The message of the first write that failed: the streams belong to the process, and so does their state.
+/// The message of the first write that failed. It is global because the streams are.
 static LOST: OnceLock<String> = OnceLock::new();
 
 /// The form of progress reports.
@@ -59,8 +60,8 @@ pub(crate) struct Console {
 impl Console {
     /// Returns the console of this process.
     ///
-    /// Colour: off by `--no-color`, by a `NO_COLOR` that is not empty, by `TERM=dumb`; else on by
-    /// `FORCE_COLOR`; else on where stderr is a terminal.
+    /// `--no-color`, a `NO_COLOR` that is not empty, or `TERM=dumb` turn colour off; else `FORCE_COLOR`
+    /// turns it on; else it is on if stderr is a terminal.
     pub(crate) fn new(args: ColorArgs) -> Self {
         let is_set = |name| std::env::var_os(name).is_some_and(|value| !value.is_empty());
         let is_dumb = std::env::var_os("TERM").is_some_and(|term| term == "dumb");
@@ -72,7 +73,7 @@ impl Console {
         }
     }
 
-    /// Returns the form of progress that the flags request; a bar only on a terminal.
+    /// Returns the form of progress that the flags request, with a bar only on a terminal.
     pub(crate) fn display(self, args: TalkArgs) -> Display {
         let default = if args.quiet {
             Display::Silent
@@ -146,19 +147,19 @@ pub(crate) fn say(line: impl fmt::Display) {
     write_line(&printable(&line.to_string()));
 }
 
-/// Writes a printable line to stderr. An error is [`lost`] output.
+/// Writes a printable line to stderr. [`lost`] reports an error.
 fn write_line(line: &str) {
     let _ = noted("stderr", writeln!(io::stderr().lock(), "{line}"));
 }
 
-/// Writes data to stdout. A broken pipe is no error: the reader has read enough.
+/// Writes data to stdout. A broken pipe is not an error, as the reader has read enough.
 pub(crate) fn print(text: &str) -> Result<Exit, Failure> {
     let mut stdout = io::stdout().lock();
     let written = stdout.write_all(printable_lines(text).as_bytes());
     noted("stdout", written.and_then(|()| stdout.flush()))
 }
 
-/// Writes a help text: to stdout if it was asked for, else to stderr.
+/// Writes a help text: to stdout if the user asked for it, else to stderr.
 pub(crate) fn print_help(text: &clap::Error) -> Result<Exit, Failure> {
     let written = text.print().and_then(|()| io::stdout().flush());
     if text.exit_code() == 0 {
@@ -168,7 +169,7 @@ pub(crate) fn print_help(text: &clap::Error) -> Result<Exit, Failure> {
     Ok(Exit::Usage)
 }
 
-/// Remembers an error of writing to a stream, and returns it as a failure.
+/// Records an error of writing to a stream, and returns it as a failure.
 fn noted(stream: &str, written: io::Result<()>) -> Result<Exit, Failure> {
     match written {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => {
@@ -191,7 +192,7 @@ pub(crate) fn print_json(value: &impl serde::Serialize) -> Result<Exit, Failure>
     print(&(ascii_escaped(&json(value)?) + "\n"))
 }
 
-/// Escapes the control characters in the strings of JSON, of which serde escapes only C0.
+/// Escapes all control characters in the strings of JSON; serde escapes only those of C0.
 fn ascii_escaped(json: &str) -> String {
     let mut escaped = String::with_capacity(json.len());
     for c in json.chars() {

@@ -62,7 +62,7 @@ impl Filter {
         format!("Open Image Denoise {}, guides: {guides}", self.0.version())
     }
 
-    /// Denoises a developed film, whose noisy picture becomes a layer. Returns the description of the
+    /// Denoises a developed film, and keeps the noisy picture as a layer. Returns the description of the
     /// denoiser.
     pub(crate) fn clean(&self, developed: &mut Developed) -> Result<String, Failure> {
         let guide = |name| {
@@ -132,7 +132,7 @@ pub(crate) fn run(args: &DenoiseArgs) -> Result<Exit, Failure> {
     Ok(Exit::Done)
 }
 
-/// Returns the noisy picture, also of an image that was denoised before.
+/// Returns the noisy picture of an image: its layer Noisy if it was denoised before.
 fn noisy(layers: &Layers, path: &Path) -> Result<Vec<[f32; 3]>, Failure> {
     let noisy = layers.triples(NOISY).or_else(|| layers.triples(COLOR));
     noisy.ok_or_else(|| {

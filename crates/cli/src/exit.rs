@@ -20,7 +20,7 @@ pub(crate) enum Exit {
     InputOutput = 4,
     /// A film file belongs to another render.
     FilmMismatch = 5,
-    /// A check did not hold.
+    /// A check failed.
     Validation = 6,
     /// The time ended before a pass was complete.
     NoPass = 7,
@@ -93,7 +93,7 @@ impl Exit {
 pub(crate) struct Failure {
     exit: Exit,
     message: String,
-    /// What to do.
+    /// The remedy.
     hint: Option<String>,
     /// The error with its place in a file, shown in place of message and hint.
     diagnostic: Option<Box<dyn Diagnostic + Send + Sync>>,
@@ -129,7 +129,7 @@ impl Failure {
         Self::new(Exit::InputOutput, formats::cannot(action, path, error))
     }
 
-    /// Adds a hint, which a diagnostic has no room for.
+    /// Adds a hint. A diagnostic does not show it.
     pub(crate) fn with_hint(self, text: impl Into<String>) -> Self {
         Self {
             hint: Some(text.into()),

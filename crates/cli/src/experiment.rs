@@ -63,7 +63,7 @@ fn command(args: &ExperimentArgs) -> String {
     words.collect::<Vec<_>>().join(" ")
 }
 
-/// Says how to continue if a render finished, and returns the exit.
+/// Prints how to continue if a render finished, and returns the exit.
 fn stopped(args: &ExperimentArgs, signals: &Signals) -> Exit {
     let (text, exit) = if !has_passes(&args.folder()) {
         let exit = signals.ended();
@@ -137,7 +137,7 @@ fn other_file(file: &Path) -> String {
     }
 }
 
-/// Returns the threads of each render for the records: those of the flag, else of the description.
+/// Returns the number of threads of each render, for the records: the flag's, or else the description's.
 fn threads(args: &ExperimentArgs, own: usize, console: Console) -> usize {
     match args.threads.count {
         0 => threads::limited(own, console).count(),

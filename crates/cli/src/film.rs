@@ -78,7 +78,7 @@ fn write_image(
     Ok(developed.write(output, film.settings(), &metadata)?)
 }
 
-/// Reads every file to its end, which compares its checksums.
+/// Reads every file to its end, which verifies all checksums. Reports damaged ones.
 fn verify(files: &[PathBuf], console: Console) -> Exit {
     let mut last = None;
     for file in files {
@@ -138,8 +138,8 @@ struct Merged {
     known: usize,
 }
 
-/// Adds the films. If the output is one of them, it comes first, and films whose passes it has are skipped:
-/// they were merged into it before, as passes of one render have the same bits on any machine.
+/// Adds the films. If the output is one of them, adds it first, and skips films whose passes it has. These were
+/// merged into it before: passes of one render have the same bits on any machine.
 fn merged(args: &MergeArgs) -> Result<Merged, Failure> {
     let is_output = |file: &&PathBuf| scene_io::is_same(file, &args.output);
     let (own, others): (Vec<_>, Vec<_>) = args.files.iter().partition(is_output);
@@ -174,7 +174,7 @@ fn is_held(held: Option<&PassSet>, film: &FilmFile) -> bool {
     held.is_some_and(|held| !passes.is_empty() && passes.difference(held).is_empty())
 }
 
-/// Checks before films are read that the outputs can be written and replace no file of another kind. The
+/// Checks, before films are read, that the outputs can be written and replace no file of another kind. The
 /// output may be one of the films.
 fn check_outputs(args: &MergeArgs) -> Result<(), Failure> {
     let (output, image) = (&args.output, &args.image);
@@ -225,7 +225,7 @@ fn check_kept(output: &Path, all: &FilmHeader) -> Result<(), Failure> {
     refuse(message, hint)
 }
 
-/// Returns the passes of all files. Reports files that cannot be read, which have none.
+/// Returns the passes of all files. Reports files that cannot be read, which count as empty.
 fn held(files: &[PathBuf], console: Console) -> Result<PassSet, Failure> {
     let mut first: Option<FilmHeader> = None;
     let mut held = PassSet::default();

@@ -95,12 +95,12 @@ fn contents(loaded: &Loaded) -> Value {
     })
 }
 
-/// Returns a number with the digits of 32 bits, where a `Value` would have those of 64.
+/// Returns a JSON number with the shortest digits of the 32-bit number, not of its 64-bit value.
 fn short(number: f32) -> Value {
     serde_json::from_str(&format!("{number:?}")).unwrap_or_default()
 }
 
-/// Returns two corners of a box around all surfaces. None: the scene has none.
+/// Returns the lowest and highest corner of a box around all surfaces. None: the scene has no surface.
 fn bounds(scene: &Scene) -> Option<[[f32; 3]; 2]> {
     let bounds = scene.bvh().bounds();
     let corners = [bounds.min, bounds.max];
@@ -108,7 +108,7 @@ fn bounds(scene: &Scene) -> Option<[[f32; 3]; 2]> {
     (scene.placed_primitives() > 0).then_some(corners)
 }
 
-/// Returns the number of items of each name.
+/// Returns the number of occurrences of each name.
 fn count<'a>(names: impl Iterator<Item = &'a str>) -> BTreeMap<&'a str, usize> {
     let mut counts = BTreeMap::new();
     for name in names {
@@ -117,7 +117,7 @@ fn count<'a>(names: impl Iterator<Item = &'a str>) -> BTreeMap<&'a str, usize> {
     counts
 }
 
-/// Returns the contents of a scene as lines, each with its name.
+/// Returns the contents of a scene as lines of name and text.
 fn lines(info: &Value, loaded: &Loaded) -> Vec<(String, String)> {
     let properties = properties(info, loaded).map(|(name, text)| (name.to_owned(), text));
     let spots = info["blind_spots"].as_object();
@@ -203,8 +203,8 @@ fn extent(scene: &Scene) -> String {
     }
 }
 
-/// Returns a line for each blind spot, those of the scene's integrator first. Integrators with the same blind spots
-/// share their lines.
+/// Returns a line for each blind spot, with the scene's integrator first. Integrators with the same blind spots share
+/// lines.
 fn blind_spot_lines(spots: &Map<String, Value>, own: IntegratorKind) -> Vec<(String, String)> {
     let mut integrators: Vec<_> = spots.iter().collect();
     integrators.sort_by_key(|(name, _)| **name != own.name());

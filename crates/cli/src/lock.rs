@@ -1,7 +1,8 @@
 //! Locks that keep processes from writing the same film file at once.
 //!
-//! The lock is that of the empty file FILE.lock beside it, which stays: a file that is removed may be locked by
-//! one process while another locks its successor. The system releases the lock of a process that ends.
+//! A process locks the empty file FILE.lock beside the film file. FILE.lock is never removed: else one process might
+//! hold the lock of the removed file while another locks a new one. The system releases the lock of a process that
+//! ends.
 
 use crate::exit::{Exit, Failure};
 use crate::scene_io;
@@ -9,8 +10,8 @@ use std::fs::{File, OpenOptions, TryLockError};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-/// The right to write a film file, as long as it lives. None: there is nothing to lock, or the file system
-/// cannot. Names of temporary files keep writers apart even there.
+/// The right to write a film file, until it is dropped. None: the file is a device, or the file system has no
+/// locks. Even then, writers have different temporary files.
 #[derive(Debug)]
 pub(crate) struct FilmLock(
     #[expect(dead_code, reason = "an open file holds the lock")] Option<File>,
@@ -19,7 +20,7 @@ pub(crate) struct FilmLock(
 impl FilmLock {
     /// Takes the lock of a film file, and removes temporary files of killed writers.
     ///
-    /// Errors: another process has it; no file can be made beside the film file.
+    /// Errors: another process has the lock; the lock file cannot be created.
     pub(crate) fn take(film: &Path) -> Result<Self, Failure> {
         // The lock is that of the file itself, whatever link leads to it.
         let film = scene_io::target_of(film);
@@ -43,12 +44,12 @@ impl FilmLock {
     }
 }
 
-/// The name of the film file before this one.
+/// Returns the name of the previous version of a film file.
 pub(crate) fn previous(film: &Path) -> PathBuf {
     beside(film, ".previous")
 }
 
-/// The files that a writer of a film file writes: itself, its lock, and the one before it.
+/// Returns the files that a writer of a film file writes: the film file, its lock, and its previous version.
 pub(crate) fn files(film: &Path) -> Vec<PathBuf> {
     let target = scene_io::target_of(film);
     let mut files = vec![film.to_owned(), beside(&target, ".lock")];
@@ -60,14 +61,14 @@ pub(crate) fn files(film: &Path) -> Vec<PathBuf> {
     files
 }
 
-/// A name beside `path`.
+/// Returns `path` with a further ending.
 fn beside(path: &Path, ending: &str) -> PathBuf {
     let mut name = path.as_os_str().to_owned();
     name.push(ending);
     name.into()
 }
 
-/// Another process has the lock of this film file.
+/// Returns the failure that another process has the lock of this film file.
 fn taken(film: &Path) -> Failure {
     let message = format!("{}: another process is writing this file", film.display());
     let hint = "give each process a file of its own; parts of a render can be merged";

@@ -71,7 +71,7 @@ fn all(command: &Command) -> Vec<(String, &Command)> {
     with_its_own.collect()
 }
 
-/// The commands of the written tables, by heading and rows.
+/// The command of each table on the page, by the table's heading and rows.
 type Tables<'a> = BTreeMap<(String, String), &'a str>;
 
 /// Returns the section of a command.
@@ -100,7 +100,7 @@ fn section<'a>(path: &'a str, command: &Command, tables: &mut Tables<'a>) -> Str
     parts.concat()
 }
 
-/// Returns the table of arguments of the command `path`, or a link to the command that has the same.
+/// Returns the table of arguments of the command `path`, or a link to an earlier command with the same table.
 fn table<'a>(path: &'a str, heading: &str, args: &[&Arg], tables: &mut Tables<'a>) -> String {
     let rows = args.iter().map(|arg| {
         let (meaning, default) = meaning(arg);
@@ -228,7 +228,7 @@ fn code(text: &str) -> String {
     format!("`{text}`")
 }
 
-/// Returns a row of a table, whose character between cells is escaped in them.
+/// Returns a row of a table. Escapes `|` in the cells.
 fn row(cells: &[&str]) -> String {
     let cells = cells.iter().map(|cell| cell.replace('|', "\\|"));
     format!("| {} |\n", cells.collect::<Vec<_>>().join(" | "))

@@ -20,7 +20,7 @@ pub(crate) struct Outputs {
 }
 
 impl Outputs {
-    /// Returns the files that flags name, which are known before the scene is read.
+    /// Returns the files that flags name. They are known before the scene is read.
     pub(crate) fn named(args: &RenderArgs) -> Result<Self, Failure> {
         let image = args.output.output.clone();
         let [exr, png] = image.map_or(Ok([None, None]), images)?;
@@ -37,7 +37,7 @@ impl Outputs {
 
     /// Returns the files of a render; `film` is the name that the scene gives its image.
     ///
-    /// A part of a render has an image only if a flag names it: by default all parts would write one file.
+    /// A part of a render has an image only if a flag names it, as by default all parts would write the same file.
     pub(crate) fn new(args: &RenderArgs, film: Option<&str>) -> Result<Self, Failure> {
         let named = Self::named(args)?;
         if is_part(args) || args.output.output.is_some() {
@@ -57,7 +57,7 @@ impl Outputs {
         all.map(|(flag, file)| (flag, file.as_path()))
     }
 
-    /// Checks, before hours of rendering, that the files can be written and replace none of `inputs`.
+    /// Checks, before rendering, that the files can be written and replace none of `inputs`.
     pub(crate) fn check(&self, args: &RenderArgs, inputs: &[PathBuf]) -> Result<(), Failure> {
         let is_kept = self.exr.is_some() || args.long.checkpoint.is_some();
         if args.layers.need_exr() && self.png.is_some() && !is_kept {
@@ -143,7 +143,7 @@ pub(crate) fn check_image<'a>(
     Ok(format)
 }
 
-/// Returns the EXR, if any, and the PNG for the name of an image.
+/// Returns the EXR, if there is one, and the PNG for the name of an image.
 fn images(image: PathBuf) -> Result<[Option<PathBuf>; 2], Failure> {
     if scene_io::image_format(&image, IMAGES)? == Format::Png {
         return Ok([None, Some(image)]);
@@ -152,7 +152,7 @@ fn images(image: PathBuf) -> Result<[Option<PathBuf>; 2], Failure> {
     Ok([Some(image), Some(png)])
 }
 
-/// Returns the image that the scene names, as EXR; else one with the name of the scene file.
+/// Returns the name of the EXR: the scene's name for its image with the ending .exr, or else that of the scene file.
 pub(crate) fn default_image(scene: &Path, film: Option<&str>) -> PathBuf {
     let name = film
         .map(Path::new)
@@ -161,7 +161,7 @@ pub(crate) fn default_image(scene: &Path, film: Option<&str>) -> PathBuf {
     name.unwrap_or(Path::new("bidir")).with_extension("exr")
 }
 
-/// Returns the default name of an output, in the current folder: that of the input with another ending.
+/// Returns the default name of an output, in the current folder: the input's name with another ending.
 pub(crate) fn named_after(input: &Path, ending: &str) -> PathBuf {
     let stem = input.file_stem().filter(|stem| *stem != "-");
     let mut name = stem.unwrap_or("bidir".as_ref()).to_owned();
@@ -169,7 +169,7 @@ pub(crate) fn named_after(input: &Path, ending: &str) -> PathBuf {
     name.into()
 }
 
-/// Refuses a new film file whose name is that of another kind of file.
+/// Refuses a new film file whose name has the ending of another kind of file.
 pub(crate) fn check_film_name(file: &Path) -> Result<(), Failure> {
     let ending = file.extension().unwrap_or_default();
     if ending.eq_ignore_ascii_case("film") || file.exists() {

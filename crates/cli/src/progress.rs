@@ -1,7 +1,7 @@
-//! Progress: a bar on a terminal, lines elsewhere, by the clock that the library lacks.
+//! Progress: a bar on a terminal, lines elsewhere. The library has no clock; this module supplies it.
 //!
-//! Lines are for people, as JSON, or as Open Job Description has them
-//! [OpenJD23, Stdout/Stderr Messages]; the latter go to stdout, all others to stderr.
+//! Lines are plain text, JSON, or messages of Open Job Description
+//! [OpenJD23, Stdout/Stderr Messages], which go to stdout; all others go to stderr.
 
 use crate::args::{self, TalkArgs};
 use crate::console::{Display, LineFormat, print, say};
@@ -18,27 +18,27 @@ use std::time::{Duration, Instant};
 
 /// The least time between two lines.
 const SHORTEST_GAP: Duration = Duration::from_secs(1);
-/// A line is due after this time,
+/// The time after which a line is due even without [`STEP`].
 const LONGEST_GAP: Duration = Duration::from_secs(10);
-/// or this much progress. Unit: percent.
+/// The progress after which a line is due. Unit: percent.
 const STEP: u32 = 10;
-/// The time left in JSON where it is unknown.
+/// The largest time left in a report.
 const LONGEST_LEFT: Duration = Duration::from_secs(1 << 30);
 /// The time between two drawings of a bar.
 const TICK: Duration = Duration::from_millis(200);
-/// The bar's resolution.
+/// The number of steps of the bar.
 const BAR_LENGTH: u64 = 1000;
-/// The bar and its text. Its own estimate of the time would count samples of earlier runs.
+/// The template of the bar and its text. The bar's own estimate of the time left would count samples of earlier runs.
 const TEMPLATE: &str = "{bar:32} {percent:>3}%  {msg}  {elapsed}  {prefix}";
 
-/// The measure of progress.
+/// The limits and times from which progress is computed.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Clock {
-    /// The end of the render.
+    /// The budget that ends the render.
     pub(crate) budget: Budget,
-    /// The samples of a pass.
+    /// Number of samples of a pass.
     pub(crate) samples_per_pass: u64,
-    /// The beginning of the render, with its training.
+    /// The beginning of the render, before training.
     pub(crate) start: Instant,
     /// The beginning of the first pass of this run.
     pub(crate) first_pass: Instant,
@@ -48,7 +48,7 @@ pub(crate) struct Clock {
 pub(crate) struct Reporter<'a> {
     signals: &'a Signals,
     clock: Clock,
-    /// Samples of earlier runs.
+    /// Number of samples of earlier runs.
     before: AtomicU64,
     samples: AtomicU64,
     last: Mutex<LastReport>,
@@ -61,14 +61,14 @@ enum Channel {
     Lines(LineFormat),
 }
 
-/// The last line, or the last text of the bar.
+/// The time and percentage of the last line, or of the last text of the bar.
 struct LastReport {
     at: Instant,
     percent: u32,
 }
 
 impl<'a> Reporter<'a> {
-    /// Reports on a render.
+    /// Returns a reporter of a render without earlier samples.
     pub(crate) fn new(display: Display, signals: &'a Signals, clock: Clock) -> Self {
         let channel = match display {
             Display::Silent => Channel::Silent,
@@ -93,7 +93,7 @@ impl<'a> Reporter<'a> {
         reporter
     }
 
-    /// Reports on a render that goes on after so many samples.
+    /// Returns the reporter of a render that continues after this number of samples.
     pub(crate) fn after(self, samples: u64) -> Self {
         self.add_earlier(samples);
         self
@@ -105,7 +105,7 @@ impl<'a> Reporter<'a> {
         self.samples.fetch_add(samples, Ordering::Relaxed);
     }
 
-    /// Writes the line of the end, unless it is the last one.
+    /// Writes the line of the end, unless the last line was at 100 %.
     pub(crate) fn complete(&self) {
         let is_last = self.last.lock().is_ok_and(|last| last.percent >= 100);
         if let (Channel::Lines(format), false) = (&self.channel, is_last) {
@@ -147,7 +147,8 @@ impl<'a> Reporter<'a> {
         }
     }
 
-    /// Returns the time that a pass takes, by the part of one that was done in `rendering`. None: too little of it.
+    /// Returns the time of a pass, extrapolated from the samples of this run, which took the time `rendering`. None:
+    /// there are less than 0.001 passes.
     pub(crate) fn pass_time(&self, rendering: Duration) -> Option<Duration> {
         let samples = self.samples.load(Ordering::Relaxed) - self.before.load(Ordering::Relaxed);
         let done = self.passes(samples);
@@ -155,7 +156,7 @@ impl<'a> Reporter<'a> {
         (done >= 1e-3).then(time).flatten()
     }
 
-    /// Says that a signal ended the render.
+    /// Reports that a signal ends the render.
     pub(crate) fn say_stop(&self) {
         let text = "stopping; a second signal stops at once";
         match &self.channel {
@@ -165,7 +166,7 @@ impl<'a> Reporter<'a> {
         }
     }
 
-    /// Writes a line, or the text of the bar, where one is due.
+    /// Writes a line, or the text of the bar, if one is due.
     fn report(&self, last: &mut LastReport) {
         let (state, gap) = (self.state(), last.at.elapsed());
         let is_step = state.percent() >= last.percent + STEP;
@@ -207,8 +208,8 @@ impl Progress for Reporter<'_> {
     }
 }
 
-/// Returns a bar whose end is at 1000, which is drawn at intervals, so that its time goes on: where the system still
-/// gives threads, without which the bar's own would panic.
+/// Returns a bar of [`BAR_LENGTH`] steps. A thread of the bar redraws it at intervals, so that its time advances; but
+/// not if the system gives no more threads, as the bar would then panic.
 pub(crate) fn bar(template: &str) -> ProgressBar {
     let bar = ProgressBar::new(BAR_LENGTH);
     if let Ok(style) = ProgressStyle::with_template(template) {
@@ -223,19 +224,19 @@ pub(crate) fn bar(template: &str) -> ProgressBar {
 /// The progress of a render.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct State {
-    /// The part of the budget that is used. Range: `[0, 1]`.
+    /// The used fraction of the budget. Range: `[0, 1]`.
     progress: f64,
     /// The running pass, counted from 1.
     pass: u64,
-    /// None: there is no limit.
+    /// The number of passes. None: there is no limit.
     passes: Option<u64>,
     elapsed: Duration,
-    /// None: it is unknown, before the first pass ends or without a limit of passes or time.
+    /// The time left. None: it is unknown before the end of the first pass, or without a limit of passes or time.
     left: Option<Duration>,
 }
 
 impl State {
-    /// `pass 5 of 64`, the running one.
+    /// Returns the running pass as text, such as `pass 5 of 64`.
     fn pass(&self) -> String {
         match self.passes {
             Some(most) => format!("pass {} of {most}", self.pass),
@@ -243,7 +244,7 @@ impl State {
         }
     }
 
-    /// `14.9s left`; empty if it is unknown.
+    /// Returns the time left as text, such as `14.9s left`; empty if it is unknown.
     fn left(&self) -> String {
         let left = self
             .left
@@ -284,7 +285,7 @@ impl State {
 }
 
 impl Display {
-    /// Says that something happens while there is no progress.
+    /// Reports an activity without progress.
     pub(crate) fn say(self, text: &str) {
         match self {
             // Readers of NDJSON expect only objects with progress.
@@ -315,7 +316,7 @@ pub(crate) fn report_failure(args: TalkArgs, failure: &Failure) {
     }
 }
 
-/// Writes a line of Open Job Description. The render goes on if it is lost, and the command fails at its end.
+/// Writes a line of Open Job Description. If writing fails, the render continues, and the command fails at its end.
 pub(crate) fn write_openjd(kind: &str, message: &str) {
     let _ = print(&format!("openjd_{kind}: {}\n", printable(message)));
 }

@@ -6,7 +6,7 @@ use crate::scene_io::FilmHeader;
 use bidir::film::Film;
 use std::path::{Path, PathBuf};
 
-/// The file of a pyramid in its folder.
+/// Returns the file of a pyramid in its folder.
 pub(crate) fn file(folder: &Path) -> PathBuf {
     folder.join("pyramid.exr")
 }
@@ -19,7 +19,7 @@ pub(crate) fn make_folder(folder: &Path) -> Result<(), Failure> {
     std::fs::create_dir(folder).map_err(|error| Failure::io(folder, "make", &error))
 }
 
-/// Writes what `film`, which has this header, keeps of strategies.
+/// Writes the images of strategies that `film` keeps; `header` is its header.
 pub(crate) fn write(file: &Path, film: &Film, header: &FilmHeader) -> Result<(), Failure> {
     let metadata = formats::film::metadata(header);
     let developed = lab::pyramid::developed(film);

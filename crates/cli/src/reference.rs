@@ -56,7 +56,7 @@ pub(crate) fn run(args: &ReferenceArgs, console: Console) -> Result<Exit, Failur
     job.run()
 }
 
-/// Refuses a folder that has other contents than a reference.
+/// Refuses a folder whose contents are not a reference.
 fn check_folder(folder: &Path) -> Result<(), Failure> {
     let is_ours = reference::is_reference(folder) || folder.join(FILMS).is_dir();
     let entries = std::fs::read_dir(folder);
@@ -114,7 +114,7 @@ fn plan(
     Ok(plan)
 }
 
-/// Refuses estimators that make no path, and warns of settings without effect and of light that is lost.
+/// Refuses estimators that make no path. Warns of settings without effect and of lost light.
 fn check_estimators(
     args: &ReferenceArgs,
     plan: &Plan,
@@ -172,7 +172,7 @@ impl Job<'_> {
         }
     }
 
-    /// Says how to continue after a signal, and returns the exit.
+    /// Prints how to continue after a signal, and returns the exit.
     fn stopped(&self) -> Exit {
         if !has_passes(self.folder) {
             self.say(format_args!("stopped before the first pass"));

@@ -71,8 +71,8 @@ pub(crate) fn run(args: &RenderArgs, console: Console) -> Result<Exit, Failure> 
     job.run((checkpoint, earlier), load, server.transpose()?)
 }
 
-/// Says that nothing was written because of a signal before the first pass, and returns the exit: with a film to
-/// continue from, the same command continues.
+/// Reports that a signal came before the first pass and nothing was written, and returns the exit. With a film to
+/// continue from, the exit says that the same command continues.
 fn stopped(signals: &Signals, is_resumed: bool, console: Console) -> Exit {
     console.warning("stopped before the first pass: nothing was written");
     if is_resumed {
@@ -148,8 +148,8 @@ impl Job<'_> {
         Ok(exit)
     }
 
-    /// Ends a run whose `time`, or a signal, ended before one of its passes did, each of which takes `pass_time`, if
-    /// that is known.
+    /// Ends a run without a complete pass, because of a signal or of the limit `time`. `pass_time` is the time of a
+    /// pass. None: it is unknown.
     fn without_pass(
         &self,
         time: Option<Duration>,
@@ -283,7 +283,7 @@ impl Job<'_> {
         }
     }
 
-    /// Returns true if path tracing is the scene's choice, and misses or undersamples some light paths.
+    /// Returns true if the scene, not a flag, chose path tracing, and it misses or undersamples some light paths.
     fn may_gain_by_auto(&self) -> bool {
         let own = self.loaded.settings.integrator;
         self.args.estimator.integrator.is_none()
@@ -305,7 +305,7 @@ enum End {
     Complete,
     /// A signal arrived after a pass; the command ends with this exit.
     Signal(Exit),
-    /// A signal or the end of the time came before the first pass, and there is nothing to write. A pass takes this time,
-    /// if that is known.
+    /// A signal or the end of the time came before the end of the first pass, so that there is nothing to write. The
+    /// time is that of a pass, if it is known.
     Nothing(Option<Duration>),
 }

@@ -29,7 +29,7 @@ pub(crate) fn check_apart(args: &RenderArgs, inputs: &[PathBuf]) -> Result<(), F
     scene_io::check_apart(inputs, drawing.as_slice())
 }
 
-/// Repeats a sample and prints its report, unless a signal ends that.
+/// Repeats a sample and prints its report, unless a signal interrupts it.
 pub(crate) fn run(
     args: &RenderArgs,
     session: Session<'static>,

@@ -1,4 +1,4 @@
-//! Reading and writing by the `formats` library, in terms of the command.
+//! Reads and writes files by the `formats` library, with the flags and failures of the command.
 
 use crate::args::{FilmArgs, SceneArgs};
 use crate::console::Console;
@@ -25,7 +25,7 @@ pub(crate) use formats::scene::Loaded;
 const SMALLER: &str =
     "make it smaller with --size, render a part of it with --crop, or ask for fewer layers";
 
-/// Reads a scene, with the film that `film` asks for instead of the file's.
+/// Reads a scene. The size and crop in `film` replace the file's.
 pub(crate) fn load(args: &SceneArgs, film: Option<&FilmArgs>) -> Result<Loaded, Failure> {
     let options = LoadOptions {
         lenient: args.lenient,
@@ -41,7 +41,7 @@ pub(crate) fn load(args: &SceneArgs, film: Option<&FilmArgs>) -> Result<Loaded, 
     Ok(loaded)
 }
 
-/// Does the same unless a signal comes first. None: it came.
+/// Reads a scene as [`load`] does. None: a signal came first.
 pub(crate) fn load_until(
     signals: &Signals,
     args: &SceneArgs,
@@ -62,7 +62,8 @@ pub(crate) fn too_large(loaded: &Loaded, error: &FilmError) -> Failure {
     Failure::new(Exit::Scene, message).with_hint(SMALLER)
 }
 
-/// Prints the warnings of a scene, of which there are `others` more; with `--strict` they are errors.
+/// Prints the warnings of a scene. With `--strict`, fails if there are any, or if `others`, the number of other
+/// warnings, is not 0.
 pub(crate) fn print_warnings(
     loaded: &Loaded,
     args: &SceneArgs,
@@ -88,7 +89,7 @@ pub(crate) fn check_strict(args: &SceneArgs, count: usize) -> Result<(), Failure
     Ok(())
 }
 
-/// The crop that flags ask for; clap lets only one of them be given.
+/// Returns the crop of the flags. clap accepts only one of the three flags.
 fn crop(film: &FilmArgs) -> Option<Crop> {
     let pixels = film.crop.or(film.pixelbounds).map(|bounds| {
         let rect = bounds.0;
@@ -100,7 +101,7 @@ fn crop(film: &FilmArgs) -> Option<Crop> {
     })
 }
 
-/// The warning of a crop that reaches beyond the film. None: it does not.
+/// Returns the warning of a crop that reaches beyond the film. None: it does not.
 fn crop_warning(args: &FilmArgs, view: &View) -> Option<String> {
     let asked = args.crop.or(args.pixelbounds)?.0;
     let film = view.film();
@@ -109,14 +110,15 @@ fn crop_warning(args: &FilmArgs, view: &View) -> Option<String> {
     (film.crop != asked).then_some(message)
 }
 
-/// The warning of a scene without light. None: there is a light, though it may be a dark one.
+/// Returns the warning of a scene without light. None: there is a light, though it may be dark.
 fn light_warning(scene: &Scene) -> Option<String> {
     let is_dark = scene.lights().is_empty();
     is_dark.then(|| "the scene has no light: the image will be black".to_owned())
 }
 
-/// The exit of an error with a scene. A crop that does not fit is a fault of the command line; a scene
-/// file that cannot be opened is no fault of the scene, but a missing file that it names is.
+/// Returns the exit for an error of reading a scene. A crop that does not fit is an error of the command
+/// line. A scene file that cannot be opened is an error of files; a missing file that the scene names is an
+/// error of the scene.
 pub(crate) fn exit_of_scene(error: &formats::Error) -> Exit {
     match error.kind() {
         ErrorKind::Options => Exit::Usage,
@@ -125,8 +127,8 @@ pub(crate) fn exit_of_scene(error: &formats::Error) -> Exit {
     }
 }
 
-/// The failure of a scene that cannot be read. That of a missing file has no lines to show, and its hint is one of
-/// its own.
+/// Returns the failure of a scene that cannot be read. A missing scene file has no lines to show, and a separate
+/// hint.
 fn refused(error: formats::Error) -> Failure {
     let exit = exit_of_scene(&error);
     match error.hint() {
@@ -142,13 +144,13 @@ pub(crate) fn read_image(path: &Path) -> Result<Pixels, Failure> {
     Ok(Pixels::from(&formats::image::read(path, None)?))
 }
 
-/// A setting, by name, of the render that wrote an image. None: the image does not say.
+/// Reads a setting, by name, of the render that wrote an image. None: the image does not have it.
 pub(crate) fn setting_of(path: &Path, name: &str) -> Option<String> {
     let layers = formats::image::read_layers(path).ok()?;
     layers.text(&format!("bidir/{name}"))
 }
 
-/// The estimated variance of an image. None: it has no such layers.
+/// Reads the estimated variance of an image. None: the image has no such layers.
 pub(crate) fn read_variance(path: &Path) -> Option<Variance> {
     let layers = formats::image::read_layers(path).ok()?;
     let pixels = Pixels {
@@ -172,7 +174,7 @@ pub(crate) struct Variance {
     pub(crate) freedom: f64,
 }
 
-/// Writes errors as they are to an EXR with the channel Y, or as colours up to `full` to a PNG.
+/// Writes errors to an EXR as the channel Y, or to a PNG as colours from 0 to `full`.
 pub(crate) fn write_error_map(
     path: &Path,
     errors: &ErrorMap,
@@ -196,12 +198,12 @@ pub(crate) fn write_error_map(
     Ok(formats::image::write_exr(path, &image)?)
 }
 
-/// All formats that images are written in.
+/// The formats in which images can be written.
 pub(crate) const IMAGES: &[Format] = &[Format::Exr, Format::Png];
 
-/// The format that the name of an image stands for.
+/// Returns the format of an image by its name.
 ///
-/// Errors: it is none of those in `written`.
+/// Errors: the format is not in `written`.
 pub(crate) fn image_format(path: &Path, written: &[Format]) -> Result<Format, Failure> {
     let named = Format::of(path).filter(|named| written.contains(named));
     named.ok_or_else(|| {
@@ -216,7 +218,7 @@ pub(crate) fn image_format(path: &Path, written: &[Format]) -> Result<Format, Fa
     })
 }
 
-/// The ending of the names of images.
+/// Returns the ending of the names of images in a format.
 fn ending(format: Format) -> &'static str {
     match format {
         Format::Png => ".png",
@@ -224,7 +226,7 @@ fn ending(format: Format) -> &'static str {
     }
 }
 
-/// The error of an output whose name is that of a folder.
+/// Returns the failure for an output whose name is the name of a folder.
 fn is_folder(path: &Path, written: &[Format]) -> Failure {
     let message = format!("cannot write `{}`: it is a folder", path.display());
     let file = path.join(format!("NAME{}", ending(written[0])));
@@ -237,7 +239,7 @@ pub(crate) fn read_film(path: &Path) -> Result<FilmFile, Failure> {
     Ok(formats::film::read(path)?)
 }
 
-/// Fails where an output, each with the flag that names it, would replace an input or another output.
+/// Fails if an output would replace an input or another output. Each output comes with the flag that names it.
 pub(crate) fn check_apart<'a>(
     inputs: impl IntoIterator<Item = &'a PathBuf>,
     outputs: &[(&str, &Path)],

@@ -10,12 +10,12 @@ use viewer::tev::{Tev, TevAddress};
 use viewer::web::{self, Server};
 use viewer::{RenderMonitor, RequestQueue, Status, request_queue};
 
-/// Takes the address before anything is read.
+/// Listens on the address of `--serve`. It is called first, so that errors come early.
 pub(crate) fn listen(address: ServeAddress) -> Result<TcpListener, Failure> {
     bind(address.0, 0)
 }
 
-/// A listener on an address, or where its port is taken on one of the next `more`.
+/// Returns a listener on `address`, or if its port is taken, on one of the next `more` ports.
 pub(crate) fn bind(address: SocketAddr, more: u16) -> Result<TcpListener, Failure> {
     web::listen(address, more).map_err(|error| {
         let hint = match error.kind() {
@@ -45,7 +45,7 @@ pub(crate) fn start(
     Ok((server, queue))
 }
 
-/// The system gives no thread, or no random numbers.
+/// Returns the failure of a server that cannot start, as the system gives no thread or no random numbers.
 pub(crate) fn failed(error: &io::Error) -> Failure {
     Failure::new(
         Exit::RenderFailed,
@@ -53,7 +53,7 @@ pub(crate) fn failed(error: &io::Error) -> Failure {
     )
 }
 
-/// Begins to show the render of a scene in tev, where that is asked for.
+/// Begins to show the render of a scene in tev, if there is an address.
 pub(crate) fn display(address: Option<&TevAddress>, scene: &str) -> Result<Option<Tev>, Failure> {
     let tev = address.map(|address| Tev::start(address.clone(), scene));
     tev.transpose().map_err(|error| {
@@ -62,16 +62,16 @@ pub(crate) fn display(address: Option<&TevAddress>, scene: &str) -> Result<Optio
     })
 }
 
-/// The viewers of a render that flags ask for.
+/// The viewers of a render, as the flags request.
 pub(crate) struct Show {
     monitor: Option<RenderMonitor>,
     tev: Option<Tev>,
-    /// Serves until it is dropped.
+    /// The server, which serves until it is dropped.
     _server: Option<Server>,
 }
 
 impl Show {
-    /// Shows a render that begins.
+    /// Begins to show a render.
     pub(crate) fn new(
         server: Option<(Server, RequestQueue)>,
         tev: Option<Tev>,
@@ -102,8 +102,8 @@ impl Show {
         }
     }
 
-    /// Waits a moment until tev has the last image, or warns that it has not; after all files are
-    /// written, as it is no part of the render.
+    /// Waits until tev has the last image, for a limited time, or warns that tev does not have it. It is called
+    /// after all files are written, as showing is not part of the render.
     pub(crate) fn leave(&mut self, render: &Render, console: Console) {
         let tev = self.tev.take();
         if let Some(Err(error)) = tev.map(|tev| tev.end(render.session.film())) {

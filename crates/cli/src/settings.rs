@@ -1,5 +1,5 @@
-//! The settings of a render from flags, environment and scene. `clap` gives flags precedence over the
-//! environment; here both take precedence over the scene.
+//! Combines the settings of a render from flags, environment and scene. `clap` gives flags precedence over the
+//! environment; this module gives both precedence over the scene.
 
 use crate::args::{BudgetArgs, LongArgs, Part, RenderArgs};
 use crate::console::Console;
@@ -31,7 +31,8 @@ pub(crate) fn warn_unused(args: &RenderArgs, settings: &Settings, console: Conso
         .count()
 }
 
-/// Warns of light that the list of strategies, given by `flag`, or the estimator loses. Returns the number of warnings.
+/// Warns of light that the estimator loses, or the list of strategies, which `flag` gives. Returns the number of
+/// warnings.
 ///
 /// Errors: the list makes no path, so that the image would be black.
 pub(crate) fn check_light(
@@ -95,8 +96,8 @@ fn warn_missing(loaded: &Loaded, settings: &Settings, console: Console) -> usize
     missing.len()
 }
 
-/// Names the lamps whose light is missing, as the end of a clause: the place of the first, the number of
-/// the others. Empty if the light of every lamp is missing.
+/// Returns the end of a clause that names the lamps whose light is missing: the place of the first lamp, and
+/// the number of the others. Empty if the light of every lamp is missing.
 fn lamps(loaded: &Loaded, spot: BlindSpot) -> String {
     let lights = loaded.scene.lights();
     let is_concerned = |lamp: &&Lamp| spot.concerns(&lights[lamp.light as usize]);
@@ -116,7 +117,7 @@ fn lamps(loaded: &Loaded, spot: BlindSpot) -> String {
 
 /// Returns the budget of a render; `scene` is the scene's number of samples per pixel.
 ///
-/// Errors: a part that has no passes.
+/// Errors: a part has no passes.
 pub(crate) fn budget(args: &BudgetArgs, long: &LongArgs, scene: u64) -> Result<Budget, Failure> {
     let (time, noise) = (args.time.map(|time| time.0), args.noise);
     let is_open = time.is_some() || noise.is_some();

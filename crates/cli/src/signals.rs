@@ -1,5 +1,5 @@
-//! Signals: the first Ctrl-C or SIGTERM leaves what is running, and the command ends with what is complete; the
-//! second ends it at once. SIGUSR1 requests that files are written.
+//! Signals. The first Ctrl-C or SIGTERM interrupts the running work, and the command ends with the complete passes;
+//! the second ends the command at once. SIGUSR1 requests that files are written.
 
 use crate::exit::{Exit, Failure};
 use bidir::driver::Stop;
@@ -12,9 +12,9 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 use std::time::Duration;
 
-/// The interval between two looks at the flag.
+/// The interval between two checks of the flag.
 const GAP: Duration = Duration::from_millis(50);
-/// The stack of a thread that does what the main thread would do. Unit: bytes.
+/// The size of the stack of a thread that works instead of the main thread. Unit: bytes.
 const STACK: usize = 8 << 20;
 
 /// The signals that end a render, each with its exit.
@@ -25,7 +25,7 @@ const SIGNALS: [(i32, Exit); 2] = [(SIGINT, Exit::Interrupted), (SIGTERM, Exit::
 pub(crate) struct Signals {
     received: Arc<AtomicUsize>,
     write: Arc<AtomicBool>,
-    /// Set by the first signal, and at the end of the time that an alarm was set to.
+    /// True after the first signal, or after the time of an alarm.
     stop: Arc<AtomicBool>,
 }
 
@@ -53,7 +53,7 @@ impl Signals {
         })
     }
 
-    /// Asks to leave what is running, after the first signal or at the end of the time.
+    /// Returns a stop that asks to interrupt the running work, after the first signal or the time of an alarm.
     pub(crate) fn stop(&self) -> Stop<'_> {
         Stop::when(&self.stop)
     }
@@ -63,7 +63,7 @@ impl Signals {
         Arc::clone(&self.stop)
     }
 
-    /// Sets the flag after this time, too.
+    /// Sets an alarm, which also sets the flag of [`Self::stop`], after this time.
     pub(crate) fn set_alarm(&self, after: Duration) -> Result<(), Failure> {
         let stop = self.stop_flag();
         let ring = move || {
@@ -77,8 +77,8 @@ impl Signals {
         })
     }
 
-    /// Does `work` that does not look at the flag in a thread of its own. `tick` is called meanwhile. None: the flag
-    /// was set before it ended; the thread ends with the process.
+    /// Does `work` in a separate thread, as it does not check the flag. Calls `tick` meanwhile, every [`GAP`]. None:
+    /// the flag was set before the work was done; then the thread ends with the process.
     pub(crate) fn wait_for<T: Send + 'static>(
         &self,
         work: impl FnOnce() -> T + Send + 'static,
@@ -115,7 +115,7 @@ impl Signals {
         self.write.swap(false, Ordering::Relaxed)
     }
 
-    /// Returns the exit of a command that left its work because of a signal.
+    /// Returns the exit of a command whose work a signal interrupted.
     pub(crate) fn ended(&self) -> Exit {
         self.exit().unwrap_or(Exit::Interrupted)
     }
@@ -128,13 +128,13 @@ impl Signals {
     }
 }
 
-/// Returns the result of `work`. None: it was done before.
+/// Does `work` and returns its result. None: it was done before.
 fn done<T>(work: &Mutex<Option<impl FnOnce() -> T>>) -> Option<T> {
     let work = work.lock().unwrap_or_else(PoisonError::into_inner).take();
     work.map(|work| work())
 }
 
-/// Ends the command with an exit code of its own when the system refuses memory.
+/// Makes the command end with a specific exit code when the system refuses memory.
 ///
 /// The standard library then prints the number of bytes and aborts; nothing else in this program aborts.
 pub(crate) fn end_without_memory() {

@@ -1,4 +1,4 @@
-//! Counts and measurements of a render: as JSON, and as lines to read.
+//! Counts and measurements of a render, as JSON and as text.
 
 mod summary;
 
@@ -27,7 +27,7 @@ pub(crate) struct Report {
 }
 
 impl Report {
-    /// The report of a render of the scene file `scene`, which took the time `load` to read.
+    /// Returns the report of a render of the scene file `scene`; `load` is the time of reading the scene.
     pub(crate) fn new(scene: String, load: Duration, render: &Render, budget: Budget) -> Self {
         let session = &render.session;
         let (stats, film) = (session.stats(), session.film().settings());
@@ -85,7 +85,7 @@ impl Report {
         }
     }
 
-    /// The counts of the strategies that the film keeps images of, as a table to read.
+    /// Returns a table, as text, of the strategies whose images the film keeps.
     pub(crate) fn strategy_table(&self) -> String {
         let head = "strategy  rays/sample  blocked        mean    variance\n".to_owned();
         let samples = self.json["samples"].as_u64().unwrap_or_default();
@@ -105,7 +105,7 @@ impl Report {
         })
     }
 
-    /// The warning of raw images that lack values. None: they lack none.
+    /// Returns the warning that raw images lack values. None: they lack none.
     pub(crate) fn raw_warning(&self) -> Option<String> {
         let images = self.strategies.iter().filter_map(|figures| figures.images);
         let count: u64 = images.map(|images| images.raw_dropped).sum();
@@ -126,8 +126,8 @@ fn per_sample(count: u64, samples: u64) -> f64 {
     count as f64 / samples.max(1) as f64
 }
 
-/// The time of samples by stage, of one thread with its clock, from the samples that were measured. None: no
-/// sample was.
+/// Returns the time of a sample on one thread by stage, averaged over the measured samples. None: no sample was
+/// measured.
 fn stages(times: &StageTimes) -> Option<Value> {
     let total = times.total().as_secs_f64();
     let per_sample = |seconds: f64| seconds * 1e9 / times.samples as f64;
@@ -150,7 +150,7 @@ fn stages(times: &StageTimes) -> Option<Value> {
     })
 }
 
-/// The counts of a strategy; its mean luminance and variance where the film keeps an image of it.
+/// Returns the JSON row of a strategy: its counts, and its mean luminance and variance if the film keeps its image.
 fn row(figures: &Figures) -> Value {
     let images = figures.images;
     let mut row = json!(figures.counts);

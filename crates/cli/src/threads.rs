@@ -3,15 +3,15 @@
 use crate::console::Console;
 use bidir::driver::{Shortage, Threads, start_pool};
 
-/// Starts the threads of all commands but renders, whose sessions have their own. 0: one per processor.
+/// Starts the threads of a command that does not render; sessions of renders start their own. 0: one per processor.
 pub(crate) fn start(requested: impl Into<usize>, console: Console) {
     if let Some(shortage) = start_for_render(requested, console) {
         console.warning(shortage);
     }
 }
 
-/// Does the same without a warning of a shortage, which the session that follows gives: its shortage is
-/// the larger one.
+/// Starts the threads of a command that renders. Returns a shortage without a warning: the session that follows
+/// warns of its own shortage, which is the larger one.
 pub(crate) fn start_for_render(requested: impl Into<usize>, console: Console) -> Option<Shortage> {
     start_pool(limited(requested, console))
 }

@@ -1,7 +1,7 @@
 //! `bidir tonemap`: converts linear light to an image for the screen.
 //!
 //! out = sRGB(operator(2^stops · in)). An operator maps linear Rec. 709 to linear Rec. 709 in
-//! [0, 1]; the transfer curve of sRGB is that of every PNG of this program. Values are clamped before an
+//! [0, 1]; every PNG of this program has the transfer curve of sRGB. Values are clamped before an
 //! operator is applied: negative channels and NaN become 0, infinity the largest finite number.
 
 mod agx;

@@ -15,11 +15,11 @@ use std::time::Duration;
 use viewer::Status;
 use viewer::interactive::{InteractiveRender, InteractiveSettings};
 
-/// The port where no scene was chosen,
+/// The default port.
 const PORT: u16 = 8080;
-/// and how many after it are tried.
+/// Number of ports after the default one that are tried.
 const MORE_PORTS: u16 = 10;
-/// The time between two looks for signals.
+/// The time between two checks for signals.
 const GAP: Duration = Duration::from_millis(50);
 
 /// Renders and serves until a signal comes.
@@ -59,7 +59,7 @@ pub(crate) fn run(args: &ViewArgs, console: Console) -> Result<Exit, Failure> {
     Ok(exit)
 }
 
-/// Waits for a signal.
+/// Waits for a signal, or for the failure of the render.
 fn wait(signals: &Signals, render: &InteractiveRender) -> Exit {
     loop {
         if let Some(exit) = signals.exit() {

@@ -60,7 +60,7 @@ impl Device {
 
     /// Denoises `image` in place, guided by `guides`, with `flags` switched on.
     ///
-    /// Panics: if [`Filter::set_image`] does.
+    /// Panics: as [`Filter::set_image`].
     pub(crate) fn filter(
         &self,
         size: [usize; 2],
@@ -158,7 +158,7 @@ impl Drop for Filter<'_> {
     }
 }
 
-/// Makes the error for a failure that the library does not explain.
+/// Returns the error for a failure that the library does not explain.
 fn silent() -> DenoiseError {
     DenoiseError::Library {
         message: "an error without a message".to_owned(),

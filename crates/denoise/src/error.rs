@@ -11,10 +11,10 @@ pub enum DenoiseError {
         /// The system's error for the first name.
         reason: String,
     },
-    /// The file is not a library, or another one.
+    /// The file is not a library, or is a library other than Open Image Denoise.
     #[error("{}: cannot be used as Open Image Denoise: {reason}", file.display())]
     Unusable {
-        /// The file, or the folder without it.
+        /// The file, or the folder that does not contain the library.
         file: PathBuf,
         /// The cause.
         reason: String,
@@ -22,9 +22,9 @@ pub enum DenoiseError {
     /// The major version of the library is not 2.
     #[error("{}: Open Image Denoise {version}, where version 2 is needed", file.display())]
     Version {
-        /// The library.
+        /// The file of the library.
         file: PathBuf,
-        /// Its version.
+        /// The version of the library.
         version: String,
     },
     /// The number of pixels of an image does not fit the size.
@@ -32,7 +32,7 @@ pub enum DenoiseError {
     Size {
         /// The name of the image.
         image: &'static str,
-        /// Its number of pixels.
+        /// The number of pixels of the image.
         pixels: usize,
         /// Width and height.
         size: [usize; 2],

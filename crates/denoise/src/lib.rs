@@ -50,9 +50,9 @@ pub struct Input<'a> {
     pub size: [usize; 2],
     /// Linear light, red, green and blue. Shape: `size[0] · size[1]`, row by row.
     pub color: &'a [[f32; 3]],
-    /// The albedo of each pixel's surface. Shape: that of `color`.
+    /// The albedo of each pixel's surface. Shape: as `color`.
     pub albedo: Option<&'a [[f32; 3]]>,
-    /// The normal of that surface, in any frame. Shape: that of `color`. It requires `albedo`.
+    /// The normal of each pixel's surface, in any frame. Shape: as `color`. It requires `albedo`.
     pub normal: Option<&'a [[f32; 3]]>,
 }
 
@@ -68,8 +68,8 @@ impl Denoiser {
     /// The library uses at most `threads` threads; 0 leaves the number to it. It stays loaded until the
     /// process ends.
     ///
-    /// Errors: there is no library; it is another library or version; it does not run on this processor. A
-    /// variable that is set is never ignored.
+    /// Errors: there is no library; it is another library or version; it does not run on this processor. If the
+    /// variable is set, no other library is tried.
     pub fn load(threads: usize) -> Result<Self, DenoiseError> {
         let named = std::env::var_os(VARIABLE).filter(|value| !value.is_empty());
         Self::load_named(named.as_deref().map(Path::new), threads)
@@ -87,7 +87,7 @@ impl Denoiser {
         self.device.version().map(|part| part.to_string()).join(".")
     }
 
-    /// Returns the denoised image. Shape: that of the input's colour.
+    /// Returns the denoised image. Shape: as the input's colour.
     ///
     /// Errors: an image has the wrong size; normals are given without albedo; the library fails.
     pub fn denoise(&self, input: &Input<'_>) -> Result<Vec<[f32; 3]>, DenoiseError> {

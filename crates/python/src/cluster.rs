@@ -1,4 +1,4 @@
-//! Experiments on several machines: the driver's part and the nodes' part.
+//! Experiments on several machines: the functions of the driver and of the nodes.
 
 use crate::error::{of_experiment, raise};
 use crate::experiment::{Experiment, Message, Reporter};
@@ -13,7 +13,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 use std::path::PathBuf;
 
-/// Describes this machine, on which times depend, as JSON.
+/// Describes this machine, on which times depend. Returns JSON.
 #[pyfunction]
 pub(crate) fn machine() -> String {
     serde_json::to_string(&Machine::here()).unwrap_or_default()

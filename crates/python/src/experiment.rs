@@ -23,7 +23,7 @@ pub(crate) struct Experiment {
 /// An event for Python: kind, text, finished parts, all parts.
 pub(crate) type Message = (&'static str, String, u64, u64);
 
-/// Passes events on as messages.
+/// Converts events of an experiment to messages, and sends them.
 pub(crate) struct Reporter<'a> {
     stop: &'a Stop,
     sender: Sender<Message>,
@@ -79,7 +79,7 @@ fn json(results: Option<&Results>) -> Option<String> {
 
 #[pymethods]
 impl Experiment {
-    /// Reads a description; `file` is its name in errors, and its scenes are relative to that folder.
+    /// Reads a description. `file` is its name in errors; paths of scenes are relative to its folder.
     #[new]
     #[pyo3(signature = (text, file, *, quick, threads))]
     fn new(
@@ -165,7 +165,7 @@ impl Experiment {
 }
 
 impl Experiment {
-    /// Makes the setup of a run; fails if the results would replace the description.
+    /// Returns the setup of a run. Errors: the results would replace the description.
     fn setup(
         &self,
         py: Python<'_>,
@@ -183,8 +183,8 @@ fn pass_on(py: Python<'_>, hear: Option<&Py<PyAny>>, message: Message) -> PyResu
     hear.map_or(Ok(()), |hear| hear.call1(py, message).map(drop))
 }
 
-/// Makes the setup of a run; `machine` is the result of `machine()` on the machine that renders. None: this
-/// one.
+/// Returns the setup of a run; `machine` is the result of `machine()` on the machine that renders. None: this
+/// machine.
 fn setup(py: Python<'_>, folder: PathBuf, restart: bool, machine: Option<&str>) -> PyResult<Setup> {
     let machine = match machine {
         Some(json) => serde_json::from_str(json)

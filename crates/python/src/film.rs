@@ -20,7 +20,7 @@ pub(crate) struct Film {
     inputs: Inputs,
 }
 
-/// The files read for a film, by absolute names; its outputs must not replace them.
+/// The absolute names of the files that were read for a film. Its outputs must not replace them.
 pub(crate) type Inputs = BTreeSet<PathBuf>;
 
 /// Makes paths absolute, so that they stay valid if the working directory changes.
@@ -94,7 +94,7 @@ impl Film {
         Ok(Self { file, inputs })
     }
 
-    /// Reads the bytes of a film file; its outputs must not replace the files of `scene`.
+    /// Reads the bytes of a film file. Outputs of the film must not replace the files of `scene`.
     #[staticmethod]
     #[pyo3(signature = (data, scene=None))]
     fn from_bytes(py: Python<'_>, data: &[u8], scene: Option<&Scene>) -> PyResult<Self> {

@@ -14,9 +14,9 @@ use std::sync::Arc;
 /// A scene in memory, with the settings of its file.
 #[pyclass(frozen, module = "bidir._bidir")]
 pub(crate) struct Scene {
-    /// The scene as it was read.
+    /// The scene that was read.
     pub(crate) loaded: Loaded,
-    /// The settings of the file, over the defaults.
+    /// The settings of the file, or else the defaults.
     pub(crate) settings: Settings,
     /// The files on the disk that the scene reads or names.
     pub(crate) inputs: Inputs,
@@ -31,10 +31,10 @@ pub(crate) struct Source {
     /// True to replace unsupported features by simpler ones.
     #[pyo3(item)]
     lenient: bool,
-    /// Width and height of the film. None: those of the file.
+    /// Width and height of the film. None: the file gives them.
     #[pyo3(item)]
     size: Option<[u32; 2]>,
-    /// Left, top, right, bottom of the rendered rectangle. None: that of the file.
+    /// Left, top, right, bottom of the rendered rectangle. None: the file gives it.
     #[pyo3(item)]
     crop: Option<[u32; 4]>,
     /// Files in memory, which replace those on the disk.
@@ -55,7 +55,7 @@ pub(crate) fn in_memory(files: Vec<MemoryFile>) -> InMemory {
 }
 
 impl Scene {
-    /// Makes the error of a film that is too large, at the place that gives its size.
+    /// Returns the error of a film that is too large, at the place that gives its size.
     pub(crate) fn too_large(&self, py: Python<'_>, error: &FilmError) -> PyErr {
         let error = self.loaded.too_large(error);
         let argument = if error.has_place() { "" } else { "size: " };

@@ -25,14 +25,14 @@ pub(crate) struct Session {
 struct Limits {
     #[pyo3(item)]
     spp: Option<u64>,
-    /// Unit: seconds.
+    /// The time. Unit: seconds.
     #[pyo3(item)]
     time: Option<f64>,
     #[pyo3(item)]
     noise: Option<f64>,
 }
 
-/// Returns a time as near to `seconds` as there is.
+/// Returns the duration nearest to `seconds`.
 fn duration(seconds: f64) -> Duration {
     let nearest = if seconds > 0.0 {
         Duration::MAX
@@ -73,15 +73,15 @@ impl Session {
     }
 }
 
-/// Makes the error for a film without memory.
+/// Returns the error for a film that has no memory.
 fn no_memory(py: Python<'_>, error: &FilmError) -> PyErr {
     raise(py, "RenderError", &format!("another film: {error}"))
 }
 
 #[pymethods]
 impl Session {
-    /// Starts a session without passes; `bidir.Session` makes `requested`. Training takes a part of a time, and no
-    /// more than is left: the `limits`. Unit: seconds.
+    /// Starts a session without passes; `bidir.Session` makes `requested`. `limits` are the time of the render, of
+    /// which training takes a part, and the time that is left for training. Unit: seconds.
     #[new]
     fn new(
         py: Python<'_>,
@@ -126,8 +126,8 @@ impl Session {
         })
     }
 
-    /// Renders the next pass, and returns true. A signal leaves and forgets it, and so does the end of the time that is
-    /// `left`: false. Unit: seconds.
+    /// Renders the next pass, and returns true. If a signal or the end of the time `left` interrupts it, drops the pass
+    /// and returns false. Unit: seconds.
     #[pyo3(signature = (left = None))]
     fn step(&self, py: Python<'_>, left: Option<f64>) -> PyResult<bool> {
         wait_silently(py, deadline(left), |stop| {

@@ -11,7 +11,7 @@ use pyo3::prelude::*;
 use std::collections::BTreeMap;
 use std::ffi::CString;
 
-/// Returns the names that layers have in files, by their names in calls.
+/// Returns the names of layers in files, by their names in calls.
 pub(crate) fn layer_names() -> BTreeMap<&'static str, &'static str> {
     let named = Aov::NAMES.into_iter().filter_map(|(name, aov)| {
         let first = aov.channels().first()?;
@@ -51,7 +51,7 @@ pub(crate) struct Requested {
     strategy_layers: usize,
 }
 
-/// Resolves the settings of a render over those of its scene.
+/// Returns the settings of a render: the requested ones, and else those of its scene.
 ///
 /// Errors: an unknown name or value, as `SettingsError`.
 pub(crate) fn resolve(
@@ -71,7 +71,7 @@ pub(crate) fn resolve(
     Ok(settings)
 }
 
-/// Resolves the number of threads; warns if it was reduced.
+/// Returns the number of threads, and warns if it was reduced.
 ///
 /// Errors: the number exceeds the limit, as `SettingsError`.
 pub(crate) fn threads_of(py: Python<'_>, requested: usize) -> PyResult<Threads> {
@@ -114,7 +114,7 @@ pub(crate) fn settings_of(py: Python<'_>, integrator: &str) -> PyResult<Vec<Stri
     Ok(texts.into_keys().collect())
 }
 
-/// Checks settings; returns them in normal form.
+/// Checks settings, and returns them in normal form.
 ///
 /// Errors: an unknown name or value, as `SettingsError`.
 #[pyfunction]

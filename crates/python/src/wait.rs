@@ -26,12 +26,13 @@ impl Stop {
     }
 }
 
-/// Runs `work` in a thread of its own, while other Python threads run.
+/// Runs `work` in a separate thread, while other Python threads run.
 ///
-/// This thread checks for signals meanwhile, since only the interpreter's main thread receives Ctrl-C, and
+/// Meanwhile, this thread checks for signals, since only the interpreter's main thread receives Ctrl-C, and
 /// passes the messages of `work` to `hear`. If a signal or `hear` raises an exception, `work` is asked to
-/// stop, and the exception is returned after it has stopped; it is asked to stop without one at `deadline`. If the system cannot start a thread, `work` runs
-/// on this one, and signals and messages wait until it ends.
+/// stop, and the exception is returned after it has stopped. At `deadline`, `work` is asked to stop without
+/// an exception. If the system cannot start a thread, `work` runs on this one, and signals and messages wait
+/// until it ends.
 pub(crate) fn wait<T: Send, M: Send>(
     py: Python<'_>,
     deadline: Option<Instant>,

@@ -114,7 +114,7 @@ impl ExtentArgs {
         }
     }
 
-    /// Returns the given flags as they are written on a command line.
+    /// Returns the given flags, in the form of a command line.
     pub(crate) fn words(&self) -> impl Iterator<Item = String> {
         let size = self.size.map(|size| size.0);
         let number = |flag: &str, number: Option<f64>| number.map(|n| format!("{flag} {n}"));

@@ -3,7 +3,7 @@
 use super::Cli;
 use clap::{Command, CommandFactory, ValueHint};
 
-/// Commands, and the flags that `-h` shows for them; it shows all flags of other commands.
+/// Commands, each with the flags that `-h` shows for it. For all other commands, `-h` shows all flags.
 const COMMON: [&str; 4] = [
     "render output integrator spp time noise size seed denoise aov checkpoint resume serve threads lenient",
     "view port bind integrator spp size seed threads lenient",
@@ -11,7 +11,7 @@ const COMMON: [&str; 4] = [
     "experiment output quick restart ray threads quiet",
 ];
 
-/// Flags, and their names in other renderers, which are accepted.
+/// Flags, each with its accepted names from other renderers.
 const ALIASES: [&str; 6] = [
     "integrator method algorithm renderer",
     "max-depth bounces max-bounces maxdepth",
@@ -49,7 +49,7 @@ fn shown(command: Command) -> Command {
     command.mut_subcommands(shown)
 }
 
-/// Returns the words behind the first one of the line that begins with it.
+/// Returns the words after `first` in the line that begins with `first`. None: there is no such line.
 fn words_of(lines: &[&'static str], first: &str) -> Option<Vec<&'static str>> {
     let mut lines = lines.iter().filter_map(|line| line.split_once(' '));
     let (_, words) = lines.find(|(word, _)| *word == first)?;

@@ -74,7 +74,7 @@ pub(crate) struct Part {
 }
 
 impl Part {
-    /// Returns the passes of this part out of `passes`. The parts together have every pass once.
+    /// Returns the passes of this part out of `passes`. Every pass is in exactly one part.
     pub(crate) fn range(self, passes: u64) -> Range<u64> {
         let edge = |i: u64| (u128::from(passes) * u128::from(i) / u128::from(self.of)) as u64;
         edge(self.index)..edge(self.index + 1)

@@ -8,7 +8,7 @@ use std::ffi::{OsStr, OsString};
 use std::num::ParseIntError;
 use std::path::Path;
 
-/// Flags of other renderers that no flag here replaces: hints.
+/// Hints for flags of other renderers that have no equal here.
 const ELSEWHERE: [&str; 4] = [
     "--width --height: the size of the image is --size WIDTHxHEIGHT, such as --size 640x480",
     "--exposure --tonemap --gamma: `bidir tonemap IMAGE.exr --exposure STOPS` makes a brighter or darker PNG",
@@ -16,7 +16,7 @@ const ELSEWHERE: [&str; 4] = [
     "--gpu --device --cuda: bidir renders on processors only; the number of threads is --threads N",
 ];
 
-/// Returns the failure for an error of the command line `root`, which read these arguments.
+/// Returns the failure for an error of the command line `root` with these arguments.
 pub(crate) fn explained(error: &Error, root: &Command, arguments: &[OsString]) -> Failure {
     let command = called(root, arguments);
     let given = first(error, ContextKind::InvalidArg);
@@ -76,7 +76,8 @@ fn flag_of(argument: &str) -> &str {
     argument.split([' ', '=']).next().unwrap_or_default()
 }
 
-/// Returns a hint at the flag or command that is nearest to the given one; a flag under its own name.
+/// Returns a hint at the flag or command nearest to the given one. If the nearest name is an alias, names the flag
+/// itself.
 fn near(error: &Error, command: &Command) -> Option<String> {
     let mut kinds = [ContextKind::SuggestedArg, ContextKind::SuggestedSubcommand].into_iter();
     let near = kinds.find_map(|kind| texts(error, kind).into_iter().next())?;
@@ -114,7 +115,7 @@ fn hint_at_flag(flag: &str, command: &Command, root: &Command) -> Option<String>
     Some(format!("it is a flag of `bidir {}`", other.get_name()))
 }
 
-/// Returns a hint at the command for a file that stands in its place.
+/// Returns a hint at the command for a file, if a file is given instead of a command.
 fn hint_at_file(name: &str) -> Option<String> {
     let ending = Path::new(name).extension()?.to_ascii_lowercase();
     let command = match ending.to_str()? {
@@ -141,7 +142,7 @@ fn missing(error: &Error, command: &Command) -> String {
     format!("`{name}`{with} needs {names}")
 }
 
-/// Names two flags that exclude each other, or one that is given twice.
+/// Returns the failure for two flags that exclude each other, or for a flag that is given twice.
 fn conflict(error: &Error) -> Failure {
     let kinds = [ContextKind::InvalidArg, ContextKind::PriorArg];
     let [given, other] = kinds.map(|kind| flag_of(&first(error, kind)).to_owned());
@@ -152,7 +153,7 @@ fn conflict(error: &Error) -> Failure {
     })
 }
 
-/// Explains an invalid value with what is expected, and with the variable that it comes from.
+/// Returns the failure for an invalid value. It says what is expected, and which variable gave the value.
 fn value(error: &Error, command: &Command) -> Failure {
     let named = first(error, ContextKind::InvalidArg);
     let given = first(error, ContextKind::InvalidValue);

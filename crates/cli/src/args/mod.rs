@@ -58,8 +58,8 @@ pub(crate) struct Cli {
     pub(crate) renamed: Vec<String>,
 }
 
-/// Returns the name of the program, its version, and that of its estimators, which decides which films belong
-/// together; and the commit, if `BIDIR_COMMIT` was set when the program was built.
+/// Returns the name and version of the program, its estimator version, which films to be merged must share, and the
+/// commit, if `BIDIR_COMMIT` was set when the program was built.
 fn version() -> String {
     let commit = option_env!("BIDIR_COMMIT").filter(|commit| !commit.is_empty());
     let commit = commit.map_or_else(String::new, |commit| format!(", commit {commit}"));
@@ -70,7 +70,8 @@ fn version() -> String {
 impl Cli {
     /// Reads the command line and the environment.
     ///
-    /// Errors: a command line that calls no command; the result of printing the text that it asks for.
+    /// Errors: the command line does not call a command. The error is its failure, or the result of printing a text
+    /// that it asks for, such as help.
     pub(crate) fn read() -> Result<Self, Result<Exit, Failure>> {
         let arguments: Vec<_> = std::env::args_os().collect();
         let mut command = command();
@@ -127,7 +128,7 @@ pub(crate) struct ColorArgs {
 }
 
 impl ColorArgs {
-    /// Finds the flags in a command line that is not understood otherwise.
+    /// Finds the flags in a command line that cannot be parsed.
     pub(crate) fn of_words() -> Self {
         let no_color = std::env::args_os().any(|word| word == "--no-color");
         Self { no_color }

@@ -60,7 +60,7 @@ pub(crate) struct ReferenceArgs {
 }
 
 impl ReferenceArgs {
-    /// Returns the settings that are asked for, of the image and of the cross-check.
+    /// Returns the requested settings of the image's estimator and of the cross-check.
     pub(crate) fn requests(&self) -> [Request; 2] {
         let flags = [&self.estimator, &self.against];
         flags.map(|flags| flags.clone().map_or_else(Request::default, |flags| flags.0))

@@ -4,11 +4,11 @@ use std::ffi::OsString;
 
 /// The older name of --light-start.
 const FLAG: &str = "--emission";
-/// The older name of the value `auto`,
+/// The older name of the value `auto`.
 const VALUE: &str = "suited";
-/// of these flags,
+/// The flags that accept [`VALUE`].
 const RULES: [&str; 3] = ["--candidates", "--path-roulette", "--shadow-rays"];
-/// and of this variable.
+/// The variable that accepts [`VALUE`].
 const VARIABLE: &str = "BIDIR_SHADOW_RAYS";
 
 /// Returns a warning for each older name on a command line and in the environment.
@@ -38,7 +38,7 @@ pub(super) fn warnings(
 mod tests {
     use super::*;
 
-    /// Returns whether there are warnings about the flag and about the value.
+    /// Returns whether there is a warning about the flag, and whether there is one about the value.
     fn warned(words: &[&str], rule: Option<&str>) -> [bool; 2] {
         let words: Vec<_> = words.iter().map(OsString::from).collect();
         let all = warnings(&words, |name| {

@@ -48,8 +48,8 @@ impl Noisy {
         })
     }
 
-    /// Returns the warning that the noise of pixels of this image, read from `path`, is correlated, which
-    /// the test of blocks ignores. None: it is independent, or the integrator is unknown.
+    /// Returns the warning that the noise of this image's pixels is correlated, which the test of blocks
+    /// ignores; `path` names the image. None: the noise is independent, or the integrator is unknown.
     pub(super) fn correlation(&self, path: &Path) -> Option<String> {
         let integrator = self.integrator.as_deref()?;
         if !["lvc", "auto"].contains(&integrator) {

@@ -20,11 +20,11 @@ const CONFIDENCE: f64 = 0.95;
 pub(super) struct Comparison {
     #[serde(flatten, serialize_with = "as_map")]
     pub(super) numbers: Vec<Number>,
-    /// The images have one size and the same bits.
+    /// True if the images have the same size and the same bits.
     pub(super) identical: bool,
     /// Width and height of the compared images. None: the sizes differ.
     pub(super) size: Option<[usize; 2]>,
-    /// The image that was resampled to the size of the other: `A` or `B`.
+    /// The image that was resampled to the size of the other: `A` or `B`. None: sizes are equal, or were not changed.
     pub(super) resampled: Option<&'static str>,
     /// The tests of the difference against noise. None: an image has no variances, or the sizes differ.
     #[serde(rename = "z_test", skip_serializing_if = "Option::is_none")]
@@ -36,7 +36,7 @@ pub(super) struct Comparison {
 pub(super) struct Replicates {
     #[serde(flatten, serialize_with = "as_map")]
     numbers: Vec<(&'static str, Option<Spread>)>,
-    /// The equality of all images and the reference.
+    /// True if all images are identical to the reference.
     identical: bool,
     size: Option<[usize; 2]>,
     resampled: Option<&'static str>,
@@ -167,7 +167,7 @@ fn number_text(name: &str, value: Option<f64>) -> String {
     }
 }
 
-/// Returns names and values in two columns.
+/// Formats names and values in two columns.
 fn columns(
     lines: Vec<(&str, String)>,
     resampled: Option<&str>,

@@ -5,7 +5,7 @@ use lab::report::table_text;
 use lab::results::{Cell, Claim, Plot, PlotKind, Series, Table};
 use std::collections::BTreeSet;
 
-/// Returns a claim with its figures. The numbers of curves stand in tables, so only histograms are drawn.
+/// Returns a claim with its figures. Tables contain the numbers of curves, so only histograms are drawn.
 pub(super) fn text(claim: &Claim) -> String {
     let mut text = format!(
         "{}: {}\n  {}: {}\n  {}\n",
@@ -25,7 +25,7 @@ pub(super) fn text(claim: &Claim) -> String {
     text
 }
 
-/// Returns how certain the claims are: each text once. None: there are no claims.
+/// Returns the statistical methods of the claims, each text once. None: there are no claims.
 pub(super) fn methods(claims: &[Claim]) -> Option<String> {
     let methods: BTreeSet<&str> = claims.iter().map(|claim| claim.method.as_str()).collect();
     let text = methods.into_iter().map(|method| format!("{method}\n"));

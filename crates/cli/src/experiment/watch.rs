@@ -11,29 +11,29 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration as Time, Instant};
 
-/// The least time between two lines, but for the first and the last.
+/// The least time between two lines, except for the first and the last.
 const GAP: Time = Time::from_secs(10);
-/// The bar and its text.
+/// The template of the bar and its text.
 const TEMPLATE: &str = "{bar:32} {percent:>3}%  {msg}  {elapsed}  {eta} left";
 
-/// Reports the progress of an experiment, and has its clock.
+/// Reports the progress of an experiment, and supplies its clock.
 pub(super) struct Watch<'a> {
     console: Console,
     signals: &'a Signals,
     start: Instant,
     channel: Channel,
-    /// Renders done before this run.
+    /// Number of renders done before this run.
     before: usize,
-    /// Renders done.
+    /// Number of renders done.
     done: usize,
-    /// Renders in all.
+    /// Number of all renders.
     of: usize,
 }
 
 enum Channel {
     Silent,
     Bar(ProgressBar),
-    /// With the time of the last line.
+    /// Lines, with the time of the last one. None: there was none.
     Lines(Option<Instant>),
 }
 
@@ -62,7 +62,7 @@ impl<'a> Watch<'a> {
         }
     }
 
-    /// Shows the part that is done, with a text.
+    /// Shows the finished part, in `[0, 1]`, with a text.
     fn show(&mut self, part: f64, text: &str) {
         match &mut self.channel {
             Channel::Silent => {}
@@ -80,7 +80,7 @@ impl<'a> Watch<'a> {
         }
     }
 
-    /// `render 3 of 40, 12.3s, 2m04s left`.
+    /// Returns the state as text, such as `render 3 of 40, 12.3s, 2m04s left`.
     fn count(&self) -> String {
         let Self { done, of, .. } = *self;
         let elapsed = self.start.elapsed();

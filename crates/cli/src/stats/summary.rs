@@ -1,4 +1,4 @@
-//! The lines that a render ends with.
+//! The lines that are printed at the end of a render.
 
 use crate::args;
 use bidir::driver::{Budget, Plan};
@@ -6,36 +6,36 @@ use bidir::integrator::{CandidateCount, IntegratorKind};
 use formats::film::Render;
 use std::time::Duration;
 
-/// Below this number of passes the variance of a pixel is too uncertain for an error.
+/// The number of passes below which the variance of a pixel is too uncertain for an error.
 const LEAST_PASSES: u64 = 16;
 
 /// The summary of a render, for people.
 #[derive(Clone, Debug)]
 pub(crate) struct Summary {
-    /// All passes of the film.
+    /// Number of all passes of the film.
     passes: u64,
-    /// The passes of this run.
+    /// Number of passes of this run.
     rendered: u64,
     /// The number of passes to reach. None: there is no limit.
     wanted: Option<u64>,
-    /// The passes as ranges, for a part of a render.
+    /// The passes as ranges. None: this is not a part of a render.
     pub(crate) part: Option<String>,
-    /// Width and height of a crop.
+    /// Width and height of the crop. None: the whole film is rendered.
     crop: Option<[u32; 2]>,
     time: Duration,
-    /// The error of `--noise`. None: it is not known.
+    /// The relative error, by the measure of `--noise`. None: it is not known.
     error: Option<f64>,
-    /// True where `--noise` asks for an error that too few passes cannot give.
+    /// True if `--noise` asks for an error, but the film has too few passes for one.
     lacks_error: bool,
-    /// True if the error is that of the image before denoising.
+    /// True if the image is denoised, so that the error is that of the image before.
     pub(crate) is_denoised: bool,
     plan: Option<Plan>,
-    /// The samples of training, where it was limited.
+    /// Number of training samples. None: training was not limited.
     trained: Option<u64>,
 }
 
 impl Summary {
-    /// The summary of a render; the caller says if it is denoised, or a part of a render.
+    /// Returns the summary of a render. The caller sets `part` and `is_denoised`.
     pub(crate) fn new(render: &Render, budget: Budget) -> Self {
         let session = &render.session;
         let film = session.film();
@@ -59,7 +59,7 @@ impl Summary {
         }
     }
 
-    /// A line of samples, time and error, and one of what `auto` chose and of limited training.
+    /// Returns a line with samples, time and error, and one with the plan of `auto` and limited training, if any.
     pub(crate) fn lines(&self) -> Vec<String> {
         let plan = self.plan.as_ref();
         let plan = plan.map(|plan| format!("auto chose {}", describe(plan)));
@@ -100,7 +100,7 @@ impl Summary {
     }
 }
 
-/// The flags that render as `auto` does.
+/// Returns the flags of `bidir render` for the plan of `auto`.
 fn describe(plan: &Plan) -> String {
     let name = plan.integrator;
     let is_lvc = plan.integrator == IntegratorKind::Lvc;
@@ -120,7 +120,7 @@ fn describe(plan: &Plan) -> String {
     flags.join(" ")
 }
 
-/// `a`, `a and b`, `a, b and c`.
+/// Joins names, such as `a, b and c`.
 pub(crate) fn listed(names: &[String]) -> String {
     match names {
         [] => "no file".to_owned(),
@@ -129,7 +129,7 @@ pub(crate) fn listed(names: &[String]) -> String {
     }
 }
 
-/// A positive number with two significant digits.
+/// Formats a positive number with two significant digits.
 fn two_digits(number: f64) -> String {
     // 0.0996 has the digits of 0.10.
     let rounded = format!("{number:.1e}").parse().unwrap_or(number);

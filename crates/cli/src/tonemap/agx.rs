@@ -8,7 +8,7 @@
 //! coded values, 0.5. The numbers are those of [Wrensch23, appendix]; s there is a polynomial of the sixth
 //! degree fitted to the table of [Sobotka22, AgX_Default_Contrast], with a mean square error of 3.7e-6.
 //!
-//! The exponent is that of the screen in the description, so that `out` is linear; this program then
+//! The exponent 2.2 is that of the screen in the description, so that `out` is linear; this program then
 //! encodes it by the curve of sRGB, as in the description.
 
 /// The rows of I.
@@ -28,7 +28,7 @@ const OUTSET: [[f32; 3]; 3] = [
 /// a and b: ten stops below middle grey and six and a half above. Unit: stops.
 const RANGE: [f32; 2] = [-12.47393, 4.026069];
 
-/// The coefficients of s, from that of x⁶ down.
+/// The coefficients of s, from x⁶ down to x⁰.
 const CURVE: [f32; 7] = [15.5, -40.14, 31.96, -6.868, 0.4298, 0.1191, -0.00232];
 
 /// The exponent of the screen.

@@ -23,7 +23,7 @@ pub struct SampleReport {
     pub(super) hits: Vec<TermReport>,
     /// The candidates, s ≥ 1 and t ≥ 2: connections that are not zero before selection and visibility.
     pub(super) candidates: Vec<ConnectionReport>,
-    /// The strategies of connections that are zero.
+    /// The strategies of connections without a term, because they are zero.
     pub(super) zeros: Vec<String>,
     /// The splats, t = 1.
     pub(super) light_image: Vec<ConnectionReport>,
@@ -92,7 +92,7 @@ pub(super) struct ConnectionReport {
     pub(super) is_visible: bool,
     /// The part of the value that arrives.
     pub(super) transmittance: f32,
-    /// The pixel on which a splat lands, or would land if it were visible.
+    /// The point of the film on which a splat lands, also if it is not visible. None: the term is a candidate.
     #[serde(flatten)]
     pub(super) landing: Option<Landing>,
 }
