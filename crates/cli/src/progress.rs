@@ -22,7 +22,7 @@ const SHORTEST_GAP: Duration = Duration::from_secs(1);
 const LONGEST_GAP: Duration = Duration::from_secs(10);
 /// The progress after which a line is due. Unit: percent.
 const STEP: u32 = 10;
-/// The largest time left in a report.
+/// The largest time left in JSON, which also stands for an unknown one.
 const LONGEST_LEFT: Duration = Duration::from_secs(1 << 30);
 /// The time between two drawings of a bar.
 const TICK: Duration = Duration::from_millis(200);

@@ -44,9 +44,9 @@ pub enum Command {
     },
     /// Move the camera around its target. Unit: radians.
     Orbit {
-        /// To the camera's right.
+        /// The angle to the camera's right.
         yaw: f32,
-        /// Up.
+        /// The angle upwards.
         pitch: f32,
     },
     /// Move the camera away from its target.
@@ -56,9 +56,9 @@ pub enum Command {
     },
     /// Move the camera across its target. Unit: the distance.
     Pan {
-        /// To the camera's right.
+        /// The step to the camera's right.
         right: f32,
-        /// Up.
+        /// The step upwards.
         up: f32,
     },
     /// Move the camera, and turn it at its new position.
@@ -79,11 +79,11 @@ pub enum Command {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Walk {
-    /// Along the axis.
+    /// The step along the axis.
     pub forward: f32,
-    /// To the picture's right.
+    /// The step to the picture's right.
     pub right: f32,
-    /// Upwards in the picture.
+    /// The step upwards in the picture.
     pub up: f32,
     /// The turn to the right.
     pub yaw: f32,

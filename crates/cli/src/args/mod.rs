@@ -58,8 +58,8 @@ pub(crate) struct Cli {
     pub(crate) renamed: Vec<String>,
 }
 
-/// Returns the name and version of the program, its estimator version, which films to be merged must share, and the
-/// commit, if `BIDIR_COMMIT` was set when the program was built.
+/// Returns the name and version of the program, its estimator version (only films with the same one can be merged),
+/// and the commit, if `BIDIR_COMMIT` was set when the program was built.
 fn version() -> String {
     let commit = option_env!("BIDIR_COMMIT").filter(|commit| !commit.is_empty());
     let commit = commit.map_or_else(String::new, |commit| format!(", commit {commit}"));

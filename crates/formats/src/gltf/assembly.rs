@@ -195,7 +195,7 @@ impl<'a> Builder<'a> {
         Ok(())
     }
 
-    /// Reads the primitives of a mesh that have triangles, each with its material and its place in the file.
+    /// Reads the primitives of a mesh that have triangles. Returns each with its material and its place in the file.
     fn surfaces(
         &mut self,
         context: &mut Context<'_>,

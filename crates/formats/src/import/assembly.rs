@@ -37,9 +37,9 @@ pub(crate) struct Assembly<P> {
     vertex_errors: VertexErrors<P>,
     /// Number of vertices of all meshes in memory.
     vertices: u64,
-    /// By number.
+    /// The place of each shape in the file, by the shape's number.
     shapes: Vec<P>,
-    /// By number.
+    /// The place of each instance in the file, by the instance's number.
     instances: Vec<P>,
     lamps: Vec<Placed<P>>,
     volumes: Volumes,

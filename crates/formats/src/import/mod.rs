@@ -62,7 +62,7 @@ pub(crate) trait Document {
     /// The place of an error that concerns the whole scene.
     const TOP: Self::Place;
 
-    /// The source of the scene's files.
+    /// Returns the source of the scene's files.
     fn files(&self) -> &Files;
 
     /// Returns every file that the document may name, whether it is read or not.

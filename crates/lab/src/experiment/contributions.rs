@@ -171,8 +171,7 @@ fn quantile(values: &[f64], part: f64) -> Option<f64> {
     values.get(index.min(values.len().checked_sub(1)?)).copied()
 }
 
-/// Computes the share of the sum of ascending `values` that the largest ones have; `part` is the fraction of values
-/// that count as largest.
+/// Computes the share of the sum of ascending `values` that is due to the largest ones, a fraction `part` of all.
 fn share_of_largest(values: &[f64], part: f64) -> f64 {
     let small = ((1.0 - part) * values.len() as f64) as usize;
     let total: f64 = values.iter().sum();
