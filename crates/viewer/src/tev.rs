@@ -2,7 +2,7 @@
 //!
 //! A thread connects to tev, retries until tev listens, and always sends the newest frame. The renderer
 //! develops a frame only if the thread waits for one and developing is cheap. It waits only at the end,
-//! for at most [`PATIENCE`].
+//! for at most two seconds.
 
 use crate::frame::Frame;
 use crate::status::scene_name;
@@ -108,7 +108,7 @@ impl Tev {
         }
     }
 
-    /// Shows the last frame, and waits for at most [`PATIENCE`] until it is sent.
+    /// Shows the last frame, and waits for at most two seconds until it is sent.
     ///
     /// Errors: it is not sent by then.
     pub fn end(self, film: &Film) -> Result<(), TevError> {

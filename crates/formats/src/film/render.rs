@@ -47,9 +47,9 @@ pub struct Render {
 /// A host that has a stop and a clock, and ignores progress.
 #[derive(Clone, Copy, Debug)]
 pub struct Watch<'a> {
-    /// Its stop.
+    /// The stop of the host.
     pub stop: Stop<'a>,
-    /// The origin of its clock.
+    /// The origin of the host's clock.
     pub start: Instant,
 }
 

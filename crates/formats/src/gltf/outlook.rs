@@ -21,12 +21,12 @@ use bidir::spectrum::luminance;
 use bidir::view::View;
 use glam::{DAffine3, DVec3};
 
-/// What the reader chooses for a file that has no camera, or no light that counts.
+/// The reader's choices for a file without a camera, or without sufficient light.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Outlook {
     /// The viewpoint inside a closed scene. None: the camera sees all from outside.
     pub(super) inside: Option<Place>,
-    /// True to add a light though surfaces emit.
+    /// True to add a light although surfaces emit.
     pub(super) is_dark: bool,
 }
 

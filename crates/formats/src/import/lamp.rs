@@ -10,9 +10,9 @@ const MOST: usize = 3;
 /// A lamp of a file that no ray can hit.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Lamp {
-    /// Its place in the file, as `file:line:column`.
+    /// The place of the lamp in the file, as `file:line:column`.
     pub place: String,
-    /// The first of its lights, by index.
+    /// The index of the lamp's first light.
     pub light: u32,
 }
 

@@ -222,7 +222,7 @@ pub struct ReferenceRecipe {
 pub struct MethodSpec {
     /// Its unique name.
     pub name: String,
-    /// Its settings, which replace those of the scene.
+    /// The settings, which replace the scene's.
     pub request: Request,
     /// The names of the scenes in which it is rendered; empty: all.
     pub scenes: Vec<String>,

@@ -65,7 +65,7 @@ pub struct ReportImage {
     pub name: String,
     /// True if the other images of the scene are compared with this one.
     pub is_reference: bool,
-    /// Its pixels.
+    /// The pixels of the image.
     #[serde(flatten, serialize_with = "coded")]
     pub pixels: Pixels,
     /// FLIP of every pixel; see [`add_flip`]. None: the page shows no map.
