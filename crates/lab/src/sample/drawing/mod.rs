@@ -1,8 +1,8 @@
 //! The drawing of a sample, as SVG, in plan and elevation: both subpaths, the candidates, the traced shadow
 //! rays (arriving or blocked), and the splats of the light image.
 //!
-//! Outlines show the scene, which a grid of rays finds. The drawing loads nothing, has no scripts, is readable
-//! on light and dark pages, and has the same bytes for the same sample.
+//! Outlines, found by a grid of rays, show the scene. The drawing loads nothing, has no scripts, is readable on
+//! light and dark pages, and has the same bytes for the same sample.
 
 mod figure;
 mod outline;
