@@ -1,6 +1,6 @@
 //! Pairs of subpaths, walked in a scene.
 
-use super::Shot;
+use super::scenes::Shot;
 use bidir::guide::{Cells, LightProposals, PairSums};
 use bidir::light::LightChoice;
 use bidir::path::{Job, PathSettings, Subpath, Subpaths, Vertex, camera_subpath, light_subpath};
@@ -48,8 +48,7 @@ pub(crate) fn for_each_pair(
     scene: &Shot,
     f: impl FnMut(&Job<'_>, &Subpath<'_>, &Subpath<'_>),
 ) {
-    let job = Job::of_own_subpaths(&scene.scene, &scene.view, settings);
-    for_some_pairs(PAIRS, job, f);
+    for_some_pairs(PAIRS, scene.job(settings), f);
 }
 
 /// Proposals for cells of the scene that say something else of every pair, and nothing of some.

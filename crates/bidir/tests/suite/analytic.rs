@@ -1,19 +1,11 @@
 //! Scenes whose image is known.
 
-use crate::common::statistics::{Replicates, WHOLE, check_agree, check_agree_to, replicates};
-use crate::common::{Shot, ShotBuilder};
-use crate::common::{
-    builder, builder_with, diffuse, emission, glass, metal, narrow_camera, quad, settings, sphere,
-};
+use crate::common::prelude::*;
 use bidir::film::{Filter, FilterKind};
-use bidir::integrator::{CandidateCount, IntegratorKind};
-use bidir::light::{InfiniteLight, Light};
-use bidir::math::{Affine3A, PI, Vec2, Vec3};
+use bidir::integrator::CandidateCount;
 use bidir::path::PathRoulette;
-use bidir::scene::SceneBuilder;
 use bidir::select::ShadowRays;
-use bidir::shape::{Disk, Orientation, Shape, Sphere};
-use bidir::spectrum::Rgb;
+use bidir::shape::Disk;
 
 /// The inside of a sphere that reflects ρ of what it receives and emits 1 - ρ: radiance 1
 /// everywhere.
@@ -22,7 +14,7 @@ fn closed_sphere_of(mut builder: ShotBuilder, reflectance: Rgb) -> Shot {
     let inside = Sphere::new(Affine3A::IDENTITY, 2.0, Orientation::Reversed);
     let emitted = emission(reflectance.map(|rho| 1.0 - rho));
     builder.shape(Shape::Sphere(inside), wall, emitted);
-    builder.build().expect("the scene is valid")
+    builder.build()
 }
 
 fn closed_sphere() -> Shot {
@@ -41,10 +33,7 @@ fn check_expectation(name: &str, a: &Replicates, expected: f64) {
 fn passes(integrator: IntegratorKind, most: u64) -> u64 {
     match integrator {
         IntegratorKind::Light => most,
-        IntegratorKind::Path
-        | IntegratorKind::Bdpt
-        | IntegratorKind::Lvc
-        | IntegratorKind::Auto => most / 8,
+        _ => most / 8,
     }
 }
 
@@ -59,6 +48,19 @@ fn halved(n: u32) -> f64 {
     1.0 / f64::from(1u32 << n)
 }
 
+/// Checks each estimator in the closed sphere, by settings that `change` changes, at a limit of depth: radiance after
+/// d scatterings is ½ + ¼ + … = 1 - ½^(d+1).
+#[track_caller]
+fn check_closed_sphere(case: &str, depth: u32, most: u64, change: impl Fn(&mut Settings)) {
+    let scene = closed_sphere();
+    for (name, integrator) in estimators() {
+        let mut settings = settings(integrator, Some(depth));
+        change(&mut settings);
+        let result = replicates(&scene, &settings, passes(integrator, most));
+        check_expectation(&format!("{name}, {case}"), &result, 1.0 - halved(depth + 1));
+    }
+}
+
 #[test]
 fn a_closed_sphere_has_radiance_one() {
     let scene = closed_sphere();
@@ -71,35 +73,17 @@ fn a_closed_sphere_has_radiance_one() {
 
 #[test]
 fn every_limit_of_depth_cuts_the_same_paths() {
-    // Radiance after d scatterings: ½ + ¼ + … = 1 - ½^(d+1).
-    let scene = closed_sphere();
     for depth in [0, 1, 3] {
-        let expected = 1.0 - halved(depth + 1);
-        for (name, integrator) in estimators() {
-            let settings = settings(integrator, Some(depth));
-            let result = replicates(&scene, &settings, passes(integrator, 5120));
-            check_expectation(&format!("{name}, depth {depth}"), &result, expected);
-        }
+        check_closed_sphere(&format!("depth {depth}"), depth, 5120, |_| ());
     }
 }
 
 #[test]
 fn roulette_does_not_change_the_mean() {
-    let scene = closed_sphere();
-    for roulette in [
-        "albedo:0",
-        "albedo:2",
-        "throughput:0",
-        "throughput:3",
-        "off",
-    ] {
-        for (name, integrator) in estimators() {
-            let mut settings = settings(integrator, Some(8));
-            settings.path.roulette = roulette.parse::<PathRoulette>().expect("a roulette");
-            let result = replicates(&scene, &settings, passes(integrator, 4096));
-            let expected = 1.0 - halved(9);
-            check_expectation(&format!("{name}, {roulette}"), &result, expected);
-        }
+    let roulettes = "albedo:0 albedo:2 throughput:0 throughput:3 off";
+    for name in roulettes.split(' ') {
+        let roulette = name.parse::<PathRoulette>().expect("a roulette");
+        check_closed_sphere(name, 8, 4096, |settings| settings.path.roulette = roulette);
     }
 }
 
@@ -133,10 +117,8 @@ mod statistics {
     fn check_roulette(scene: &Shot, reflectance: Rgb, passes: [u64; 2], bias: f64) {
         let depth = 2;
         for roulette in ["albedo:0", "throughput:0", "off"] {
-            for (integrator, passes) in [IntegratorKind::Path, IntegratorKind::Bdpt]
-                .into_iter()
-                .zip(passes)
-            {
+            let integrators = [IntegratorKind::Path, IntegratorKind::Bdpt];
+            for (integrator, passes) in integrators.into_iter().zip(passes) {
                 let mut settings = settings(integrator, Some(depth));
                 settings.path.roulette = roulette.parse::<PathRoulette>().expect("a roulette");
                 let result = replicates(scene, &settings, passes);
@@ -170,11 +152,11 @@ mod statistics {
 }
 
 /// An object in an environment of radiance 1 that absorbs nothing: it cannot be seen.
-fn furnace(add: impl Fn(&mut SceneBuilder)) -> Shot {
+fn furnace(add: impl Fn(&mut ShotBuilder)) -> Shot {
     let mut builder = builder(8, 0.0);
-    builder.light(Light::Infinite(InfiniteLight::constant([1.0; 3])));
+    builder.sky([1.0; 3]);
     add(&mut builder);
-    builder.build().expect("the scene is valid")
+    builder.build()
 }
 
 #[test]
@@ -182,14 +164,9 @@ fn white_objects_vanish_in_a_white_environment() {
     let materials = [("white", diffuse([1.0; 3])), ("glass", glass(0.0))];
     for (name, material) in materials {
         let scene = furnace(|builder| {
-            let material = builder.material(material.clone());
-            builder.shape(sphere(Vec3::new(0.0, 0.0, 1.0), 1.0), material, None);
+            builder.add(sphere(Vec3::Z, 1.0), material.clone());
         });
-        for integrator in [
-            IntegratorKind::Path,
-            IntegratorKind::Bdpt,
-            IntegratorKind::Lvc,
-        ] {
+        for integrator in FROM_THE_CAMERA {
             let result = replicates(&scene, &settings(integrator, None), 1024);
             check_expectation(&format!("{name}, {integrator:?}"), &result, 1.0);
         }
@@ -199,11 +176,7 @@ fn white_objects_vanish_in_a_white_environment() {
 #[test]
 fn an_empty_scene_shows_the_environment() {
     let scene = furnace(|_| ());
-    for integrator in [
-        IntegratorKind::Path,
-        IntegratorKind::Bdpt,
-        IntegratorKind::Lvc,
-    ] {
+    for integrator in FROM_THE_CAMERA {
         let result = replicates(&scene, &settings(integrator, None), 512);
         check_expectation(&format!("{integrator:?}"), &result, 1.0);
     }
@@ -221,24 +194,14 @@ fn a_ring_light_over_a_floor_gives_its_form_factor() {
     builder.camera(narrow_camera(Vec3::ZERO, 2, 0.004));
     let wall = builder.material(diffuse([rho; 3]));
     let spot = quad(Vec3::new(-0.5, -0.5, height), Vec3::X, Vec3::Y);
-    builder.shape(Shape::Mesh(spot), wall, None);
-    let ring = [inner, radius];
-    let ring = Disk::new(
-        Affine3A::IDENTITY,
-        0.0,
-        ring,
-        2.0 * PI,
-        Orientation::Natural,
-    );
+    builder.shape(spot, wall, None);
+    let (radii, front) = ([inner, radius], Orientation::Natural);
+    let ring = Disk::new(Affine3A::IDENTITY, 0.0, radii, 2.0 * PI, front);
     builder.shape(Shape::Disk(ring), wall, emission([2.0; 3]));
-    let scene = builder.build().expect("the scene is valid");
+    let scene = builder.build();
     let disk = |r: f32| f64::from(r * r / (r * r + height * height));
     let expected = f64::from(rho) * 2.0 * (disk(radius) - disk(inner));
-    for integrator in [
-        IntegratorKind::Path,
-        IntegratorKind::Bdpt,
-        IntegratorKind::Lvc,
-    ] {
+    for integrator in FROM_THE_CAMERA {
         let result = replicates(&scene, &settings(integrator, Some(1)), 8192);
         check_expectation(&format!("{integrator:?}"), &result, expected);
     }
@@ -248,14 +211,9 @@ fn a_ring_light_over_a_floor_gives_its_form_factor() {
 fn rough_surfaces_lose_but_never_gain() {
     for (name, material) in [("metal", metal(0.4)), ("glass", glass(0.4))] {
         let scene = furnace(|builder| {
-            let material = builder.material(material.clone());
-            builder.shape(sphere(Vec3::new(0.0, 0.0, 1.0), 1.0), material, None);
+            builder.add(sphere(Vec3::Z, 1.0), material.clone());
         });
-        for integrator in [
-            IntegratorKind::Path,
-            IntegratorKind::Bdpt,
-            IntegratorKind::Lvc,
-        ] {
+        for integrator in FROM_THE_CAMERA {
             let result = replicates(&scene, &settings(integrator, None), 1024);
             let mean = result.mean();
             assert!(mean < 1.0 && mean > 0.75, "{name}: {mean}");
@@ -264,37 +222,22 @@ fn rough_surfaces_lose_but_never_gain() {
 }
 
 #[test]
-fn few_traced_candidates_of_many_keep_the_closed_sphere() {
-    let mut settings = settings(IntegratorKind::Lvc, Some(8));
-    settings.shadow_rays = ShadowRays::Budget(2);
-    settings.lvc.candidates = CandidateCount::of(8);
-    let result = replicates(&closed_sphere(), &settings, 512);
-    check_expectation("budget:2 of 8", &result, 1.0 - halved(9));
-}
-
-#[test]
 fn selection_keeps_the_closed_sphere() {
-    let scene = closed_sphere();
-    for rule in [
-        "per-light-vertex",
-        "per-camera-vertex",
-        "per-pair",
-        "ray-roulette",
-        "budget:2",
+    use IntegratorKind::{Bdpt, Lvc};
+    let few = CandidateCount::of(8);
+    for (integrator, rule, candidates) in [
+        (Bdpt, "per-light-vertex", few),
+        (Bdpt, "per-camera-vertex", few),
+        (Bdpt, "per-pair", few),
+        (Bdpt, "ray-roulette", few),
+        (Bdpt, "budget:2", few),
+        (Lvc, "budget:2", few),
+        (Lvc, "per-light-vertex", CandidateCount::new(8, 2)),
     ] {
-        let mut settings = settings(IntegratorKind::Bdpt, Some(8));
+        let mut settings = settings(integrator, Some(8));
         settings.shadow_rays = rule.parse::<ShadowRays>().expect("a rule");
-        let result = replicates(&scene, &settings, 1024);
-        check_expectation(rule, &result, 1.0 - halved(9));
+        settings.lvc.candidates = candidates;
+        let result = replicates(&closed_sphere(), &settings, 1024);
+        check_expectation(&format!("{integrator}, {rule}"), &result, 1.0 - halved(9));
     }
-}
-
-#[test]
-fn one_ray_for_each_vertex_of_a_light_cache_keeps_the_closed_sphere() {
-    let scene = closed_sphere();
-    let mut settings = settings(IntegratorKind::Lvc, Some(8));
-    settings.shadow_rays = ShadowRays::PerLightVertex;
-    settings.lvc.candidates = CandidateCount::new(8, 2);
-    let result = replicates(&scene, &settings, 1024);
-    check_expectation("per-light-vertex", &result, 1.0 - halved(9));
 }

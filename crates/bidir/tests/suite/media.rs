@@ -3,47 +3,18 @@
 mod closed_forms;
 mod glow;
 
-use crate::common::statistics::{Replicates, WHOLE, check_agree, replicates};
-use crate::common::{
-    Shot, ShotBuilder, add_walls, builder, diffuse, emission, glass, narrow_camera, quad, settings,
-    sphere,
-};
+use crate::common::prelude::*;
 use bidir::driver::Stop;
-use bidir::integrator::IntegratorKind;
-use bidir::light::{InfiniteLight, Light, SpotLight};
+use bidir::light::{Light, SpotLight};
 use bidir::locus::Locus;
-use bidir::math::{Affine3A, Vec3};
-use bidir::medium::{Coefficients, Grid, HenyeyGreenstein, Medium, MediumId, MediumSides};
+use bidir::medium::{Grid, Medium, MediumId, MediumSides};
 use bidir::select::ShadowRays;
-use bidir::shape::{Orientation, Shape, Sphere};
-use bidir::spectrum::{Lanes, Rgb};
+use bidir::spectrum::Lanes;
 use bidir::texture::FloatTexture;
-
-const ESTIMATORS: [IntegratorKind; 4] = [
-    IntegratorKind::Path,
-    IntegratorKind::Bdpt,
-    IntegratorKind::Lvc,
-    IntegratorKind::Light,
-];
 
 /// The film's mean and its quarters.
 const QUARTERS: &[usize] = &[WHOLE, 4];
 const VACUUM: MediumId = MediumId::VACUUM;
-
-fn medium(absorption: Rgb, scattering: Rgb, g: f32) -> Medium {
-    let phase = HenyeyGreenstein::new(g).expect("a mean cosine");
-    Medium::homogeneous(coefficients(absorption, scattering), phase)
-}
-
-fn coefficients(absorption: Rgb, scattering: Rgb) -> Coefficients {
-    Coefficients::new(absorption, scattering).expect("valid coefficients")
-}
-
-/// A medium of a density in a box.
-fn smoke(coefficients: Coefficients, grid: Grid<1>, g: f32) -> Medium {
-    let phase = HenyeyGreenstein::new(g).expect("a mean cosine");
-    Medium::of_density(coefficients, grid, phase).expect("thin smoke")
-}
 
 /// A grid of `n`³ cells between two corners, with a density that is a function of the numbers of a cell.
 fn grid(n: usize, [low, high]: [Vec3; 2], density: impl Fn([usize; 3]) -> f32) -> Grid<1> {
@@ -63,21 +34,6 @@ fn fog() -> Medium {
     medium([0.02, 0.05, 0.1], [0.1, 0.2, 0.4], 0.5)
 }
 
-/// Makes a ball the boundary of `inside`.
-fn add_ball(builder: &mut ShotBuilder, ball: Shape, outside: MediumId, inside: MediumId) {
-    builder.boundary(ball, MediumSides { outside, inside });
-}
-
-/// Fills everything with a medium.
-fn fill(builder: &mut ShotBuilder, medium: Medium) {
-    let medium = builder.medium(medium);
-    builder.medium_at(Vec3::ZERO, medium);
-}
-
-fn finish(builder: ShotBuilder) -> Shot {
-    builder.build().expect("the scene is valid")
-}
-
 /// The inside of a sphere that reflects half of what it receives and emits the rest.
 fn furnace() -> ShotBuilder {
     let mut builder = builder(8, 0.0);
@@ -89,8 +45,8 @@ fn furnace() -> ShotBuilder {
 
 fn furnace_full_of(g: f32) -> Shot {
     let mut builder = furnace();
-    fill(&mut builder, medium([0.0; 3], [0.2, 0.5, 1.0], g));
-    finish(builder)
+    builder.fill(medium([0.0; 3], [0.2, 0.5, 1.0], g));
+    builder.build()
 }
 
 /// Three balls, one in the other, that absorb nothing.
@@ -98,34 +54,31 @@ fn nested_furnace() -> Shot {
     let mut builder = furnace();
     let thin = builder.medium(medium([0.0; 3], [0.3, 0.4, 0.5], 0.0));
     let thick = builder.medium(medium([0.0; 3], [2.0, 1.0, 0.5], 0.6));
-    add_ball(&mut builder, sphere(Vec3::ZERO, 1.6), VACUUM, thin);
-    add_ball(&mut builder, sphere(Vec3::ZERO, 1.0), thin, thick);
-    add_ball(&mut builder, sphere(Vec3::ZERO, 0.5), thick, thin);
-    finish(builder)
+    builder.bound(sphere(Vec3::ZERO, 1.6), VACUUM, thin);
+    builder.bound(sphere(Vec3::ZERO, 1.0), thin, thick);
+    builder.bound(sphere(Vec3::ZERO, 0.5), thick, thin);
+    builder.build()
 }
 
 /// Puffs of smoke that absorb nothing, in a box without a boundary.
 fn furnace_with_smoke() -> Shot {
     let mut builder = furnace();
     fill_with_smoke(&mut builder);
-    finish(builder)
+    builder.build()
 }
 
 /// The same under nothing but a sky.
 fn smoke_under_sky() -> Shot {
     let mut builder = builder(8, 0.0);
-    builder.light(Light::Infinite(InfiniteLight::constant([1.0; 3])));
+    builder.sky([1.0; 3]);
     fill_with_smoke(&mut builder);
-    finish(builder)
+    builder.build()
 }
 
 fn fill_with_smoke(builder: &mut ShotBuilder) {
     let corners = [Vec3::splat(-1.0), Vec3::splat(1.0)];
     let density = grid(10, corners, puffs);
-    fill(
-        builder,
-        smoke(coefficients([0.0; 3], [0.2, 0.4, 0.8]), density, 0.4),
-    );
+    builder.fill(smoke(coefficients([0.0; 3], [0.2, 0.4, 0.8]), density, 0.4));
 }
 
 #[track_caller]
@@ -161,17 +114,19 @@ fn smoke_that_absorbs_nothing_is_not_seen_in_a_furnace() {
     }
 }
 
+fn ground() -> Shape {
+    quad(Vec3::new(-6.0, -1.2, -6.0), Vec3::Z * 12.0, Vec3::X * 12.0)
+}
+
 #[test]
 fn light_from_infinity_does_not_pass_a_medium_without_end() {
     let mut builder = builder(8, 0.0);
-    let ground = builder.material(diffuse([0.5; 3]));
-    let floor = quad(Vec3::new(-6.0, -1.2, -6.0), Vec3::Z * 12.0, Vec3::X * 12.0);
-    builder.shape(Shape::Mesh(floor), ground, None);
-    builder.light(Light::Infinite(InfiniteLight::constant([1.0; 3])));
+    builder.add(ground(), diffuse([0.5; 3]));
+    builder.sky([1.0; 3]);
     // Two lanes are clear.
-    fill(&mut builder, medium([0.0, 0.0, 1.0], [0.0; 3], 0.0));
-    let shot = finish(builder);
-    for integrator in ESTIMATORS {
+    builder.fill(medium([0.0, 0.0, 1.0], [0.0; 3], 0.0));
+    let shot = builder.build();
+    for integrator in METHODS {
         let result = replicates(&shot, &settings(integrator, Some(3)), 32);
         assert!(result.mean().abs() <= 0.0, "{integrator}");
     }
@@ -180,21 +135,25 @@ fn light_from_infinity_does_not_pass_a_medium_without_end() {
 /// The tangent of half the field of view of the camera before a slab.
 const HALF_FIELD: f32 = 0.05;
 
+/// The front at z = 0 and the back at z = 1, which face outwards.
+fn sides_of_slab() -> [Shape; 2] {
+    let [across, up] = [Vec3::X, Vec3::Y].map(|axis| axis * 10.0);
+    let corner = |z| Vec3::new(-5.0, -5.0, z);
+    [quad(corner(0.0), up, across), quad(corner(1.0), across, up)]
+}
+
 /// A lamp behind one metre of `liquid`, which only absorbs.
 fn slab(liquid: Medium) -> Shot {
     let camera = narrow_camera(Vec3::new(0.0, 0.0, -3.0), 8, HALF_FIELD);
     let mut builder = ShotBuilder::new(camera, 8);
-    let wall = builder.material(diffuse([0.0; 3]));
+    let black = builder.material(diffuse([0.0; 3]));
     let lamp = quad(Vec3::new(-1.0, -1.0, 3.0), Vec3::Y * 2.0, Vec3::X * 2.0);
-    builder.shape(Shape::Mesh(lamp), wall, emission([1.0; 3]));
+    builder.shape(lamp, black, emission([1.0; 3]));
     let inside = builder.medium(liquid);
-    let front = quad(Vec3::new(-5.0, -5.0, 0.0), Vec3::Y * 10.0, Vec3::X * 10.0);
-    let back = quad(Vec3::new(-5.0, -5.0, 1.0), Vec3::X * 10.0, Vec3::Y * 10.0);
-    for side in [front, back] {
-        let outside = VACUUM;
-        builder.boundary(Shape::Mesh(side), MediumSides { outside, inside });
+    for side in sides_of_slab() {
+        builder.bound(side, VACUUM, inside);
     }
-    finish(builder)
+    builder.build()
 }
 
 /// The mean of exp(-τ / cosθ) over the film, as Beer and Lambert have it.
@@ -212,9 +171,8 @@ fn check_slab(integrator: IntegratorKind, passes: u64) {
     let coefficients = coefficients([1.0, 0.5, 2.0], [0.0; 3]);
     let around = [Vec3::splat(-6.0), Vec3::splat(6.0)];
     let cells = |n| smoke(coefficients, grid(n, around, |_| 1.0), 0.0);
-    let phase = HenyeyGreenstein::new(0.0).expect("a mean cosine");
     let liquids = [
-        ("liquid", Medium::homogeneous(coefficients, phase)),
+        ("liquid", Medium::homogeneous(coefficients, phase(0.0))),
         ("one cell", cells(1)),
         ("32³ cells", cells(32)),
     ];
@@ -234,16 +192,14 @@ fn a_slab_lets_through_an_exponential_of_its_depth() {
 #[test]
 fn light_that_passes_a_hole_in_a_boundary_is_in_the_medium_behind_it() {
     let mut builder = builder(8, 0.0);
-    let wall = builder.material(diffuse([0.5; 3]));
     let inside = builder.medium(medium([1.0; 3], [0.0; 3], 0.0));
     let outside = VACUUM;
-    let front = quad(Vec3::new(-5.0, -5.0, 0.0), Vec3::Y * 10.0, Vec3::X * 10.0);
-    let front = builder.shape(Shape::Mesh(front), wall, None);
+    let [front, back] = sides_of_slab();
+    let front = builder.add(front, diffuse([0.5; 3]));
     builder.sides(front, MediumSides { outside, inside });
     builder.alpha(front, FloatTexture::Constant(0.5));
-    let back = quad(Vec3::new(-5.0, -5.0, 1.0), Vec3::X * 10.0, Vec3::Y * 10.0);
-    builder.boundary(Shape::Mesh(back), MediumSides { outside, inside });
-    let scene = finish(builder).scene;
+    builder.bound(back, outside, inside);
+    let scene = builder.build().scene;
     let [near, far] = [-1.0, 2.0].map(|z| Locus::in_space(Vec3::new(0.1, 0.2, z)));
     for (a, b) in [(&near, &far), (&far, &near)] {
         let edge = scene.edge([a, b], Lanes::Rgb, Stop::NEVER);
@@ -255,86 +211,82 @@ fn light_that_passes_a_hole_in_a_boundary_is_in_the_medium_behind_it() {
 /// A room with a lamp in the ceiling.
 fn room() -> ShotBuilder {
     let mut builder = builder(8, 0.0);
-    let wall = builder.material(diffuse([0.7, 0.6, 0.5]));
-    add_walls(&mut builder, wall);
-    let lamp = quad(Vec3::new(-0.7, 1.9, -0.5), Vec3::X * 1.4, Vec3::Z);
-    builder.shape(Shape::Mesh(lamp), wall, emission([6.0, 5.0, 4.0]));
+    add_lit_walls(&mut builder, diffuse([0.7, 0.6, 0.5]));
     builder
 }
 
 fn foggy_room() -> Shot {
     let mut builder = room();
-    fill(&mut builder, fog());
-    finish(builder)
+    builder.fill(fog());
+    builder.build()
 }
 
-/// A world and an estimator in it.
-struct World<'a> {
-    name: &'a str,
-    shot: Shot,
-    bdpt: Replicates,
-}
-
-impl<'a> World<'a> {
-    fn new(name: &'a str, shot: Shot, passes: u64) -> Self {
-        let bdpt = replicates(&shot, &settings(IntegratorKind::Bdpt, Some(5)), passes);
-        Self { name, shot, bdpt }
-    }
-
-    /// Checks that another estimator agrees with it.
-    #[track_caller]
-    fn check(&self, integrator: IntegratorKind, rule: ShadowRays, passes: u64) {
+/// Checks that estimators agree with bidirectional path tracing of so many passes.
+#[track_caller]
+fn check_estimators(
+    name: &str,
+    shot: &Shot,
+    passes: u64,
+    others: &[(IntegratorKind, ShadowRays, u64)],
+) {
+    let bdpt = replicates(shot, &settings(IntegratorKind::Bdpt, Some(5)), passes);
+    for &(integrator, shadow_rays, passes) in others {
         let mut settings = settings(integrator, Some(5));
-        settings.shadow_rays = rule;
-        let other = replicates(&self.shot, &settings, passes);
-        let name = format!("{}: {integrator} by {rule}", self.name);
-        check_agree(&name, &other, &self.bdpt, QUARTERS);
+        settings.shadow_rays = shadow_rays;
+        let other = replicates(shot, &settings, passes);
+        let name = format!("{name}: {integrator} by {shadow_rays}");
+        check_agree(&name, &other, &bdpt, QUARTERS);
     }
 }
 
 #[test]
 fn estimators_agree_in_a_room_full_of_fog() {
-    let world = World::new("fog", foggy_room(), 1024);
-    world.check(IntegratorKind::Lvc, ShadowRays::Budget(2), 1024);
-    world.check(IntegratorKind::Bdpt, ShadowRays::PerPair, 1536);
+    let others = [
+        (IntegratorKind::Lvc, ShadowRays::Budget(2), 1024),
+        (IntegratorKind::Bdpt, ShadowRays::PerPair, 1536),
+    ];
+    check_estimators("fog", &foggy_room(), 1024, &others);
 }
 
 /// Comparisons that need millions of samples.
 mod statistics {
     use super::*;
 
-    const ALL: ShadowRays = ShadowRays::All;
+    use IntegratorKind::{Bdpt, Light as Tracer, Lvc, Path};
+    use ShadowRays::{All, Budget, PerLightVertex, PerPair, RayRoulette};
 
     #[test]
     #[ignore = "statistics: .ci/run statistics"]
     fn every_estimator_knows_fog_in_a_furnace() {
         for (name, g) in [("backward", -0.5), ("isotropic", 0.0), ("forward", 0.8)] {
             let shot = furnace_full_of(g);
-            check_furnace(name, &shot, IntegratorKind::Path, 16384);
-            check_furnace(name, &shot, IntegratorKind::Bdpt, 4096);
-            check_furnace(name, &shot, IntegratorKind::Lvc, 4096);
+            check_furnace(name, &shot, Path, 16384);
+            check_furnace(name, &shot, Bdpt, 4096);
+            check_furnace(name, &shot, Lvc, 4096);
         }
-        check_furnace("nested", &nested_furnace(), IntegratorKind::Bdpt, 2048);
-        check_furnace("smoke", &furnace_with_smoke(), IntegratorKind::Lvc, 4096);
-        check_furnace("sky", &smoke_under_sky(), IntegratorKind::Lvc, 4096);
+        check_furnace("nested", &nested_furnace(), Bdpt, 2048);
+        check_furnace("smoke", &furnace_with_smoke(), Lvc, 4096);
+        check_furnace("sky", &smoke_under_sky(), Lvc, 4096);
     }
 
     #[test]
     #[ignore = "statistics: .ci/run statistics"]
     fn the_light_tracer_knows_media() {
-        check_slab(IntegratorKind::Light, 131072);
-        check_slab(IntegratorKind::Lvc, 8192);
+        check_slab(Tracer, 131072);
+        check_slab(Lvc, 8192);
     }
 
     #[test]
     #[ignore = "statistics: .ci/run statistics"]
     fn the_path_tracer_and_all_rules_agree_in_fog() {
-        let world = World::new("fog", foggy_room(), 2048);
-        world.check(IntegratorKind::Path, ALL, 8192);
-        world.check(IntegratorKind::Lvc, ALL, 2048);
-        world.check(IntegratorKind::Bdpt, ShadowRays::Budget(2), 2048);
-        world.check(IntegratorKind::Bdpt, ShadowRays::RayRoulette(0.1), 2048);
-        world.check(IntegratorKind::Bdpt, ShadowRays::PerLightVertex, 2048);
+        let others = [
+            (Path, All, 8192),
+            (Lvc, All, 2048),
+            (Bdpt, Budget(2), 2048),
+            (Bdpt, RayRoulette(0.1), 2048),
+            (Bdpt, PerLightVertex, 2048),
+        ];
+        check_estimators("fog", &foggy_room(), 2048, &others);
     }
 
     /// The lamp stands in a bubble: without it, next-event estimation would have no variance.
@@ -349,12 +301,10 @@ mod statistics {
         let angles = [20.0, 30.0].map(f32::to_radians);
         let spot = SpotLight::new(lamp, axis, [20.0, 25.0, 30.0], angles);
         builder.light(Light::Spot(spot));
-        let around = builder.medium(fog());
-        builder.medium_at(Vec3::ZERO, around);
-        add_ball(&mut builder, sphere(lamp, 0.3), around, VACUUM);
-        let world = World::new("spot", finish(builder), 4096);
-        world.check(IntegratorKind::Path, ALL, 40960);
-        world.check(IntegratorKind::Lvc, ShadowRays::Budget(2), 4096);
+        let around = builder.fill(fog());
+        builder.bound(sphere(lamp, 0.3), around, VACUUM);
+        let others = [(Path, All, 40960), (Lvc, Budget(2), 4096)];
+        check_estimators("spot", &builder.build(), 4096, &others);
     }
 
     /// The camera is in no medium, so that light subpaths do not come near to it.
@@ -362,36 +312,30 @@ mod statistics {
     #[ignore = "statistics: .ci/run statistics"]
     fn estimators_agree_on_rough_glass_full_of_ink() {
         let mut builder = room();
-        let rough = builder.material(glass(0.4));
         let inside = builder.medium(medium([2.0, 0.5, 0.1], [0.2, 0.3, 0.4], -0.3));
-        let ball = builder.shape(sphere(Vec3::new(-0.4, -0.5, 0.7), 0.7), rough, None);
+        let ball = builder.add(sphere(Vec3::new(-0.4, -0.5, 0.7), 0.7), glass(0.4));
         let outside = VACUUM;
         builder.sides(ball, MediumSides { outside, inside });
-        let world = World::new("ink", finish(builder), 4096);
-        world.check(IntegratorKind::Path, ALL, 16384);
-        world.check(IntegratorKind::Light, ALL, 16384);
-        world.check(IntegratorKind::Lvc, ShadowRays::PerPair, 4096);
+        let others = [
+            (Path, All, 16384),
+            (Tracer, All, 16384),
+            (Lvc, PerPair, 4096),
+        ];
+        check_estimators("ink", &builder.build(), 4096, &others);
     }
 
     #[test]
     #[ignore = "statistics: .ci/run statistics"]
     fn estimators_agree_on_a_cloud_under_a_sky() {
         let mut builder = builder(8, 0.0);
-        let ground = builder.material(diffuse([0.5; 3]));
-        let floor = quad(Vec3::new(-6.0, -1.2, -6.0), Vec3::Z * 12.0, Vec3::X * 12.0);
-        builder.shape(Shape::Mesh(floor), ground, None);
-        builder.light(Light::Infinite(InfiniteLight::constant([1.0, 1.2, 1.5])));
+        builder.add(ground(), diffuse([0.5; 3]));
+        builder.sky([1.0, 1.2, 1.5]);
         // Lanes of 1 : 4 : 16.
         let cloud = builder.medium(medium([0.02, 0.08, 0.32], [0.18, 0.72, 2.88], 0.3));
-        add_ball(
-            &mut builder,
-            sphere(Vec3::new(0.0, 0.1, 0.6), 0.8),
-            VACUUM,
-            cloud,
-        );
-        let world = World::new("cloud", finish(builder), 2048);
-        world.check(IntegratorKind::Path, ALL, 2048);
-        world.check(IntegratorKind::Lvc, ShadowRays::Budget(2), 2048);
+        let ball = sphere(Vec3::new(0.0, 0.1, 0.6), 0.8);
+        builder.bound(ball, VACUUM, cloud);
+        let others = [(Path, All, 2048), (Lvc, Budget(2), 2048)];
+        check_estimators("cloud", &builder.build(), 2048, &others);
     }
 
     #[test]
@@ -400,38 +344,30 @@ mod statistics {
         let mut builder = room();
         let corners = [Vec3::new(-0.9, -0.2, -0.6), Vec3::new(0.8, 1.2, 1.1)];
         let light = coefficients([0.02, 0.05, 0.1], [0.2, 0.4, 0.8]);
-        fill(&mut builder, smoke(light, grid(10, corners, puffs), 0.4));
-        let world = World::new("smoke", finish(builder), 2048);
-        world.check(IntegratorKind::Path, ALL, 4096);
-        world.check(IntegratorKind::Light, ALL, 8192);
-        world.check(IntegratorKind::Lvc, ShadowRays::Budget(2), 2048);
-        world.check(IntegratorKind::Bdpt, ShadowRays::PerPair, 2048);
-        world.check(IntegratorKind::Bdpt, ShadowRays::RayRoulette(0.1), 2048);
+        builder.fill(smoke(light, grid(10, corners, puffs), 0.4));
+        let others = [
+            (Path, All, 4096),
+            (Tracer, All, 8192),
+            (Lvc, Budget(2), 2048),
+            (Bdpt, PerPair, 2048),
+            (Bdpt, RayRoulette(0.1), 2048),
+        ];
+        check_estimators("smoke", &builder.build(), 2048, &others);
     }
 
     #[test]
     #[ignore = "statistics: .ci/run statistics"]
     fn estimators_agree_with_the_camera_and_a_lamp_in_media_of_their_own() {
         let mut builder = room();
-        let [near, far] =
-            [medium([0.1, 0.2, 0.3], [0.4; 3], 0.7), fog()].map(|medium| builder.medium(medium));
-        add_ball(
-            &mut builder,
-            sphere(Vec3::new(0.0, 0.0, -1.8), 0.15),
-            VACUUM,
-            near,
-        );
-        add_ball(
-            &mut builder,
-            sphere(Vec3::new(0.8, -0.4, 0.8), 0.7),
-            VACUUM,
-            far,
-        );
+        let (camera, lamp) = (Vec3::new(0.0, 0.0, -1.8), Vec3::new(0.8, -0.4, 0.8));
+        let near = medium([0.1, 0.2, 0.3], [0.4; 3], 0.7);
+        for (centre, radius, inside) in [(camera, 0.15, near), (lamp, 0.7, fog())] {
+            let inside = builder.medium(inside);
+            builder.bound(sphere(centre, radius), VACUUM, inside);
+        }
         let material = builder.material(diffuse([0.3; 3]));
-        let bulb = sphere(Vec3::new(0.8, -0.4, 0.8), 0.2);
-        builder.shape(bulb, material, emission([9.0, 8.0, 7.0]));
-        let world = World::new("islands", finish(builder), 2048);
-        world.check(IntegratorKind::Path, ALL, 4096);
-        world.check(IntegratorKind::Lvc, ShadowRays::PerPair, 2048);
+        builder.shape(sphere(lamp, 0.2), material, emission([9.0, 8.0, 7.0]));
+        let others = [(Path, All, 4096), (Lvc, PerPair, 2048)];
+        check_estimators("islands", &builder.build(), 2048, &others);
     }
 }

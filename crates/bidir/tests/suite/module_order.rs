@@ -4,39 +4,11 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// From the lowest to the highest.
-const ORDER: [&str; 24] = [
-    "names",
-    "math",
-    "spectrum",
-    "sampler",
-    "strategy",
-    "contribution",
-    "medium",
-    "locus",
-    "shape",
-    "texture",
-    "bsdf",
-    "material",
-    "light",
-    "camera",
-    "film",
-    "view",
-    "scene",
-    "stats",
-    "guide",
-    "path",
-    "select",
-    "integrator",
-    "analysis",
-    "settings",
-];
-
-/// Above all others, as it uses whatever it renders with.
-const TOP: &str = "driver";
+const ORDER: &str = "names math spectrum sampler strategy contribution medium locus shape texture bsdf material light \
+                     camera film view scene stats guide path select integrator analysis settings driver";
 
 fn level(module: &str) -> Option<usize> {
-    let position = ORDER.iter().position(|known| *known == module);
-    position.or_else(|| (module == TOP).then_some(ORDER.len()))
+    ORDER.split(' ').position(|known| known == module)
 }
 
 /// The files of the crate below `folder`.
@@ -103,8 +75,6 @@ fn a_use_that_goes_up_is_seen() {
                   #[cfg(test)]\nuse crate::driver;";
     assert_eq!(upward("light", source), ["scene"]);
     assert!(upward("path", source).is_empty());
-    assert_eq!(
-        upward("math", "use crate::{Other}; use crate::unknown;"),
-        ["", "unknown"]
-    );
+    let source = "use crate::{Other}; use crate::unknown;";
+    assert_eq!(upward("math", source), ["", "unknown"]);
 }

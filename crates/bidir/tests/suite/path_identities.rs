@@ -4,19 +4,18 @@
 //! other strategy would have made it. The product that is stored with a subpath is so compared
 //! with one that is computed from scratch.
 
-use crate::common;
-use crate::common::Shot;
+use crate::common::prelude::*;
+use crate::common::rooms::{
+    foggy_room, gallery, lamp_room, room, room_with_fire, room_with_ink, steep_room,
+};
 use crate::common::walks::{edge, for_each_pair, for_some_pairs, some_light_start, some_proposals};
 use bidir::bsdf::TransportMode;
 use bidir::guide::Guide;
 use bidir::light::Part;
-use bidir::math::Vec2;
-use bidir::math::Vec3;
 use bidir::path::{
-    Arrival, HitPath, Job, JoinedPath, LightChoiceKind, LightPointChoice, MAX_VERTICES,
-    MisHeuristic, PathDensities, PathRoulette, PathSettings, SampleCounts, Vertex,
+    Arrival, HitPath, Job, JoinedPath, LightChoiceKind, LightPointChoice, MisHeuristic,
+    PathDensities, PathRoulette, PathSettings, SampleCounts, Vertex,
 };
-use bidir::spectrum::Spectrum;
 
 fn settings(mis: MisHeuristic, light_point: LightPointChoice) -> PathSettings {
     PathSettings {
@@ -72,12 +71,13 @@ fn rewalk(job: &Job<'_>, points: &[Vertex], mode: TransportMode) -> Option<Vec<V
     Some(walk)
 }
 
+fn are_close(a: f32, b: f32) -> bool {
+    (a - b).abs() <= 2e-3 * a.abs().max(b.abs()) + 1e-12
+}
+
 #[track_caller]
 fn assert_close(a: f32, b: f32, what: &str) {
-    assert!(
-        (a - b).abs() <= 2e-3 * a.abs().max(b.abs()) + 1e-12,
-        "{what}: {a} and {b}"
-    );
+    assert!(are_close(a, b), "{what}: {a} and {b}");
 }
 
 #[track_caller]
@@ -89,12 +89,9 @@ fn assert_spectra_close(a: Spectrum, b: Spectrum, what: &str) {
 /// in its cosines: it is rounded the more the nearer they are.
 fn is_fragile(before: &Vertex, vertex: &Vertex) -> bool {
     let w = vertex.segment_to(before).w;
-    let cos = [before, vertex].map(|v| {
-        if v.locus.n_g == Vec3::ZERO {
-            1.0
-        } else {
-            v.locus.n_g.dot(w).abs()
-        }
+    let cos = [before, vertex].map(|v| match v.locus.n_g {
+        n if n == Vec3::ZERO => 1.0,
+        n => n.dot(w).abs(),
     });
     cos[0].min(cos[1]) * before.locus.point.distance(vertex.locus.point) < 0.03
 }
@@ -109,15 +106,15 @@ struct Comparisons {
 impl Comparisons {
     fn compare(&mut self, a: f32, b: f32) {
         self.all += 1;
-        self.different += usize::from((a - b).abs() > 2e-3 * a.abs().max(b.abs()) + 1e-12);
+        self.different += usize::from(!are_close(a, b));
     }
 }
 
 #[test]
 fn stored_quantities_are_those_of_a_walk_from_scratch() {
-    check_stored(&common::room(0.05));
-    check_stored(&common::foggy_room(0.05));
-    check_stored(&common::room_with_fire(0.05));
+    for room in [room, foggy_room, room_with_fire] {
+        check_stored(&room(0.05));
+    }
 }
 
 #[track_caller]
@@ -141,10 +138,8 @@ fn check_stored(scene: &Shot) {
                 // Step by step, so that no error is carried along.
                 let step = |walk: &[Vertex]| walk[i].beta[0] / walk[i - 1].beta[0];
                 beta.compare(step(stored), step(&fresh));
-                if fresh
-                    .get(i + 1)
-                    .is_some_and(|after| !is_fragile(&fresh[i], after))
-                {
+                let after = fresh.get(i + 1);
+                if after.is_some_and(|after| !is_fragile(&fresh[i], after)) {
                     pdf_rev.compare(stored[i - 1].pdf_rev, fresh[i - 1].pdf_rev);
                     albedo_rev.compare(stored[i].albedo_rev, fresh[i].albedo_rev);
                 }
@@ -153,10 +148,8 @@ fn check_stored(scene: &Shot) {
     });
     for (i, Comparisons { all, different }) in comparisons.iter().enumerate() {
         // Near the angle of total reflection Fresnel's equations magnify rounding.
-        assert!(
-            *all > 1000 && different * 200 <= *all,
-            "{i}: {different} of {all} differ"
-        );
+        let are_few = *all > 1000 && different * 200 <= *all;
+        assert!(are_few, "{i}: {different} of {all} differ");
     }
 }
 
@@ -270,9 +263,9 @@ fn count(job: &Job<'_>, s: usize, path: &[Vertex]) -> f64 {
     }
 }
 
-fn check_paths(mis: MisHeuristic, light_point: LightPointChoice, scene: &Shot) {
-    let settings = settings(mis, light_point);
-    check_job(Job::of_own_subpaths(&scene.scene, &scene.view, &settings));
+#[track_caller]
+fn check_paths(scene: &Shot, mis: MisHeuristic, light_point: LightPointChoice) {
+    check_job(scene.job(&settings(mis, light_point)));
 }
 
 fn check_job(job: Job<'_>) {
@@ -303,19 +296,14 @@ fn check_path(job: &Job<'_>, path: &[Vertex], mis: MisHeuristic) -> bool {
     let Some(all) = strategies(job, path) else {
         return false;
     };
-    let possible: Vec<_> = all
-        .iter()
-        .filter(|(_, _, value)| !value.is_black())
-        .collect();
+    let all = all.iter();
+    let possible: Vec<_> = all.filter(|(_, _, value)| !value.is_black()).collect();
     if possible.is_empty() {
         return false;
     }
     let sum: f32 = possible.iter().map(|(_, w, _)| w).sum();
-    assert!(
-        (sum - 1.0).abs() < 2e-3,
-        "the weights of {} vertices sum to {sum}",
-        path.len()
-    );
+    let (n, is_one) = (path.len(), (sum - 1.0).abs() < 2e-3);
+    assert!(is_one, "the weights of {n} vertices sum to {sum}");
     if mis == MisHeuristic::Balance {
         // w_s ∝ n_s p_s and the value is f / (n_s p_s): their product is one constant.
         let constant = possible[0].2 * possible[0].1;
@@ -330,55 +318,44 @@ fn check_path(job: &Job<'_>, path: &[Vertex], mis: MisHeuristic) -> bool {
 
 #[test]
 fn weights_sum_to_one_and_all_strategies_see_the_same_integrand() {
-    let (pinhole, lens) = (common::room(0.0), common::room(0.1));
-    check_paths(MisHeuristic::Balance, LightPointChoice::Fresh, &pinhole);
-    check_paths(MisHeuristic::Balance, LightPointChoice::Fresh, &lens);
-    check_paths(MisHeuristic::Balance, LightPointChoice::Shared, &lens);
-    check_paths(MisHeuristic::Power, LightPointChoice::Fresh, &lens);
-    check_paths(MisHeuristic::Uniform, LightPointChoice::Shared, &pinhole);
+    let (pinhole, lens) = (room(0.0), room(0.1));
+    check_paths(&pinhole, MisHeuristic::Balance, LightPointChoice::Fresh);
+    check_paths(&lens, MisHeuristic::Balance, LightPointChoice::Fresh);
+    check_paths(&lens, MisHeuristic::Balance, LightPointChoice::Shared);
+    check_paths(&lens, MisHeuristic::Power, LightPointChoice::Fresh);
+    check_paths(&pinhole, MisHeuristic::Uniform, LightPointChoice::Shared);
 }
 
-/// The same where surfaces have layers, transmit, are mixtures, and have Dirac lobes beside others.
+/// The same where surfaces have layers, transmit, are mixtures, and have Dirac lobes beside others; where the camera sees
+/// other shading normals than light does, and layers have normals of their own; in fog, through a medium that only absorbs,
+/// in rough glass that is not empty, and from a fire.
 #[test]
-fn layered_and_mixed_surfaces_are_one_function_of_the_path() {
-    let scene = common::gallery(0.1);
-    check_paths(MisHeuristic::Balance, LightPointChoice::Fresh, &scene);
-    check_paths(MisHeuristic::Power, LightPointChoice::Fresh, &scene);
-}
-
-/// The same where the camera sees other shading normals than light does, and layers have normals of their own.
-#[test]
-fn steep_shading_normals_are_one_function_of_the_path() {
-    let scene = common::steep_room(0.1);
-    check_stored(&scene);
-    check_paths(MisHeuristic::Balance, LightPointChoice::Fresh, &scene);
-    check_paths(MisHeuristic::Power, LightPointChoice::Shared, &scene);
-}
-
-/// The same in fog, through a medium that only absorbs, in rough glass that is not empty, and from a fire.
-#[test]
-fn paths_through_media_are_one_function_of_the_path() {
-    for scene in [
-        common::foggy_room(0.1),
-        common::room_with_ink(0.1),
-        common::room_with_fire(0.1),
+fn paths_are_one_function_in_rooms_of_all_kinds() {
+    check_stored(&steep_room(0.1));
+    for room in [
+        gallery,
+        steep_room,
+        foggy_room,
+        room_with_ink,
+        room_with_fire,
     ] {
-        check_paths(MisHeuristic::Balance, LightPointChoice::Fresh, &scene);
-        check_paths(MisHeuristic::Power, LightPointChoice::Shared, &scene);
+        let scene = room(0.1);
+        check_paths(&scene, MisHeuristic::Balance, LightPointChoice::Fresh);
+        check_paths(&scene, MisHeuristic::Power, LightPointChoice::Shared);
     }
 }
 
 /// The same where next-event estimation chooses among many lamps, and where it does so by power.
 #[test]
 fn lamps_are_one_function_of_the_path_however_they_are_chosen() {
-    let scene = common::lamp_room(0.1);
+    let scene = lamp_room(0.1);
     for (_, light_choice) in LightChoiceKind::NAMES {
         for mis in [MisHeuristic::Balance, MisHeuristic::Power] {
             let settings = PathSettings {
                 light_choice,
                 ..settings(mis, LightPointChoice::Fresh)
             };
-            check_job(Job::of_own_subpaths(&scene.scene, &scene.view, &settings));
+            check_job(scene.job(&settings));
         }
     }
 }
@@ -386,7 +363,7 @@ fn lamps_are_one_function_of_the_path_however_they_are_chosen() {
 /// The same where connections are proposed from place to place, to light subpaths of other samples.
 #[test]
 fn proposals_are_one_function_of_the_path() {
-    for scene in [common::room(0.1), common::gallery(0.1)] {
+    for scene in [room(0.1), gallery(0.1)] {
         let proposals = some_proposals(&scene);
         let light_start = some_light_start(&scene);
         let counts = SampleCounts {
@@ -403,32 +380,8 @@ fn proposals_are_one_function_of_the_path() {
             check_job(Job {
                 counts,
                 guide,
-                ..Job::of_own_subpaths(&scene.scene, &scene.view, &settings)
+                ..scene.job(&settings)
             });
         }
     }
-}
-
-#[test]
-fn densities_of_points_in_front_of_each_other_are_reciprocal() {
-    // G is symmetric, and a walk's first camera density is the raster's Jacobian.
-    let settings = settings(MisHeuristic::Balance, LightPointChoice::Fresh);
-    for_each_pair(&settings, &common::room(0.0), |job, light, camera| {
-        let (z, y) = (
-            &light.vertices[0],
-            &camera.vertices[camera.vertices.len() - 1],
-        );
-        let [there, back] = [z.segment_to(y), y.segment_to(z)];
-        assert_close(there.geometry_term, back.geometry_term, "G");
-        if let [lens, first, ..] = camera.vertices {
-            let raster = job
-                .view
-                .camera()
-                .raster(lens.locus.point, lens.segment_to(first).w);
-            let inside =
-                raster.is_some_and(|r| r.cmpge(Vec2::ZERO).all() && r.max_element() <= 8.0);
-            assert!(inside && first.locus.point != Vec3::ZERO);
-        }
-    });
-    assert!(settings.max_vertices() <= MAX_VERTICES);
 }

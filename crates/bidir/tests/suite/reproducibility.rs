@@ -1,10 +1,9 @@
 //! The same passes have the same bits, however they are computed.
 
-use crate::common;
-use bidir::driver::{Progress, Resources, Session, Settings, Stop, render};
-use bidir::film::{Film, MergeError, PassBuffer, PassSet};
-use bidir::integrator::IntegratorKind;
-use bidir::light::{InfiniteLight, Light};
+use crate::common::prelude::*;
+use crate::common::rooms::{room, room_of};
+use bidir::driver::{Progress, Resources, Stop};
+use bidir::film::{MergeError, PassBuffer, PassSet};
 use bidir::select::ShadowRays;
 use bidir::stats::{Stage, StageTimes};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -18,67 +17,46 @@ fn settings(integrator: IntegratorKind, shadow_rays: &str) -> Settings {
     }
 }
 
-fn with_threads(threads: usize) -> Resources {
-    Resources {
-        threads,
-        ..Resources::default()
-    }
+/// Each integrator by each kind of rule that it can follow.
+fn all_settings() -> impl Iterator<Item = Settings> {
+    let of_connections = "all per-light-vertex per-camera-vertex per-pair ray-roulette budget:2";
+    let all = [
+        (IntegratorKind::Path, "all"),
+        (IntegratorKind::Light, "all"),
+        (IntegratorKind::Bdpt, of_connections),
+        (IntegratorKind::Lvc, "all per-pair ray-roulette budget:2"),
+        (IntegratorKind::Auto, "all budget:2"),
+    ];
+    let of =
+        |(kind, rules): (_, &'static str)| rules.split(' ').map(move |rule| settings(kind, rule));
+    all.into_iter().flat_map(of)
 }
 
-/// Each integrator by each kind of rule that it can follow.
-const RULES: [(IntegratorKind, &[&str]); 5] = [
-    (IntegratorKind::Path, &["all"]),
-    (IntegratorKind::Light, &["all"]),
-    (
-        IntegratorKind::Bdpt,
-        &["all", "per-pair", "ray-roulette", "budget:2"],
-    ),
-    (
-        IntegratorKind::Lvc,
-        &["all", "per-pair", "ray-roulette", "budget:2"],
-    ),
-    (IntegratorKind::Auto, &["all", "budget:2"]),
-];
+fn describe(settings: &Settings) -> String {
+    format!("{}, {}", settings.integrator, settings.shadow_rays)
+}
 
 /// On a film that is large enough for every thread to have a part of it.
 #[test]
 fn threads_do_not_change_a_bit() {
-    let scene = common::room_of(28, 0.1);
-    for (integrator, rules) in RULES {
-        for rule in rules {
-            let settings = settings(integrator, rule);
-            let film = |threads| {
-                render(
-                    &scene.scene,
-                    &scene.view,
-                    &settings,
-                    2,
-                    &with_threads(threads),
-                )
-                .expect("the film is small")
-            };
-            assert!(film(1) == film(3), "{integrator:?}, {rule}");
-        }
+    let scene = room_of(28, 0.1);
+    for settings in all_settings() {
+        let [one, three] = [1, 3].map(|threads| scene.film(&settings, 2, threads));
+        assert!(one == three, "{}", describe(&settings));
     }
 }
 
 #[test]
 fn measuring_stages_changes_no_bit_and_no_counter() {
-    let scene = common::room(0.1);
+    let scene = room(0.1);
     for (name, integrator) in IntegratorKind::NAMES {
         let session = |clock| {
             let resources = Resources {
                 clock,
                 ..with_threads(1)
             };
-            let mut session = Session::new(
-                &scene.scene,
-                &scene.view,
-                settings(integrator, "per-pair"),
-                &resources,
-            )
-            .expect("the film is small");
-            (0..16).for_each(|_| assert!(session.step(&())));
+            let mut session = scene.session_with(settings(integrator, "per-pair"), &resources);
+            steps(&mut session, 16);
             session
         };
         let (plain, timed) = (session(None), session(Some(Instant::now)));
@@ -99,12 +77,12 @@ fn measuring_stages_changes_no_bit_and_no_counter() {
 
 #[test]
 fn a_session_counts_the_same_with_any_number_of_threads() {
-    let scene = common::room(0.0);
+    let scene = room(0.0);
     let stats = |threads| {
-        let settings = settings(IntegratorKind::Bdpt, "per-pair");
-        let mut session = Session::new(&scene.scene, &scene.view, settings, &with_threads(threads))
-            .expect("the film is small");
-        (0..4).for_each(|_| assert!(session.step(&())));
+        let mut settings = settings(IntegratorKind::Bdpt, "per-pair");
+        settings.layers = Layers::new(&[], &[], 4).with_raw();
+        let mut session = scene.session(settings, threads);
+        steps(&mut session, 4);
         session.stats().clone()
     };
     let one = stats(1);
@@ -113,6 +91,7 @@ fn a_session_counts_the_same_with_any_number_of_threads() {
     // One per pair is at most one ray per sample, and not every sample has one.
     assert!(one.rays.connection > 0 && one.rays.connection <= one.samples);
     assert!(one.candidates > one.rays.connection);
+    assert!(one.strategy_images.rows().count() > 6);
 }
 
 /// Asks to stop after the first run of pixels.
@@ -131,22 +110,18 @@ impl Progress for StopAfterRun {
 /// Whether a host asks before the pass or in it, in rays of a thread that ends its run later.
 #[test]
 fn a_pass_that_is_given_up_leaves_no_trace() {
-    let scene = common::room_of(32, 0.0);
+    let scene = room_of(32, 0.0);
     for integrator in [IntegratorKind::Bdpt, IntegratorKind::Lvc] {
         let settings = settings(integrator, "all");
-        let resources = with_threads(2);
-        let mut session = Session::new(&scene.scene, &scene.view, settings.clone(), &resources)
-            .expect("the film is small");
-        assert!(session.step(&()));
+        let mut session = scene.session(settings.clone(), 2);
+        steps(&mut session, 1);
         let before = session.stats().clone();
         for asks_first in [false, true] {
             assert!(!session.step(&StopAfterRun(AtomicBool::new(asks_first))));
             assert_eq!((session.next_pass(), session.stats()), (1, &before));
         }
         assert!(session.step(&()));
-        let whole =
-            render(&scene.scene, &scene.view, &settings, 2, &resources).expect("the film is small");
-        assert!(*session.film() == whole);
+        assert!(*session.film() == scene.film(&settings, 2, 2));
     }
 }
 
@@ -161,11 +136,9 @@ impl Progress for Panics {
 
 #[test]
 fn a_pass_that_the_host_ends_by_a_panic_leaves_no_trace() {
-    let scene = common::room(0.0);
+    let scene = room(0.0);
     let settings = settings(IntegratorKind::Bdpt, "all");
-    let resources = with_threads(2);
-    let session = || Session::new(&scene.scene, &scene.view, settings.clone(), &resources);
-    let [mut session, mut other] = [session(), session()].map(|it| it.expect("the film is small"));
+    let [mut session, mut other] = [(); 2].map(|()| scene.session(settings.clone(), 2));
     let step = std::panic::AssertUnwindSafe(|| session.step(&Panics));
     assert!(std::panic::catch_unwind(step).is_err());
     assert!(session.step(&()) && other.step(&()));
@@ -184,45 +157,24 @@ fn part(session: &mut Session<'_>, passes: std::ops::Range<u64>) -> Film {
 
 #[test]
 fn parts_in_any_order_are_the_whole() {
-    let scene = common::room(0.1);
-    for (integrator, rule) in [
-        (IntegratorKind::Path, "all"),
-        (IntegratorKind::Light, "all"),
-        (IntegratorKind::Bdpt, "all"),
-        (IntegratorKind::Bdpt, "per-light-vertex"),
-        (IntegratorKind::Bdpt, "per-camera-vertex"),
-        (IntegratorKind::Bdpt, "per-pair"),
-        (IntegratorKind::Bdpt, "ray-roulette"),
-        (IntegratorKind::Bdpt, "budget:2"),
-        (IntegratorKind::Lvc, "all"),
-        (IntegratorKind::Lvc, "budget:2"),
-        (IntegratorKind::Auto, "all"),
-    ] {
-        let settings = settings(integrator, rule);
-        let resources = with_threads(2);
-        let mut session = Session::new(&scene.scene, &scene.view, settings.clone(), &resources)
-            .expect("the film is small");
+    let scene = room(0.1);
+    for settings in all_settings() {
+        let case = describe(&settings);
+        let mut session = scene.session(settings.clone(), 2);
         let [whole, a, b, c] = [0..7, 4..7, 0..1, 1..4].map(|range| part(&mut session, range));
         let parts = [a, b, c];
         let mut merged = parts[0].clone();
         merged.merge(&parts[2]).expect("other passes");
         // Another session renders the missing pass.
-        let mut session = Session::new(
-            &scene.scene,
-            &scene.view,
-            settings.clone(),
-            &with_threads(1),
-        )
-        .expect("the film is small");
-        session
-            .add_film(merged.clone())
-            .expect("nothing was rendered");
+        let mut session = scene.session(settings, 1);
+        let added = session.add_film(merged.clone());
+        added.expect("nothing was rendered");
         assert_eq!(session.next_pass(), 0);
         session.step(&());
         assert_eq!(session.next_pass(), 7);
-        assert!(*session.film() == whole, "{integrator:?} {rule}");
+        assert!(*session.film() == whole, "{case}");
         merged.merge(&parts[1]).expect("other passes");
-        assert!(merged == whole, "{integrator:?} {rule}");
+        assert!(merged == whole, "{case}");
         let overlap = merged.merge(&parts[0]).expect_err("the same passes");
         assert_eq!(overlap, MergeError::Overlap(PassSet::from(4..7)));
     }
@@ -241,20 +193,17 @@ fn a_replayed_sample_is_the_sample() {
 
 #[track_caller]
 fn check_replays(integrator: IntegratorKind) {
-    let scene = common::room(0.1);
+    let scene = room(0.1);
     let settings = settings(integrator, "budget:2");
-    let resources = with_threads(1);
-    let session = Session::new(&scene.scene, &scene.view, settings.clone(), &resources)
-        .expect("the film is small");
+    let session = scene.session(settings.clone(), 1);
     let film = scene.view.film();
     let mut again = Film::new(film.clone(), u64::MAX).expect("the film is small");
     for pass in 0..2 {
         let buffer = PassBuffer::new(film, again.layers()).expect("the film is small");
         for i in 0..film.crop.area() as usize {
-            let replay = session
-                .replay(film.crop.pixel(i), pass)
-                .expect("the pixel is inside");
-            let rgb = |light: bidir::spectrum::Spectrum| [light[0], light[1], light[2]];
+            let replay = session.replay(film.crop.pixel(i), pass);
+            let replay = replay.expect("the pixel is inside");
+            let rgb = |light: Spectrum| [light[0], light[1], light[2]];
             buffer.set_camera_sample(i, rgb(replay.value()));
             for (contribution, place) in replay.splats() {
                 let value = rgb(contribution.value());
@@ -263,26 +212,19 @@ fn check_replays(integrator: IntegratorKind) {
         }
         again.add_pass(pass, &buffer);
     }
-    assert!(
-        again
-            == render(&scene.scene, &scene.view, &settings, 2, &resources)
-                .expect("the film is small")
-    );
+    assert!(again == scene.film(&settings, 2, 1));
     assert!(session.replay([8, 0], 0).is_none());
 }
 
 #[test]
 fn other_seeds_and_samplers_are_other_images() {
-    let scene = common::room(0.0);
+    let scene = room(0.0);
     let first = settings(IntegratorKind::Path, "all");
     let other = Settings {
         seed: 1,
         ..first.clone()
     };
-    let film = |settings: &Settings| {
-        render(&scene.scene, &scene.view, settings, 1, &with_threads(1)).expect("the film is small")
-    };
-    assert!(film(&first) != film(&other));
+    assert!(scene.film(&first, 1, 1) != scene.film(&other, 1, 1));
 }
 
 /// Memory of this process. Unit: pages. None: the system does not report it.
@@ -295,12 +237,10 @@ fn resident_pages() -> Option<u64> {
 #[ignore = "takes long: just nightly"]
 fn a_million_passes_take_no_memory_and_lose_nothing() {
     let radiance = [0.1, 0.7, 1.3e4];
-    let mut builder = common::builder(16, 0.0);
-    builder.light(Light::Infinite(InfiniteLight::constant(radiance)));
-    let scene = builder.build().expect("the scene is valid");
-    let settings = settings(IntegratorKind::Path, "all");
-    let mut session = Session::new(&scene.scene, &scene.view, settings, &with_threads(1))
-        .expect("the film is small");
+    let mut builder = builder(16, 0.0);
+    builder.sky(radiance);
+    let scene = builder.build();
+    let mut session = scene.session(settings(IntegratorKind::Path, "all"), 1);
     let mut before = None;
     while session.next_pass() < 1_000_000 {
         session.step(&());

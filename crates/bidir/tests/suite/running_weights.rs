@@ -1,20 +1,19 @@
 //! Weights from running sums are those of the pure form, for every path that pairs of subpaths
 //! make, and for every way to weigh them.
 
-use crate::common;
+use crate::common::prelude::*;
+use crate::common::rooms::{
+    foggy_room, gallery, lamp_room, room, room_with_fire, room_with_ink, steep_room,
+};
 use crate::common::walks::{edge, for_some_pairs, some_light_start, some_proposals};
-use crate::common::{Shot, ShotBuilder};
-use bidir::camera::{Camera, Orthographic, OrthographicSettings, Perspective, PerspectiveSettings};
+use bidir::camera::{Camera, Orthographic, OrthographicSettings};
 use bidir::guide::Guide;
-use bidir::light::{DistantLight, InfiniteLight, Light, PointLight};
-use bidir::math::{Affine3A, Vec2, Vec3};
+use bidir::light::{DistantLight, Light, PointLight};
 use bidir::path::{
     Arrival, DiffuseEnd, HitPath, Job, JoinedPath, LightChoiceKind, LightPointChoice, MisHeuristic,
     PathDensities, PathRoulette, PathSettings, PathSums, RunningSums, SampleCounts, Strategies,
     Subpath, Vertex, Weights, sample_next_event,
 };
-use bidir::shape::Shape;
-use bidir::spectrum::Spectrum;
 use std::array::from_fn;
 
 /// Both forms take the same densities, and sum in f64; weights are f32.
@@ -70,11 +69,7 @@ impl Comparison {
 
     #[track_caller]
     fn check(&mut self, job: &Job<'_>, (s, t): (usize, usize), [running, pure]: [f32; 2]) {
-        assert!(
-            (running - pure).abs() <= TOLERANCE * pure + SMALL,
-            "s = {s}, t = {t}: {running} instead of {pure}; {}",
-            describe(job.settings)
-        );
+        check_weight(job, (s, t), running, [pure, TOLERANCE]);
         self.paths += 1;
         self.shared += usize::from(s + t > 4 && (0.01..0.99).contains(&pure));
     }
@@ -152,17 +147,11 @@ impl Comparison {
             return;
         };
         for (found, expected) in found.0.into_iter().zip(contribution.0) {
-            assert!(
-                (found - expected).abs() <= 3.0 * TOLERANCE * expected,
-                "s = {s}, t = {t}: {found} instead of {expected}"
-            );
+            let is_near = (found - expected).abs() <= 3.0 * TOLERANCE * expected;
+            assert!(is_near, "s = {s}, t = {t}: {found} instead of {expected}");
         }
         let pure = path.weight(job, &mut self.densities);
-        assert!(
-            (weight - pure).abs() <= 3.0 * TOLERANCE * pure + SMALL,
-            "s = {s}, t = {t}: {weight} instead of {pure}; {}",
-            describe(job.settings)
-        );
+        check_weight(job, (s, t), weight, [pure, 3.0 * TOLERANCE]);
         self.diffuse[if s == 1 { 0 } else { t.min(2) }] += 1;
     }
 
@@ -227,6 +216,16 @@ impl Comparison {
     }
 }
 
+#[track_caller]
+fn check_weight(job: &Job<'_>, (s, t): (usize, usize), found: f32, [pure, tolerance]: [f32; 2]) {
+    let (is_near, settings) = (
+        (found - pure).abs() <= tolerance * pure + SMALL,
+        job.settings,
+    );
+    let of = || format!("s = {s}, t = {t}; {}", describe(settings));
+    assert!(is_near, "{found} instead of {pure}: {}", of());
+}
+
 /// Every heuristic, light point and kind of roulette, with some sets of strategies.
 fn all_settings() -> Vec<PathSettings> {
     let roulettes = ["albedo:0", "albedo:3", "throughput:0", "off"]
@@ -280,9 +279,16 @@ fn describe(settings: &PathSettings) -> String {
     format!("{mis:?}, {light_point:?}, {light_choice:?}, {roulette}, {strategies}")
 }
 
+/// Compares all paths of these pairs, among them more than `diffuse` connections of diffuse vertices of each kind.
+#[track_caller]
+fn check(scene: &Shot, pairs: u64, diffuse: usize) {
+    let found = compared(scene, pairs);
+    assert!(found > diffuse, "{found} connections are diffuse");
+}
+
 /// Returns how many connections of diffuse vertices there were, of the kind with the fewest.
 #[track_caller]
-fn check(scene: &Shot, pairs: u64) -> usize {
+fn compared(scene: &Shot, pairs: u64) -> usize {
     let (mut comparison, mut least) = (Comparison::default(), 0);
     let proposals = some_proposals(scene);
     let light_start = some_light_start(scene);
@@ -296,7 +302,7 @@ fn check(scene: &Shot, pairs: u64) -> usize {
         light_start: Some(&light_start),
     };
     for settings in all_settings() {
-        let own = Job::of_own_subpaths(&scene.scene, &scene.view, &settings);
+        let own = scene.job(&settings);
         let guided = Job {
             counts,
             guide,
@@ -331,27 +337,21 @@ fn check(scene: &Shot, pairs: u64) -> usize {
 /// kinds, `unit` times the size it has at 1.
 fn yard(unit: f32, camera: Camera) -> Shot {
     let mut builder = ShotBuilder::new(camera, 8);
-    let [grey, glass, metal, varnish] = [
-        common::diffuse([0.7, 0.6, 0.5]),
-        common::glass(0.0),
-        common::metal(0.0),
-        common::varnish(0.0),
-    ]
-    .map(|material| builder.material(material));
+    let grey = builder.material(diffuse([0.7, 0.6, 0.5]));
     let quad = |corner: Vec3, a: Vec3, b: Vec3| {
-        let flat = common::quad(corner * unit, a * unit, b * unit);
-        Shape::Mesh(common::tilt(flat, Vec3::new(0.9, 0.3, 0.3)))
+        let flat = parallelogram(corner * unit, a * unit, b * unit);
+        tilted(flat, Vec3::new(0.9, 0.3, 0.3))
     };
-    let ball = |centre: Vec3, radius: f32| common::sphere(centre * unit, radius * unit);
+    let ball = |centre: Vec3, radius: f32| sphere(centre * unit, radius * unit);
     let floor = quad(Vec3::new(-3.0, -1.0, -3.0), Vec3::Z * 6.0, Vec3::X * 6.0);
     let wall = quad(Vec3::new(-3.0, -1.0, 2.0), Vec3::Y * 4.0, Vec3::X * 6.0);
     builder.shape(floor, grey, None);
     builder.shape(wall, grey, None);
-    builder.shape(ball(Vec3::new(-0.7, -0.5, 0.5), 0.5), glass, None);
-    builder.shape(ball(Vec3::new(0.5, -0.4, 0.9), 0.6), metal, None);
-    builder.shape(ball(Vec3::new(0.2, -0.7, -0.2), 0.3), varnish, None);
+    builder.add(ball(Vec3::new(-0.7, -0.5, 0.5), 0.5), glass(0.0));
+    builder.add(ball(Vec3::new(0.5, -0.4, 0.9), 0.6), metal(0.0));
+    builder.add(ball(Vec3::new(0.2, -0.7, -0.2), 0.3), varnish(0.0));
     let lamp = ball(Vec3::new(1.2, 0.9, 0.2), 0.3);
-    builder.shape(lamp, grey, common::emission([4.0, 3.0, 2.0]));
+    builder.shape(lamp, grey, emission([4.0, 3.0, 2.0]));
     let intensity = [unit * unit; 3];
     builder.light(Light::Point(PointLight {
         position: Vec3::new(-1.0, 1.0, 0.0) * unit,
@@ -361,52 +361,35 @@ fn yard(unit: f32, camera: Camera) -> Shot {
         to_light: Vec3::new(0.3, 0.9, -0.3).normalize(),
         irradiance: [0.5; 3],
     }));
-    builder.light(Light::Infinite(InfiniteLight::constant([0.3, 0.4, 0.5])));
-    builder.build().expect("the yard is valid")
+    builder.sky([0.3, 0.4, 0.5]);
+    builder.build()
 }
 
 /// Looks along +z, with a lens.
 fn perspective(unit: f32) -> Camera {
-    let settings = PerspectiveSettings {
-        world_from_camera: Affine3A::from_translation(Vec3::Z * -3.0 * unit),
-        resolution: Vec2::splat(8.0),
-        screen: [Vec2::new(-0.5, 0.5), Vec2::new(0.5, -0.5)],
-        lens_radius: 0.1 * unit,
-        focal_distance: 3.0 * unit,
-    };
-    Camera::Perspective(Perspective::new(&settings).expect("the camera is rigid"))
+    camera_with(Vec3::Z * -3.0 * unit, 8, 0.5, [0.1 * unit, 3.0 * unit])
 }
 
 #[test]
 fn rooms_and_layers() {
-    let diffuse = check(&common::room(0.1), 20);
-    assert!(diffuse > 1000, "{diffuse} connections are diffuse");
-    check(&common::gallery(0.1), 20);
-    check(&common::lamp_room(0.1), 20);
-    let diffuse = check(&common::steep_room(0.1), 20);
-    assert!(diffuse > 300, "{diffuse} connections are diffuse");
+    check(&room(0.1), 20, 1000);
+    check(&steep_room(0.1), 20, 300);
+    compared(&gallery(0.1), 20);
+    compared(&lamp_room(0.1), 20);
 }
 
 #[test]
 fn media() {
-    let diffuse = check(&common::foggy_room(0.1), 20);
+    let diffuse = compared(&foggy_room(0.1), 20);
     assert_eq!(diffuse, 0, "they know nothing of fog");
-    let diffuse = check(&common::room_with_ink(0.1), 20);
-    assert!(diffuse > 1000, "{diffuse} connections are diffuse");
-    check(&common::room_with_fire(0.1), 20);
+    check(&room_with_ink(0.1), 20, 1000);
+    compared(&room_with_fire(0.1), 20);
 }
 
 #[test]
-fn glass_mirrors_and_lights_of_all_kinds() {
-    let diffuse = check(&yard(1.0, perspective(1.0)), 150);
-    assert!(diffuse > 1000, "{diffuse} connections are diffuse");
-}
-
-#[test]
-fn scenes_of_any_size() {
-    for unit in [1e-4, 1e4] {
-        let diffuse = check(&yard(unit, perspective(unit)), 150);
-        assert!(diffuse > 1000, "{diffuse} connections are diffuse");
+fn glass_mirrors_and_lights_of_all_kinds_at_any_size() {
+    for unit in [1.0, 1e-4, 1e4] {
+        check(&yard(unit, perspective(unit)), 150, 1000);
     }
 }
 
@@ -418,14 +401,13 @@ fn a_camera_at_infinity() {
         screen: [Vec2::new(-1.5, 1.5), Vec2::new(1.5, -1.5)],
     };
     let camera = Orthographic::new(&settings).expect("the camera is rigid");
-    let diffuse = check(&yard(1.0, Camera::Orthographic(camera)), 150);
-    assert!(diffuse > 500, "{diffuse} connections are diffuse");
+    check(&yard(1.0, Camera::Orthographic(camera)), 150, 500);
 }
 
 /// Long walks, where ratios multiply up.
 #[test]
 fn long_paths() {
-    let scene = common::room(0.05);
+    let scene = room(0.05);
     for (_, mis) in MisHeuristic::NAMES {
         let settings = PathSettings {
             max_depth: Some(60),
@@ -434,13 +416,9 @@ fn long_paths() {
             ..PathSettings::default()
         };
         let mut comparison = Comparison::default();
-        for_some_pairs(
-            4,
-            Job::of_own_subpaths(&scene.scene, &scene.view, &settings),
-            |job, light, camera| {
-                comparison.compare_pair(job, light, camera);
-            },
-        );
+        for_some_pairs(4, scene.job(&settings), |job, light, camera| {
+            comparison.compare_pair(job, light, camera);
+        });
         assert!(comparison.shared > 400, "{} are shared", comparison.shared);
     }
 }

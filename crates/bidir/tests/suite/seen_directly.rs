@@ -1,13 +1,8 @@
 //! Light that is seen directly: hits of the light, and its light image.
 
-use crate::common::Shot;
-use crate::common::{builder, emission, metal, sphere};
+use crate::common::prelude::*;
 use bidir::camera::{Camera, Orthographic, OrthographicSettings};
-use bidir::driver::{Resources, Settings, render};
 use bidir::film::Picture;
-use bidir::integrator::IntegratorKind;
-use bidir::light::{InfiniteLight, Light};
-use bidir::math::{Affine3A, Vec2, Vec3};
 use bidir::path::MisHeuristic;
 
 const BIDIRECTIONAL: [IntegratorKind; 2] = [IntegratorKind::Bdpt, IntegratorKind::Lvc];
@@ -20,31 +15,26 @@ fn picture(scene: &Shot, integrator: IntegratorKind, mis: MisHeuristic, seed: u6
     };
     settings.set_integrator(integrator);
     settings.path.mis = mis;
-    let film = render(
-        &scene.scene,
-        &scene.view,
-        &settings,
-        1,
-        &Resources::default(),
-    )
-    .expect("a small film");
-    film.develop()
+    scene.film(&settings, 1, 0).develop()
+}
+
+#[track_caller]
+fn check_sky(scene: &Shot, integrator: IntegratorKind, mis: MisHeuristic) {
+    for radiance in picture(scene, integrator, mis, 0).pixels.as_flattened() {
+        let is_even = (radiance - 2.0).abs() < 1e-3;
+        assert!(is_even, "{integrator} {mis:?}: {radiance}");
+    }
 }
 
 /// The light image of a sky varies with the number of its light subpaths, hits of it do not.
 #[test]
 fn a_sky_has_no_noise() {
     let mut builder = builder(8, 0.0);
-    builder.light(Light::Infinite(InfiniteLight::constant([2.0; 3])));
-    let scene = builder.build().expect("the scene is valid");
+    builder.sky([2.0; 3]);
+    let scene = builder.build();
     for integrator in BIDIRECTIONAL {
         for mis in [MisHeuristic::Balance, MisHeuristic::Power] {
-            for radiance in picture(&scene, integrator, mis, 0).pixels.as_flattened() {
-                assert!(
-                    (radiance - 2.0).abs() < 1e-3,
-                    "{integrator:?} {mis:?}: {radiance}"
-                );
-            }
+            check_sky(&scene, integrator, mis);
         }
     }
 }
@@ -61,15 +51,10 @@ fn parallel_rays_see_the_whole_sky() {
     };
     let camera = Orthographic::new(&settings).expect("the camera is rigid");
     builder.camera(Camera::Orthographic(camera));
-    builder.light(Light::Infinite(InfiniteLight::constant([2.0; 3])));
-    let scene = builder.build().expect("the scene is valid");
-    for (name, mis) in MisHeuristic::NAMES {
-        for radiance in picture(&scene, IntegratorKind::Bdpt, mis, 0)
-            .pixels
-            .as_flattened()
-        {
-            assert!((radiance - 2.0).abs() < 1e-3, "{name}: {radiance}");
-        }
+    builder.sky([2.0; 3]);
+    let scene = builder.build();
+    for (_, mis) in MisHeuristic::NAMES {
+        check_sky(&scene, IntegratorKind::Bdpt, mis);
     }
 }
 
@@ -80,7 +65,7 @@ fn a_small_lamp_is_in_every_picture() {
     let black = builder.material(metal(0.5));
     let lamp = sphere(Vec3::ZERO, 1e-4);
     builder.shape(lamp, black, emission([1e6; 3]));
-    let scene = builder.build().expect("the scene is valid");
+    let scene = builder.build();
     for integrator in BIDIRECTIONAL {
         for seed in 0..4 {
             let picture = picture(&scene, integrator, MisHeuristic::Balance, seed);

@@ -7,10 +7,8 @@ mod lit_room;
 mod plane;
 mod strategies;
 
-use crate::common::Shot;
-use bidir::driver::{Resources, Settings, render};
-use bidir::film::{Aov, Film, LayerImage, Layers};
-use bidir::integrator::IntegratorKind;
+use crate::common::prelude::*;
+use bidir::film::{Aov, LayerImage};
 
 /// Everything that is known of the first surface, and how it was rendered but for the time.
 pub(crate) const FEATURES: [Aov; 9] = [
@@ -30,14 +28,6 @@ pub(crate) fn settings(integrator: IntegratorKind, layers: Layers) -> Settings {
         layers,
         ..Settings::new(integrator)
     }
-}
-
-pub(crate) fn film(scene: &Shot, settings: &Settings, passes: u64, threads: usize) -> Film {
-    let resources = Resources {
-        threads,
-        ..Resources::default()
-    };
-    render(&scene.scene, &scene.view, settings, passes, &resources).expect("the film is small")
 }
 
 pub(crate) fn layer<'a>(images: &'a [LayerImage], name: &str, channel: &str) -> &'a LayerImage {

@@ -1,16 +1,11 @@
 //! Features of a plane, all of which are known, and what pixels cost.
 
-use super::{FEATURES, film, layer, settings};
-use crate::common::Shot;
-use crate::common::{add_walls, builder, diffuse, quad, tilt};
-use bidir::driver::{Progress, Resources, Session};
-use bidir::film::{Aov, LayerImage, Layers};
-use bidir::integrator::IntegratorKind;
-use bidir::light::{InfiniteLight, Light};
-use bidir::math::{DVec3, Vec3};
+use super::{FEATURES, layer, settings};
+use crate::common::prelude::*;
+use bidir::driver::Progress;
+use bidir::film::{Aov, LayerImage};
+use bidir::math::DVec3;
 use bidir::scene::RenderSpace;
-use bidir::shape::Shape;
-use bidir::spectrum::Rgb;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 /// A plane at z = 1 that covers the left five eighths of the view of a camera at z = -1.8.
@@ -22,12 +17,10 @@ fn plane() -> Shot {
 fn plane_in(space: RenderSpace) -> Shot {
     let mut builder = builder(4, 0.0);
     builder.space(space);
-    let material = builder.material(diffuse([0.8, 0.4, 0.2]));
-    let plane = quad(Vec3::new(-9.0, -9.0, 1.0), Vec3::Y * 18.0, Vec3::X * 9.42);
-    let plane = tilt(plane, Vec3::ZERO);
-    builder.shape(Shape::Mesh(plane), material, None);
-    builder.light(Light::Infinite(InfiniteLight::constant([1.0; 3])));
-    builder.build().expect("the plane is valid")
+    let plane = parallelogram(Vec3::new(-9.0, -9.0, 1.0), Vec3::Y * 18.0, Vec3::X * 9.42);
+    builder.add(tilted(plane, Vec3::ZERO), diffuse([0.8, 0.4, 0.2]));
+    builder.sky([1.0; 3]);
+    builder.build()
 }
 
 /// The values of a pixel in the layer with this name and first channel.
@@ -39,26 +32,26 @@ fn at(images: &[LayerImage], name: &str, channel: &str, pixel: usize) -> Vec<f32
 
 #[track_caller]
 fn check_near(values: &[f32], expected: &[f32]) {
-    let fits = values
-        .iter()
-        .zip(expected)
-        .all(|(a, b)| (a - b).abs() < 2e-3);
-    assert!(
-        fits && values.len() == expected.len(),
-        "{values:?}, not {expected:?}"
-    );
+    let fits = values.len() == expected.len();
+    let mut pairs = values.iter().zip(expected);
+    let is_near = pairs.all(|(a, b)| (a - b).abs() < 2e-3);
+    assert!(fits && is_near, "{values:?}, not {expected:?}");
 }
 
 /// Checks pixel 4, the first of the second row; the view is 0.6 wide at distance 1.
 #[track_caller]
 fn check_surface(images: &[LayerImage]) {
     let at = |name: &str, channel: &str| at(images, name, channel, 4);
-    check_near(&at("Albedo", "R"), &[0.8, 0.4, 0.2]);
-    check_near(&at("N", "X"), &[0.0, 0.0, -1.0]);
-    check_near(&at("Ns", "X"), &[0.0, 0.0, -1.0]);
-    check_near(&at("", "Z"), &[2.8]);
-    check_near(&at("", "Coverage"), &[1.0]);
-    check_near(&at("", "Samples"), &[64.0]);
+    for (name, channel, expected) in [
+        ("Albedo", "R", &[0.8, 0.4, 0.2][..]),
+        ("N", "X", &[0.0, 0.0, -1.0]),
+        ("Ns", "X", &[0.0, 0.0, -1.0]),
+        ("", "Z", &[2.8]),
+        ("", "Coverage", &[1.0]),
+        ("", "Samples", &[64.0]),
+    ] {
+        check_near(&at(name, channel), expected);
+    }
     let position = Vec3::from_slice(&at("P", "X"));
     check_near(&[position.z], &[1.0]);
     let centre = Vec3::new(-0.45 * 2.8, 0.15 * 2.8, 1.0);
@@ -77,13 +70,14 @@ fn check_edge(images: &[LayerImage]) {
 /// Checks pixel 7, which is sky.
 #[track_caller]
 fn check_sky(images: &[LayerImage]) {
-    for (name, channel) in [
+    let images_of_surfaces = [
         ("Albedo", "R"),
         ("P", "X"),
         ("N", "X"),
         ("", "Z"),
         ("", "Coverage"),
-    ] {
+    ];
+    for (name, channel) in images_of_surfaces {
         let values = at(images, name, channel, 7);
         assert!(values.iter().all(|v| *v == 0.0), "{name} {channel}");
     }
@@ -94,7 +88,7 @@ fn features_of_a_plane_are_known() {
     let scene = plane();
     for (_, integrator) in IntegratorKind::NAMES {
         let settings = settings(integrator, Layers::new(&FEATURES, &[], 0));
-        let images = film(&scene, &settings, 64, 2).develop_layers();
+        let images = scene.film(&settings, 64, 2).develop_layers();
         check_surface(&images);
         check_edge(&images);
         check_sky(&images);
@@ -111,15 +105,13 @@ fn positions_and_depths_are_those_of_the_world() {
         let scene = plane_in(space);
         let layers = Layers::new(&[Aov::Position, Aov::Depth], &[], 0);
         let settings = settings(IntegratorKind::Path, layers);
-        let images = film(&scene, &settings, 16, 1).develop_layers();
+        let images = scene.film(&settings, 16, 1).develop_layers();
         let position = Vec3::from_slice(&at(&images, "P", "X", 4));
         (position, at(&images, "", "Z", 4)[0])
     });
     let expected = space.world_point(here.0).as_vec3();
-    assert!(
-        there.0.distance(expected) < 1e-2,
-        "{there:?}, not {expected}"
-    );
+    let is_near = there.0.distance(expected) < 1e-2;
+    assert!(is_near, "{there:?}, not {expected}");
     check_near(&[there.1], &[4.0 * here.1]);
 }
 
@@ -127,22 +119,16 @@ fn positions_and_depths_are_those_of_the_world() {
 fn variance_is_that_of_the_mean() {
     let scene = plane();
     let settings = settings(IntegratorKind::Path, Layers::new(&[Aov::Variance], &[], 0));
-    let film = film(&scene, &settings, 64, 2);
+    let film = scene.film(&settings, 64, 2);
     let (picture, images) = (film.develop(), film.develop_layers());
-    let (absolute, relative) = (
-        layer(&images, "Variance", "R"),
-        layer(&images, "RelativeVariance", "R"),
-    );
-    let flat = |pixels: &[Rgb]| pixels.concat();
-    assert_eq!(absolute.data, flat(&picture.variance));
-    for ((mean, variance), relative) in flat(&picture.pixels)
-        .iter()
-        .zip(&absolute.data)
-        .zip(&relative.data)
-    {
+    let data = |name| &layer(&images, name, "R").data;
+    let [absolute, relative] = ["Variance", "RelativeVariance"].map(data);
+    assert_eq!(*absolute, picture.variance.concat());
+    for (i, mean) in picture.pixels.concat().into_iter().enumerate() {
+        let (variance, relative) = (absolute[i], relative[i]);
         assert!((relative * mean * mean - variance).abs() <= 1e-6 * variance);
     }
-    assert!(absolute.data.iter().any(|variance| *variance > 0.0));
+    assert!(absolute.iter().any(|variance| *variance > 0.0));
 }
 
 /// A clock that is a millisecond later whenever it is looked at.
@@ -162,25 +148,18 @@ fn time_is_looked_at_where_it_is_kept() {
     let mut builder = builder(4, 0.0);
     let wall = builder.material(diffuse([0.5; 3]));
     add_walls(&mut builder, wall);
-    let scene = builder.build().expect("the walls are valid");
+    let scene = builder.build();
     for (aov, looks) in [(Aov::Time, 3 * 16 * 2), (Aov::Rays, 0)] {
         let settings = settings(IntegratorKind::Path, Layers::new(&[aov], &[], 0));
-        let resources = Resources {
-            threads: 1,
-            ..Resources::default()
-        };
-        let mut session = Session::new(&scene.scene, &scene.view, settings, &resources)
-            .expect("the film is small");
+        let mut session = scene.session(settings, 1);
         let clock = Clock::default();
         (0..3).for_each(|_| assert!(session.step(&clock)));
         assert_eq!(clock.0.into_inner(), looks * 1_000_000);
         if aov == Aov::Time {
             let images = session.film().develop_layers();
             let seconds = &layer(&images, "", "Time").data;
-            assert!(
-                seconds.iter().all(|pixel| (pixel - 3e-3).abs() < 1e-6),
-                "{seconds:?}"
-            );
+            let is_right = seconds.iter().all(|pixel| (pixel - 3e-3).abs() < 1e-6);
+            assert!(is_right, "{seconds:?}");
         }
     }
 }

@@ -1,13 +1,8 @@
-//! Scattering whose light is known: once on the way of a ray, many times under a surface, and around a point light.
+//! Scattering whose light is known: once on the way of a ray, and many times under a surface.
 
-use super::{VACUUM, add_ball, fill, finish, medium};
-use crate::common::statistics::{WHOLE, check_agree, replicates};
-use crate::common::{Shot, ShotBuilder, narrow_camera, settings, sphere};
-use bidir::camera::{Camera, Spherical, SphericalMapping};
-use bidir::integrator::IntegratorKind;
-use bidir::light::{InfiniteLight, Light, PointLight};
-use bidir::math::{Affine3A, Vec2, Vec3};
-use bidir::spectrum::Rgb;
+use super::VACUUM;
+use crate::common::prelude::*;
+use bidir::math::DVec3;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// The means of `steps` parts of an interval.
@@ -41,22 +36,18 @@ const HALF_FIELD: f32 = 0.05;
 /// A point light beside the field of view, in fog without end.
 fn lamp_in_fog() -> Shot {
     let mut builder = ShotBuilder::new(narrow_camera(Vec3::ZERO, 8, HALF_FIELD), 8);
-    builder.light(Light::Point(PointLight {
-        position: LAMP,
-        intensity: [1.0; 3],
-    }));
-    fill(&mut builder, medium(ABSORPTION, SCATTERING, MEAN_COSINE));
-    finish(builder)
+    builder.light(point_light(LAMP));
+    builder.fill(medium(ABSORPTION, SCATTERING, MEAN_COSINE));
+    builder.build()
 }
 
 /// ∫ σ_s p(cosθ) / r² · exp(-σ_t (s + r)) ds along a ray, with r from the lamp to the place at s. With
 /// s = a + h tan φ, where a is the place nearest to the lamp, at the distance h, ds / r² = dφ / h and cosθ = -sin φ
 /// \[Pegoraro09\].
-fn scattered_once(direction: [f64; 3], scattering: f64, extinction: f64) -> f64 {
-    let lamp = LAMP.to_array().map(f64::from);
-    let dot = |a: [f64; 3], b: [f64; 3]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-    let nearest = dot(direction, lamp);
-    let beside = (dot(lamp, lamp) - nearest * nearest).sqrt();
+fn scattered_once(direction: DVec3, scattering: f64, extinction: f64) -> f64 {
+    let lamp = LAMP.as_dvec3();
+    let nearest = direction.dot(lamp);
+    let beside = (lamp.length_squared() - nearest * nearest).sqrt();
     let begin = libm::atan2(-nearest, beside);
     let g = f64::from(MEAN_COSINE);
     let steps = 512;
@@ -77,11 +68,8 @@ fn seen_of_lamp() -> [f64; 3] {
         let scattering = f64::from(SCATTERING[lane]);
         let extinction = scattering + f64::from(ABSORPTION[lane]);
         let rays = middles([-field, field], 16)
-            .flat_map(|x| middles([-field, field], 16).map(move |y| [x, y, 1.0]));
-        let seen = rays.map(|ray: [f64; 3]| {
-            let length = ray.iter().map(|x| x * x).sum::<f64>().sqrt();
-            scattered_once(ray.map(|x| x / length), scattering, extinction)
-        });
+            .flat_map(|x| middles([-field, field], 16).map(move |y| DVec3::new(x, y, 1.0)));
+        let seen = rays.map(|ray| scattered_once(ray.normalize(), scattering, extinction));
         seen.sum::<f64>() / 256.0
     })
 }
@@ -103,12 +91,12 @@ const ALBEDO: Rgb = [0.5, 0.9, 0.99];
 fn thick_ball() -> Shot {
     const EXTINCTION: f32 = 1000.0;
     let mut builder = ShotBuilder::new(narrow_camera(Vec3::new(0.0, 0.0, -3.0), 4, 0.01), 4);
-    builder.light(Light::Infinite(InfiniteLight::constant([1.0; 3])));
-    let [scattering, absorption] = [|albedo| albedo, |albedo| 1.0 - albedo]
-        .map(|part: fn(f32) -> f32| ALBEDO.map(|albedo| EXTINCTION * part(albedo)));
+    builder.sky([1.0; 3]);
+    let scattering = ALBEDO.map(|albedo| EXTINCTION * albedo);
+    let absorption = ALBEDO.map(|albedo| EXTINCTION * (1.0 - albedo));
     let inside = builder.medium(medium(absorption, scattering, 0.0));
-    add_ball(&mut builder, sphere(Vec3::ZERO, 1.0), VACUUM, inside);
-    finish(builder)
+    builder.bound(sphere(Vec3::ZERO, 1.0), VACUUM, inside);
+    builder.build()
 }
 
 /// H(1) of \[Chandrasekhar60, §V\] for even scattering, which solves
@@ -117,10 +105,8 @@ fn h_upwards(albedo: f64) -> f64 {
     const STEPS: usize = 400;
     let cosines: Vec<f64> = middles([0.0, 1.0], STEPS).collect();
     let next = |h: &[f64], mu: f64| {
-        let terms = cosines
-            .iter()
-            .zip(h)
-            .map(|(other, h)| other * h / (mu + other));
+        let pairs = cosines.iter().zip(h);
+        let terms = pairs.map(|(other, h)| other * h / (mu + other));
         1.0 / ((1.0 - albedo).sqrt() + 0.5 * albedo * terms.sum::<f64>() / STEPS as f64)
     };
     let mut h = vec![1.0; STEPS];
@@ -144,98 +130,6 @@ fn thick_matter_reflects_what_h_functions_say() {
     check_thick(IntegratorKind::Path, 2048);
 }
 
-// Fluence around a point light.
-
-/// Independent uniform numbers \[Steele14\].
-struct Numbers(u64);
-
-impl Numbers {
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        let z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    /// A direction whose cosine to `axis` is given.
-    fn around(&mut self, axis: [f64; 3], cos: f64) -> [f64; 3] {
-        // A second direction that is not along the axis makes the frame.
-        let other = if axis[0].abs() < 0.5 {
-            [1.0, 0.0, 0.0]
-        } else {
-            [0.0, 1.0, 0.0]
-        };
-        let cross = |a: [f64; 3], b: [f64; 3]| {
-            [
-                a[1] * b[2] - a[2] * b[1],
-                a[2] * b[0] - a[0] * b[2],
-                a[0] * b[1] - a[1] * b[0],
-            ]
-        };
-        let normal = |a: [f64; 3]| {
-            let length = a.iter().map(|x| x * x).sum::<f64>().sqrt();
-            a.map(|x| x / length)
-        };
-        let u = normal(cross(axis, other));
-        let v = cross(axis, u);
-        let angle = 2.0 * PI * self.next();
-        let (sin, flat) = (
-            (1.0 - cos * cos).max(0.0).sqrt(),
-            [libm::cos(angle), libm::sin(angle)],
-        );
-        normal(std::array::from_fn(|i| {
-            cos * axis[i] + sin * (flat[0] * u[i] + flat[1] * v[i])
-        }))
-    }
-}
-
-/// The fluence of scattered light at a free path from a point light of intensity 1, by photons that are absorbed or
-/// scattered, and nothing else: collisions in a shell, over its volume. `g` is not 0.
-fn fluence_by_photons(albedo: f64, g: f64, photons: u32) -> f64 {
-    const SHELL: [f64; 2] = [0.95, 1.05];
-    let mut numbers = Numbers(7);
-    let mut collisions = 0u32;
-    for _ in 0..photons {
-        let (mut place, mut is_scattered) = ([0.0; 3], false);
-        let up = 2.0 * numbers.next() - 1.0;
-        let mut direction = numbers.around([0.0, 0.0, 1.0], up);
-        loop {
-            let length = -libm::log(1.0 - numbers.next());
-            place = std::array::from_fn(|i| place[i] + length * direction[i]);
-            let distance = place.iter().map(|x: &f64| x * x).sum::<f64>().sqrt();
-            let is_inside = (SHELL[0]..SHELL[1]).contains(&distance);
-            collisions += u32::from(is_scattered && is_inside);
-            if numbers.next() >= albedo {
-                break;
-            }
-            is_scattered = true;
-            let u = numbers.next();
-            let part = (1.0 - g * g) / (1.0 - g + 2.0 * g * u);
-            let cos = (1.0 + g * g - part * part) / (2.0 * g);
-            direction = numbers.around(direction, cos);
-        }
-    }
-    let [inner, outer] = SHELL.map(|r| 4.0 / 3.0 * PI * r * r * r);
-    // Intensity 1 is a power of 4π.
-    4.0 * PI * f64::from(collisions) / f64::from(photons) / (outer - inner)
-}
-
-/// All around a place at a free path from a point light.
-fn around_a_lamp(albedo: f32, g: f32) -> Shot {
-    let camera = Spherical::new(
-        &Affine3A::IDENTITY,
-        Vec2::splat(4.0),
-        SphericalMapping::EqualArea,
-    );
-    let mut builder = ShotBuilder::new(Camera::Spherical(camera.expect("a camera")), 4);
-    builder.light(Light::Point(PointLight {
-        position: Vec3::new(0.36, 0.48, 0.8),
-        intensity: [1.0; 3],
-    }));
-    fill(&mut builder, medium([1.0 - albedo; 3], [albedo; 3], g));
-    finish(builder)
-}
-
 /// Comparisons that need millions of samples.
 mod statistics {
     use super::*;
@@ -248,22 +142,5 @@ mod statistics {
         // Light tracing has no finite variance here, as vertices come as near to the lens as they like.
         let once = (IntegratorKind::Lvc, Some(1));
         check("once", &lamp_in_fog(), once, 8192, seen_of_lamp());
-    }
-
-    #[test]
-    #[ignore = "statistics: .ci/run statistics"]
-    fn light_around_a_lamp_is_that_of_photons_alone() {
-        const G: f32 = 0.3;
-        let fluence = fluence_by_photons(0.9, f64::from(G), 24_000_000);
-        let expected = [fluence / (4.0 * PI); 3];
-        for kind in [IntegratorKind::Bdpt, IntegratorKind::Lvc] {
-            check(
-                "lamp",
-                &around_a_lamp(0.9, G),
-                (kind, None),
-                12288,
-                expected,
-            );
-        }
     }
 }

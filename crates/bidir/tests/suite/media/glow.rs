@@ -1,17 +1,8 @@
 //! Media that glow: in equilibrium with a sky, along a line, and as the only light of a room.
 
-use super::{
-    ESTIMATORS, VACUUM, add_ball, check_furnace, coefficients, fill, finish, grid, medium, puffs,
-};
-use crate::common::statistics::{WHOLE, check_agree, replicates};
-use crate::common::{
-    Shot, ShotBuilder, add_walls, builder, diffuse, narrow_camera, settings, sphere,
-};
-use bidir::integrator::IntegratorKind;
-use bidir::light::{InfiniteLight, Light};
-use bidir::math::{Affine3A, Vec3};
-use bidir::medium::{Glow, Grid, HenyeyGreenstein, Medium, MediumSides};
-use bidir::spectrum::Rgb;
+use super::{VACUUM, check_furnace, grid, puffs};
+use crate::common::prelude::*;
+use bidir::medium::{Glow, Grid, Medium};
 
 fn glowing(medium: Medium, glow: Glow) -> Medium {
     medium
@@ -23,41 +14,31 @@ fn glowing(medium: Medium, glow: Glow) -> Medium {
 fn glowing_puffs(absorption: Rgb, scattering: Rgb) -> Medium {
     let corners = [Vec3::splat(-1.0), Vec3::splat(1.0)];
     let density = grid(10, corners, puffs);
-    let phase = HenyeyGreenstein::new(0.4).expect("a mean cosine");
-    let smoke = Medium::of_density(coefficients(absorption, scattering), density, phase);
-    glowing(smoke.expect("thin smoke"), Glow::Even([1.0; 3]))
+    let smoke = smoke(coefficients(absorption, scattering), density, 0.4);
+    glowing(smoke, Glow::Even([1.0; 3]))
 }
 
 /// Matter as bright as the sky around it: where L_e and the sky are 1, so is radiance everywhere.
 fn equilibrium(matter: Medium) -> Shot {
     let mut builder = builder(8, 0.0);
-    builder.light(Light::Infinite(InfiniteLight::constant([1.0; 3])));
-    fill(&mut builder, matter);
-    finish(builder)
+    builder.sky([1.0; 3]);
+    builder.fill(matter);
+    builder.build()
 }
 
 /// A grey ball of glowing fog, seen from the vacuum, on a sky of its own brightness.
 fn ball_of_fog() -> Shot {
     let mut builder = builder(8, 0.0);
-    builder.light(Light::Infinite(InfiniteLight::constant([1.0; 3])));
+    builder.sky([1.0; 3]);
     let fog = medium([0.4, 0.2, 0.1], [0.3, 0.5, 1.0], 0.3);
     let inside = builder.medium(glowing(fog, Glow::Even([1.0; 3])));
-    add_ball(
-        &mut builder,
-        sphere(Vec3::new(0.0, 0.0, 2.5), 1.0),
-        VACUUM,
-        inside,
-    );
-    finish(builder)
+    builder.bound(sphere(Vec3::Z * 2.5, 1.0), VACUUM, inside);
+    builder.build()
 }
 
 #[test]
 fn matter_in_equilibrium_is_not_seen() {
-    for integrator in [
-        IntegratorKind::Path,
-        IntegratorKind::Bdpt,
-        IntegratorKind::Lvc,
-    ] {
+    for integrator in FROM_THE_CAMERA {
         let smoke = glowing_puffs([0.2, 0.4, 0.6], [0.6, 0.3, 0.0]);
         check_furnace("puffs", &equilibrium(smoke), integrator, 1024);
         check_furnace("fog", &ball_of_fog(), integrator, 1024);
@@ -69,8 +50,8 @@ fn ball_ahead(inside: Medium) -> Shot {
     let camera = narrow_camera(Vec3::new(0.0, 0.0, -3.0), 4, 0.01);
     let mut builder = ShotBuilder::new(camera, 4);
     let inside = builder.medium(inside);
-    add_ball(&mut builder, sphere(Vec3::ZERO, 1.0), VACUUM, inside);
-    finish(builder)
+    builder.bound(sphere(Vec3::ZERO, 1.0), VACUUM, inside);
+    builder.build()
 }
 
 /// L_e (1 - exp(-2 σ_a)) along the diameter; the sights of the film differ from it by 1e-4.
@@ -83,11 +64,7 @@ fn a_ball_that_only_absorbs_and_glows_has_the_radiance_of_its_diameter() {
     let expected = std::array::from_fn(|i| {
         f64::from(radiance[i]) * -libm::expm1(-2.0 * f64::from(absorption[i]))
     });
-    for integrator in [
-        IntegratorKind::Path,
-        IntegratorKind::Bdpt,
-        IntegratorKind::Lvc,
-    ] {
+    for integrator in FROM_THE_CAMERA {
         let result = replicates(&shot, &settings(integrator, None), 4096);
         let name = format!("diameter, {integrator}");
         check_agree(&name, &result, &result.exactly(expected), &[WHOLE]);
@@ -105,16 +82,10 @@ fn room_with_fire() -> Shot {
         Affine3A::from_translation(corners[0]) * Affine3A::from_scale(corners[1] - corners[0]);
     let color = |i: usize| [(i % 5) as f32, (i % 3) as f32, (i % 2) as f32];
     let radiance = Grid::new([6; 3], (0..216).map(color).collect(), place).expect("a grid");
-    let phase = HenyeyGreenstein::new(0.2).expect("a mean cosine");
-    let smoke = Medium::of_density(coefficients([0.5, 0.8, 1.0], [0.5; 3]), density, phase);
-    let fire = builder.medium(glowing(smoke.expect("thin smoke"), Glow::Grid(radiance)));
-    let ball = sphere(Vec3::new(-0.2, -0.3, 1.2), 0.5);
-    let media = MediumSides {
-        outside: VACUUM,
-        inside: fire,
-    };
-    builder.boundary(ball, media);
-    finish(builder)
+    let smoke = smoke(coefficients([0.5, 0.8, 1.0], [0.5; 3]), density, 0.2);
+    let fire = builder.medium(glowing(smoke, Glow::Grid(radiance)));
+    builder.bound(sphere(Vec3::new(-0.2, -0.3, 1.2), 0.5), VACUUM, fire);
+    builder.build()
 }
 
 #[test]
@@ -122,7 +93,7 @@ fn room_with_fire() -> Shot {
 fn estimators_agree_in_a_room_with_a_fire() {
     let shot = room_with_fire();
     let path = replicates(&shot, &settings(IntegratorKind::Path, Some(2)), 16384);
-    for integrator in &ESTIMATORS[1..] {
+    for integrator in &METHODS[1..] {
         let other = replicates(&shot, &settings(*integrator, Some(2)), 16384);
         check_agree(&format!("fire, {integrator}"), &other, &path, &[WHOLE]);
     }
