@@ -93,6 +93,10 @@ mod strategy;
 pub mod texture;
 pub mod view;
 
+// Tests of units share scenes with those of `tests`, which name the crate.
+#[cfg(test)]
+extern crate self as bidir;
+
 #[cfg(test)]
 pub(crate) mod testing;
 

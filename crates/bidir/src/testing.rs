@@ -6,18 +6,29 @@
 //! Seeds are fixed; `BIDIR_TEST_SEED=n` runs all batteries with others.
 
 mod chi2;
-mod gamma;
+#[path = "../tests/common/materials.rs"]
+pub(crate) mod materials;
 mod math;
+#[path = "../tests/common/scenes.rs"]
+pub(crate) mod scenes;
 
 pub(crate) use chi2::{Domain, Grid};
 
-use crate::camera::{Camera, Perspective, PerspectiveSettings};
-use crate::film::FilmSettings;
-use crate::math::{Affine3A, Vec2, Vec3};
+use crate::math::Vec3;
 use crate::sampler::{Domain as StreamDomain, SampleStream, Sampler, SamplerKind};
-use crate::view::View;
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
+use std::fmt::Display;
+
+/// Names that most tests use.
+pub(crate) mod prelude {
+    pub(crate) use super::materials::*;
+    pub(crate) use super::scenes::*;
+    pub(crate) use super::{Battery, check_close, check_near, samples};
+    pub(crate) use crate::math::{Affine3A, Vec2, Vec3};
+    pub(crate) use crate::sampler::{Dimension, Purpose};
+    pub(crate) use crate::texture::{ColorTexture, FloatTexture};
+}
 
 /// The chance that a battery fails though nothing is wrong, for a seed chosen at random.
 const LEVEL: f64 = 1e-3;
@@ -57,6 +68,16 @@ pub(crate) fn means(
     })
 }
 
+/// Returns independent numbers in `[0, 1)`, of this state other than 0.
+pub(crate) fn numbers(mut state: u64) -> impl FnMut() -> f64 {
+    move || {
+        state ^= state << 13;
+        state ^= state >> 7;
+        state ^= state << 17;
+        (state >> 11) as f64 / (1u64 << 53) as f64
+    }
+}
+
 /// Returns a number of `case`, by FNV-1a, so that a case keeps its numbers when others come and go.
 fn stream_of(case: &str) -> u64 {
     let hash = |hash: u64, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
@@ -84,11 +105,44 @@ pub(crate) fn check_property<S: Strategy>(
 
 /// Checks that two numbers agree up to the relative error `tolerance`.
 #[track_caller]
-pub(crate) fn check_close(actual: f32, expected: f32, tolerance: f32, case: &str) {
+pub(crate) fn check_close(
+    actual: impl Into<f64>,
+    expected: impl Into<f64>,
+    tolerance: f64,
+    case: impl Display,
+) {
+    let [actual, expected] = [actual.into(), expected.into()];
     let bound = tolerance * actual.abs().max(expected.abs());
-    let close = (actual - expected).abs() <= bound;
-    assert!(close, "{case}: {actual} instead of {expected}");
+    check_near(actual, expected, bound, case);
 }
+
+/// Checks that two numbers differ by at most `bound`.
+#[track_caller]
+pub(crate) fn check_near(
+    actual: impl Into<f64>,
+    expected: impl Into<f64>,
+    bound: f64,
+    case: impl Display,
+) {
+    let [actual, expected] = [actual.into(), expected.into()];
+    let is_near = (actual - expected).abs() <= bound;
+    assert!(is_near, "{case}: {actual} instead of {expected}");
+}
+
+/// Checks that each variant of an enum is among examples. A new variant does not compile before it is listed.
+macro_rules! check_variants {
+    ($examples:expr, $kind:ident: $($variant:ident)+) => {
+        let mut missing = vec![$(stringify!($variant)),+];
+        for example in $examples {
+            let found = match example {
+                $($kind::$variant { .. } => stringify!($variant),)+
+            };
+            missing.retain(|name| *name != found);
+        }
+        assert!(missing.is_empty(), "{missing:?}");
+    };
+}
+pub(crate) use check_variants;
 
 /// Many tests of one kind, judged together.
 pub(crate) struct Battery {
@@ -137,10 +191,8 @@ impl Battery {
         let observed = grid.histogram(draws);
         let expected = grid.expected(pdf, observed.iter().sum());
         let total: f64 = expected[..grid.cells()].iter().sum();
-        assert!(
-            total < 1.0 + 1e-3,
-            "{case}: the density integrates to {total}"
-        );
+        let is_density = total < 1.0 + 1e-3;
+        assert!(is_density, "{case}: the density integrates to {total}");
         self.counts(case, &observed, &expected);
     }
 
@@ -195,34 +247,13 @@ impl Battery {
     pub(crate) fn check(self) {
         assert!(!self.cases.is_empty());
         let level = -libm::expm1(libm::log1p(-LEVEL) / self.cases.len() as f64);
-        let failures: Vec<String> = self
-            .cases
-            .iter()
-            .filter_map(|case| case.failure(level))
-            .collect();
-        let report = failures.concat();
-        let count = self.cases.len();
-        println!("{}: {count} cases, seed {}", self.name, seed());
-        assert!(
-            report.is_empty(),
-            "{}, seed {}, level {level:.1e}:{report}",
-            self.name,
-            seed()
-        );
+        let failures = self.cases.iter().filter_map(|case| case.failure(level));
+        let report: String = failures.collect();
+        let (name, count, seed) = (self.name, self.cases.len(), seed());
+        println!("{name}: {count} cases, seed {seed}");
+        let is_fine = report.is_empty();
+        assert!(is_fine, "{name}, seed {seed}, level {level:.1e}:{report}");
     }
-}
-
-/// Returns a view of `film` through a pinhole at the origin that looks along +z, 90 degrees wide.
-pub(crate) fn view(film: FilmSettings) -> View {
-    let camera = Perspective::new(&PerspectiveSettings {
-        world_from_camera: Affine3A::IDENTITY,
-        resolution: Vec2::from(film.resolution.map(|side| side as f32)),
-        screen: [Vec2::new(-1.0, 1.0), Vec2::new(1.0, -1.0)],
-        lens_radius: 0.0,
-        focal_distance: 1.0,
-    });
-    let camera = camera.expect("the map is rigid");
-    View::new(Camera::Perspective(camera), film).expect("the film is not empty")
 }
 
 #[cfg(test)]

@@ -61,48 +61,42 @@ fn contrast(sum: Vec4, cross: Vec4) -> Vec4 {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[track_caller]
-    fn check(actual: f32, expected: f32) {
-        assert!(
-            (actual - expected).abs() < 1e-5,
-            "{actual} instead of {expected}"
-        );
-    }
+    use crate::testing::check_near;
 
     #[test]
-    fn normal_incidence_is_the_square_of_the_index_step() {
-        check(dielectric(1.0, 1.5), 0.04);
-        check(dielectric(-1.0, 1.5), 0.04);
-        let gold = Spectrum::splat(0.2);
-        check(
-            conductor(1.0, gold, Spectrum::splat(3.0))[0],
-            (0.64 + 9.0) / (1.44 + 9.0),
-        );
-    }
-
-    #[test]
-    fn brewster_angle_total_reflection_and_grazing() {
+    fn known_reflectances() {
         // At Brewster's angle, tanθ = η, only the perpendicular part is left.
         let cos_brewster = 1.0 / (1.0f32 + 2.25).sqrt();
         let perpendicular = (2.25f32 - 1.0) / (2.25 + 1.0);
-        check(dielectric(cos_brewster, 1.5), sqr(perpendicular) / 2.0);
-        check(dielectric(-0.5, 1.5), 1.0);
-        check(dielectric(1e-7, 1.5), 1.0);
+        let [eta, k] = [0.2, 3.0].map(Spectrum::splat);
+        // Along a refracted path both directions reflect alike.
+        let cos_t = (1.0f32 - (1.0 - 0.09) / (1.33 * 1.33)).sqrt();
+        for (case, found, expected) in [
+            ("normal", dielectric(1.0, 1.5), 0.04),
+            ("normal, from within", dielectric(-1.0, 1.5), 0.04),
+            (
+                "gold",
+                conductor(1.0, eta, k)[0],
+                (0.64 + 9.0) / (1.44 + 9.0),
+            ),
+            (
+                "Brewster",
+                dielectric(cos_brewster, 1.5),
+                sqr(perpendicular) / 2.0,
+            ),
+            ("total", dielectric(-0.5, 1.5), 1.0),
+            ("grazing", dielectric(1e-7, 1.5), 1.0),
+            ("both ways", dielectric(0.3, 1.33), dielectric(-cos_t, 1.33)),
+        ] {
+            check_near(found, expected, 1e-5, case);
+        }
     }
 
     #[test]
     fn a_conductor_without_absorption_is_a_dielectric() {
         for cos_i in [0.1, 0.4, 0.9] {
             let metal = conductor(cos_i, Spectrum::splat(1.5), Spectrum::ZERO)[0];
-            check(metal, dielectric(cos_i, 1.5));
+            check_near(metal, dielectric(cos_i, 1.5), 1e-5, cos_i);
         }
-    }
-
-    #[test]
-    fn both_directions_along_a_refracted_path_reflect_alike() {
-        let (cos_i, eta) = (0.3f32, 1.33f32);
-        let cos_t = (1.0 - (1.0 - cos_i * cos_i) / (eta * eta)).sqrt();
-        check(dielectric(cos_i, eta), dielectric(-cos_t, eta));
     }
 }

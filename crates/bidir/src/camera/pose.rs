@@ -209,29 +209,16 @@ mod tests {
             }
         };
         let level = frame(Vec3::X, Vec3::Y);
-        let tilted = level.turned(
-            TARGET,
-            Vec3::Y,
-            Rotation {
-                right: 0.7,
-                up: -1.1,
-            },
-        );
-        let mirrored = Pose {
-            right: -tilted.right,
-            ..tilted
-        };
-        [level, tilted, mirrored]
+        let [right, up] = [0.7, -1.1];
+        let tilted = level.turned(TARGET, Vec3::Y, Rotation { right, up });
+        let right = -tilted.right;
+        [level, tilted, Pose { right, ..tilted }]
     }
 
     fn distance(a: &Pose, b: &Pose) -> f32 {
-        let pairs = [
-            (a.origin, b.origin),
-            (a.right, b.right),
-            (a.up, b.up),
-            (a.forward, b.forward),
-        ];
-        pairs.iter().map(|(a, b)| a.distance(*b)).sum()
+        let parts = |p: &Pose| [p.origin, p.right, p.up, p.forward];
+        let pairs = parts(a).into_iter().zip(parts(b));
+        pairs.map(|(a, b)| a.distance(b)).sum()
     }
 
     #[test]
@@ -255,12 +242,9 @@ mod tests {
     fn a_full_turn_comes_home() {
         for start in examples() {
             let mut pose = start;
-            let turn = Rotation {
-                right: 2.0 * PI / 90.0,
-                up: 0.0,
-            };
+            let (right, up) = (2.0 * PI / 90.0, 0.0);
             for _ in 0..90 {
-                pose = pose.turned(TARGET, start.vertical(), turn);
+                pose = pose.turned(TARGET, start.vertical(), Rotation { right, up });
             }
             assert!(distance(&pose, &start) < 1e-3, "{pose:?}");
         }
@@ -280,11 +264,8 @@ mod tests {
     #[test]
     fn no_camera_turns_over() {
         let start = examples()[0];
-        let turn = Rotation {
-            right: 0.0,
-            up: 9.0,
-        };
-        let steep = start.turned(TARGET, Vec3::Y, turn);
+        let (right, up) = (0.0, 9.0);
+        let steep = start.turned(TARGET, Vec3::Y, Rotation { right, up });
         assert!((steep.forward.dot(Vec3::Y) - libm::sinf(STEEPEST)).abs() < 1e-4);
         assert!(steep.up.dot(Vec3::Y) > 0.0);
     }

@@ -175,21 +175,12 @@ fn splats(entries: &[Entry]) -> impl Iterator<Item = (&Contribution, SplatPlace)
 mod tests {
     use super::*;
     use crate::contribution::Term;
-    use crate::film::{Film, FilmSettings, Filter};
+    use crate::film::Film;
     use crate::integrator::{Fate, Link};
-    use crate::light::{InfiniteLight, Light};
     use crate::locus::Locus;
-    use crate::math::{Vec2, Vec3};
     use crate::path::PathSettings;
     use crate::sampler::{Domain, Sampler, SamplerKind};
-    use crate::scene::{Scene, SceneBuilder};
-
-    /// Returns a sky.
-    fn scene() -> Scene {
-        let mut builder = SceneBuilder::new();
-        builder.light(Light::Infinite(InfiniteLight::constant([1.0; 3])));
-        builder.build().unwrap()
-    }
+    use crate::testing::prelude::*;
 
     /// Returns an entry C w of this strategy.
     fn entry((s, t): (usize, usize), c: f32, weight: f32) -> Entry {
@@ -216,9 +207,10 @@ mod tests {
 
     /// Returns the film and the counters after one sample that leaves these behind, the last as a splat.
     fn deposit(entries: &[Entry], splat: Entry) -> (Film, Stats) {
-        let view = crate::testing::view(FilmSettings::new([1, 1], Filter::default()));
-        let (scene, layers) = (scene(), Layers::new(&[], &[], 3).with_raw());
-        let mut film = Film::with_layers(view.film().clone(), layers, u64::MAX).unwrap();
+        let mut builder = builder(1, 0.0);
+        builder.sky([1.0; 3]);
+        let (shot, layers) = (builder.build(), Layers::new(&[], &[], 3).with_raw());
+        let mut film = Film::with_layers(shot.view.film().clone(), layers, u64::MAX).unwrap();
         let buffer = PassBuffer::new(film.settings(), film.layers()).unwrap();
         let stream = Sampler::new(SamplerKind::Independent, 1).stream(Domain::Camera, 0, 0);
         let mut batch = Batch::default();
@@ -226,7 +218,7 @@ mod tests {
         batch.entries.extend(entries);
         batch.splats.push(splat);
         let settings = PathSettings::default();
-        let job = Job::of_own_subpaths(&scene, &view, &settings);
+        let job = shot.job(&settings);
         Deposit {
             job: &job,
             layers: film.layers(),
@@ -240,7 +232,7 @@ mod tests {
     #[track_caller]
     fn check_image(film: &Film, part: Option<usize>, value: f32) {
         let pixel = film.part_pixels(part.unwrap()).next().unwrap();
-        assert!((pixel[0] - value).abs() <= 1e-6 * value, "{pixel:?}");
+        check_close(pixel[0], value, 1e-6, "a pixel");
     }
 
     #[test]
@@ -250,30 +242,17 @@ mod tests {
         let splat = entry((2, 1), 7e30, 1e-30);
         let (film, stats) = deposit(&[fine, large], splat);
         let layers = film.layers();
-        check_image(&film, layers.raw_part(fine.contribution.term.strategy), 2.0);
+        let strategy = |entry: &Entry| entry.contribution.term.strategy;
+        let dropped = |entry: &Entry| stats.strategy_images.get(strategy(entry)).raw_dropped;
+        check_image(&film, layers.raw_part(strategy(&fine)), 2.0);
         for (entry, weighted) in [(fine, 0.5), (large, 3.0), (splat, 7.0)] {
-            check_image(
-                &film,
-                layers.weighted_part(entry.contribution.term.strategy),
-                weighted,
-            );
+            check_image(&film, layers.weighted_part(strategy(&entry)), weighted);
         }
         for entry in [large, splat] {
-            check_image(
-                &film,
-                layers.raw_part(entry.contribution.term.strategy),
-                0.0,
-            );
-            let counts = stats.strategy_images.get(entry.contribution.term.strategy);
-            assert_eq!(counts.raw_dropped, 1);
+            check_image(&film, layers.raw_part(strategy(&entry)), 0.0);
+            assert_eq!(dropped(&entry), 1);
         }
-        assert_eq!(
-            stats
-                .strategy_images
-                .get(fine.contribution.term.strategy)
-                .raw_dropped,
-            0
-        );
+        assert_eq!(dropped(&fine), 0);
     }
 
     #[test]
@@ -286,7 +265,7 @@ mod tests {
             for (strategy, square) in [((0, 3), 25.0), ((1, 2), 16.0), ((2, 1), 25.0)] {
                 let strategy = Strategy::new(strategy.0, strategy.1);
                 let found = stats.strategy_images.get(strategy).squares();
-                assert!((found - square).abs() < 1e-5, "{strategy}: {found}");
+                check_near(found, square, 1e-5, strategy);
             }
         }
     }

@@ -7,15 +7,16 @@ mod power;
 mod tree;
 
 use super::{
-    AreaLight, DistantLight, EmissionSides, InfiniteLight, Light, LightContext, PointLight,
-    SpotLight, VolumeLight,
+    AreaLight, DistantLight, EmissionSample, EmissionSides, InfiniteLight, Light, LightContext,
+    LightSample, Part, SpotLight, VolumeLight,
 };
-use crate::math::{Affine3A, Frame, Mat3, PI, Vec2, Vec3};
-use crate::medium::{Coefficients, Glow, Grid, HenyeyGreenstein, Medium, MediumId};
-use crate::sampler::{Dimension, Purpose, SampleStream};
+use crate::math::{Frame, Mat3, PI};
+use crate::medium::{Glow, Grid, Medium, MediumId};
+use crate::sampler::SampleStream;
 use crate::shape::{Cylinder, Disk, Mesh, Orientation, Shape, Sphere};
 use crate::spectrum::Rgb;
-use crate::texture::{Bilerp, ColorTexture, Image, Mapping};
+use crate::testing::{check_variants, prelude::*};
+use crate::texture::{Bilerp, Image, Mapping};
 use accel::Aabb;
 use std::sync::Arc;
 
@@ -31,19 +32,14 @@ impl Surroundings {
     fn new() -> Self {
         let map = Affine3A::from_mat3_translation(Mat3::from_rotation_x(0.8) * 1.5, Vec3::ONE);
         let stretched = map * Affine3A::from_scale(Vec3::new(1.0, 0.6, 1.4));
-        let front = Orientation::Natural;
+        let (front, limits) = (Orientation::Natural, Vec3::new(-0.2, 0.6, 5.0));
         Self {
             shapes: vec![
                 Shape::Mesh(kite()),
                 Shape::Sphere(Sphere::new(map, 0.5, front)),
                 Shape::Sphere(Sphere::new(stretched, 0.5, Orientation::Reversed)),
                 Shape::Disk(Disk::new(stretched, 0.1, [0.2, 1.0], 5.0, front)),
-                Shape::Cylinder(Cylinder::new(
-                    stretched,
-                    0.4,
-                    Vec3::new(-0.2, 0.6, 5.0),
-                    front,
-                )),
+                Shape::Cylinder(Cylinder::new(stretched, 0.4, limits, front)),
             ],
             media: vec![fire(Glow::Even(COLOR)), gas()],
         }
@@ -61,14 +57,10 @@ impl Surroundings {
 
 /// Two triangles of unlike size in one plane, and one without any.
 fn kite() -> Mesh {
-    let plane = |x: f32, y: f32| Vec3::new(1.0 + x, y, 0.5 * x - 0.25 * y);
+    let corners = [(0.0f32, 0.0f32), (1.0, 0.0), (1.0, 1.0), (-1.0, 2.0)];
+    let plane = |(x, y)| Vec3::new(1.0 + x, y, 0.5 * x - 0.25 * y);
     Mesh {
-        positions: vec![
-            plane(0.0, 0.0),
-            plane(1.0, 0.0),
-            plane(1.0, 1.0),
-            plane(-1.0, 2.0),
-        ],
+        positions: corners.map(plane).to_vec(),
         triangles: vec![[0, 1, 2], [0, 0, 1], [0, 2, 3]],
         ..Mesh::default()
     }
@@ -92,16 +84,13 @@ fn ember(i: usize) -> f32 {
 fn fire(glow: Glow) -> Medium {
     let density = (0..60).map(|i| [ember(i)]).collect();
     let density = Grid::new(FIRE, density, fireplace()).unwrap();
-    let coefficients = Coefficients::new([0.1, 0.2, 0.4], [0.1; 3]).unwrap();
-    let phase = HenyeyGreenstein::new(0.0).unwrap();
-    let smoke = Medium::of_density(coefficients, density, phase).unwrap();
+    let smoke = smoke(coefficients([0.1, 0.2, 0.4], [0.1; 3]), density, 0.0);
     smoke.glowing(glow).unwrap()
 }
 
 /// The same light all over.
 fn gas() -> Medium {
-    let coefficients = Coefficients::new([0.1; 3], [0.0; 3]).unwrap();
-    let gas = Medium::homogeneous(coefficients, HenyeyGreenstein::new(0.0).unwrap());
+    let gas = medium([0.1; 3], [0.0; 3], 0.0);
     gas.glowing(Glow::Even(COLOR)).unwrap()
 }
 
@@ -130,12 +119,8 @@ fn turn() -> Mat3 {
 
 fn examples(surroundings: &Surroundings) -> Vec<(&'static str, Light)> {
     let area = |index: usize, sides| {
-        Light::Area(AreaLight::new(
-            index,
-            &surroundings.shapes[index],
-            COLOR,
-            sides,
-        ))
+        let shape = &surroundings.shapes[index];
+        Light::Area(AreaLight::new(index, shape, COLOR, sides))
     };
     let patterned = |index: usize| {
         let shape = &surroundings.shapes[index];
@@ -152,75 +137,74 @@ fn examples(surroundings: &Surroundings) -> Vec<(&'static str, Light)> {
         Light::Volume(VolumeLight::new(id, medium, Some(bounds)))
     };
     let spot = |angles| Light::Spot(SpotLight::new(position, axis, COLOR, angles));
+    let distant = DistantLight {
+        to_light: -axis,
+        irradiance: COLOR,
+    };
+    let (front, both) = (EmissionSides::Front, EmissionSides::Both);
     vec![
-        ("mesh", area(0, EmissionSides::Front)),
-        ("mesh, both sides", area(0, EmissionSides::Both)),
-        ("ball", area(1, EmissionSides::Front)),
-        ("ellipsoid, reversed", area(2, EmissionSides::Front)),
-        ("ring, both sides", area(3, EmissionSides::Both)),
-        ("cylinder", area(4, EmissionSides::Front)),
+        ("mesh", area(0, front)),
+        ("mesh, both sides", area(0, both)),
+        ("ball", area(1, front)),
+        ("ellipsoid, reversed", area(2, front)),
+        ("ring, both sides", area(3, both)),
+        ("cylinder", area(4, front)),
         ("patterned ring", patterned(3)),
         ("patterned mesh", patterned(0)),
-        (
-            "point",
-            Light::Point(PointLight {
-                position,
-                intensity: COLOR,
-            }),
-        ),
+        ("point", point_light(position)),
         ("spot", spot([0.3, 0.7])),
         ("spot, hard rim", spot([0.5, 0.5])),
         ("spot, narrow", spot([0.001, 0.01])),
         ("spot, wide", spot([1.0, 2.5])),
-        (
-            "distant",
-            Light::Distant(DistantLight {
-                to_light: -axis,
-                irradiance: COLOR,
-            }),
-        ),
-        (
-            "constant environment",
-            Light::Infinite(InfiniteLight::constant(COLOR)),
-        ),
+        ("distant", Light::Distant(distant)),
+        ("constant environment", sky(COLOR)),
         ("environment", Light::Infinite(environment())),
         ("fire", volume(&surroundings.media[0])),
         ("glowing gas", volume(&surroundings.media[1])),
     ]
 }
 
-const VARIANTS: usize = 6;
-
-/// Numbers the variants: a new one does not compile before it has a number here.
-fn variant(light: &Light) -> usize {
-    match light {
-        Light::Area(_) => 0,
-        Light::Point(_) => 1,
-        Light::Spot(_) => 2,
-        Light::Distant(_) => 3,
-        Light::Infinite(_) => 4,
-        Light::Volume(_) => 5,
-    }
-}
-
 #[test]
 fn every_variant_has_an_example() {
-    let mut seen = [false; VARIANTS];
-    for (_, light) in examples(&Surroundings::new()) {
-        seen[variant(&light)] = true;
-    }
-    assert_eq!(seen, [true; VARIANTS]);
+    let surroundings = Surroundings::new();
+    let lights = examples(&surroundings).into_iter().map(|(_, light)| light);
+    check_variants!(lights, Light: Area Point Spot Distant Infinite Volume);
 }
 
-/// Returns the numbers that one emission takes: two and a third for the position, and two for the direction.
+/// Calls `check` with every example.
+fn for_each_light(mut check: impl FnMut(&'static str, &Light, &LightContext<'_>)) {
+    let surroundings = Surroundings::new();
+    for (name, light) in examples(&surroundings) {
+        check(name, &light, &surroundings.context());
+    }
+}
+
+/// Draws a ray of a light with the numbers of one emission: two and a third for the position, and two for the direction.
+fn emission_of(
+    light: &Light,
+    context: &LightContext<'_>,
+    sample: &SampleStream,
+) -> Option<EmissionSample> {
+    let (u_position, u_depth, u_direction) = numbers(sample);
+    light.sample_emission(context, u_position, || u_depth, u_direction)
+}
+
+/// Returns the numbers of an emission.
 fn numbers(sample: &SampleStream) -> (Vec2, f32, Vec2) {
     let get = |purpose| sample.get_2d(Dimension::at(0, purpose));
+    let [u_position, u_direction] = [Purpose::LightPosition, Purpose::LightDirection].map(get);
     let u_depth = sample.get_1d(Dimension::at(0, Purpose::LightDepth));
-    (
-        get(Purpose::LightPosition),
-        u_depth,
-        get(Purpose::LightDirection),
-    )
+    (u_position, u_depth, u_direction)
+}
+
+/// Draws a point of all of a light for a receiver.
+fn point_for(
+    light: &Light,
+    context: &LightContext<'_>,
+    receiver: Vec3,
+    u: Vec2,
+) -> Option<LightSample> {
+    light.sample_next_event(context, Part::Whole, receiver, u, || 0.3)
 }
 
 /// Returns a frame with narrow lights' axis as its pole.

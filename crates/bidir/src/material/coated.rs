@@ -314,9 +314,9 @@ mod tests {
     use super::*;
     use crate::bsdf::TransportMode;
     use crate::bsdf::microfacet::Ggx;
-    use crate::material::RoughnessMapping;
     use crate::math::Vec3;
     use crate::spectrum::{Rgb, Spectrum};
+    use crate::testing::{check_close, check_near, materials};
 
     #[test]
     fn slopes_are_found_between_their_neighbours() {
@@ -330,17 +330,11 @@ mod tests {
 
     /// Makes a base of 0.6 under a haze of this albedo.
     fn haze(albedo: Rgb) -> Bsdf {
-        let roughness = FloatTexture::Constant(0.3);
         let coat = CoatSettings {
-            eta: 1.5,
-            roughness: Roughness {
-                u: roughness.clone(),
-                v: roughness,
-                mapping: RoughnessMapping::Identity,
-            },
             thickness: FloatTexture::Constant(1.0),
             albedo: ColorTexture::Constant(albedo),
             g: FloatTexture::Constant(0.2),
+            ..materials::coat(0.3)
         };
         let material = CoatedDiffuseMaterial::new(coat, ColorTexture::Constant([0.6; 3]));
         material.bsdf(&TexturePoint::of_parameters(Vec2::ZERO), Lanes::Rgb)
@@ -357,10 +351,9 @@ mod tests {
             for turn in 1..3 {
                 let turned = value(&haze([0, 1, 2].map(|i| albedo[(i + turn) % 3])));
                 for i in 0..3 {
-                    let [a, b] = [turned.f[i], as_given.f[(i + turn) % 3]];
-                    assert!((a - b).abs() < 1e-4 * b, "{a} and {b}");
+                    check_close(turned.f[i], as_given.f[(i + turn) % 3], 1e-4, "f");
                 }
-                assert!((turned.pdf - as_given.pdf).abs() < 1e-4 * as_given.pdf);
+                check_close(turned.pdf, as_given.pdf, 1e-4, "density");
             }
         }
     }
@@ -389,8 +382,7 @@ mod tests {
                 let bsdf = CoatedDiffuse::new(&layer, ggx, &[filled; 4], &filled, white);
                 Bsdf::CoatedDiffuse(bsdf).albedo(Vec3::Z)[0]
             });
-            let error = (between - exact).abs();
-            assert!(error < 0.02, "{alpha}: {between} and {exact}");
+            check_near(between, exact, 0.02, alpha);
         }
     }
 }

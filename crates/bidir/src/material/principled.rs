@@ -318,10 +318,9 @@ mod tests {
             handedness: Handedness::Left,
             ..TexturePoint::of_parameters(Vec2::ZERO)
         };
-        let strength = 0.8;
         for texture in [None, Some(ColorTexture::Constant([1.0, 0.5, 1.0]))] {
             let anisotropy = Anisotropy {
-                strength,
+                strength: 0.8,
                 direction,
                 texture,
             };

@@ -3,6 +3,7 @@
 use super::cells::{CubeBox, Line};
 use super::*;
 use crate::math::Affine3A;
+use crate::testing::prelude::{check_close, check_near, coefficients, smoke};
 use accel::Ray;
 use proptest::prelude::*;
 
@@ -32,12 +33,9 @@ fn place() -> Affine3A {
 fn grid() -> Grid<1> {
     let size = [37, 20, 11];
     let at = |i: usize| [i % 37, i / 37 % 20, i / 740];
-    let value = |[x, y, z]: [usize; 3]| {
-        if x < 18 && y < 10 {
-            0.0
-        } else {
-            ((x * 7 + y * 13 + z * 29) % 17) as f32 / 4.0
-        }
+    let value = |[x, y, z]: [usize; 3]| match [x, y] {
+        [..18, ..10] => 0.0,
+        _ => ((x * 7 + y * 13 + z * 29) % 17) as f32 / 4.0,
     };
     let values = (0..37 * 20 * 11).map(|i| [value(at(i))]).collect();
     Grid::new(size, values, place()).expect("a grid")
@@ -45,9 +43,11 @@ fn grid() -> Grid<1> {
 
 /// Absorbs by 1, 0.5 and 2 per density and metre.
 fn medium() -> Medium {
-    let coefficients = Coefficients::new([0.5, 0.25, 1.0], [0.5, 0.25, 1.0]);
-    let phase = HenyeyGreenstein::new(0.0).expect("a mean cosine");
-    Medium::of_density(coefficients.expect("coefficients"), grid(), phase).expect("thin smoke")
+    smoke(
+        coefficients([0.5, 0.25, 1.0], [0.5, 0.25, 1.0]),
+        grid(),
+        0.0,
+    )
 }
 
 fn lanes(rgb: Rgb) -> Spectrum {
@@ -138,16 +138,14 @@ proptest! {
 #[test]
 fn one_cell_is_as_many_equal_cells() {
     let ray = Ray::new(Vec3::new(-3.0, 0.4, 0.2), Vec3::new(1.0, 0.1, 0.05));
-    let phase = HenyeyGreenstein::new(0.0).expect("a mean cosine");
-    let unit = Coefficients::new([1.0; 3], [0.0; 3]).expect("coefficients");
     let depths = [1, 5, 32].map(|n| {
         let grid = Grid::new([n; 3], vec![[1.5]; n * n * n], place()).expect("a grid");
-        let medium = Medium::of_density(unit, grid, phase).expect("thin smoke");
+        let medium = smoke(coefficients([1.0; 3], [0.0; 3]), grid, 0.0);
         medium.depth(&stretch(&ray, [0.0, 10.0]), Detail::Full, lanes)[0]
     });
     assert!(depths[0] > 0.5);
     for depth in depths {
-        assert!((depth / depths[0] - 1.0).abs() < 1e-5, "{depths:?}");
+        check_close(depth, depths[0], 1e-5, "cells");
     }
 }
 
@@ -156,8 +154,7 @@ fn means_of_blocks_are_close_to_the_grid() {
     let medium = medium();
     let ray = Ray::new(Vec3::new(-3.0, 0.4, 0.2), Vec3::new(1.0, 0.1, 0.05));
     let of = |detail| medium.depth(&stretch(&ray, [0.0, 10.0]), detail, lanes)[0];
-    let (full, means) = (of(Detail::Full), of(Detail::Means));
-    assert!((means / full - 1.0).abs() < 0.2, "{means} for {full}");
+    check_close(of(Detail::Means), of(Detail::Full), 0.16, "means");
 }
 
 #[test]
@@ -178,34 +175,30 @@ fn means_of_cells_are_those_of_their_points() {
     let means = grid.cell_means(|i| grid.values()[i][0]);
     let [nx, ny, nz] = grid.size();
     let largest = grid.most();
-    for (x, y, z) in [
-        (0, 0, 0),
-        (18, 10, 5),
-        (36, 19, 10),
-        (20, 0, 3),
-        (17, 9, 10),
+    let counts = Vec3::new(nx as f32, ny as f32, nz as f32);
+    for [x, y, z] in [
+        [0, 0, 0],
+        [18, 10, 5],
+        [36, 19, 10],
+        [20, 0, 3],
+        [17, 9, 10],
     ] {
-        let mut sum = 0.0;
-        for i in 0..512 {
+        let values = (0..512).map(|i| {
             let part = [i & 7, i >> 3 & 7, i >> 6].map(|k| (k as f32 + 0.5) / 8.0);
             let at = Vec3::new(x as f32, y as f32, z as f32) + Vec3::from_array(part);
-            let cube = at / Vec3::new(nx as f32, ny as f32, nz as f32);
-            let [value] = grid.at(grid.world_from_cube().transform_point3(cube));
-            sum += value;
-        }
-        let (found, expected) = (means[(z * ny + y) * nx + x], sum / 512.0);
-        assert!(
-            (found - expected).abs() < 0.01 * largest,
-            "{x} {y} {z}: {found}, {expected}"
-        );
+            grid.at(grid.world_from_cube().transform_point3(at / counts))[0]
+        });
+        let (found, expected) = (means[(z * ny + y) * nx + x], values.sum::<f32>() / 512.0);
+        let bound = 0.01 * f64::from(largest);
+        check_near(found, expected, bound, format!("{x} {y} {z}"));
     }
 }
 
 #[test]
 fn light_that_is_none_or_too_much_is_refused() {
-    let coefficients = Coefficients::new([1e9; 3], [0.0; 3]).unwrap();
+    let thick = coefficients([1e9; 3], [0.0; 3]);
     let phase = HenyeyGreenstein::new(0.0).unwrap();
-    let medium = Medium::homogeneous(coefficients, phase);
+    let medium = Medium::homogeneous(thick, phase);
     let glowing = |radiance| medium.clone().glowing(Glow::Even(radiance));
     for radiance in [[f32::NAN, 1.0, 1.0], [-1.0, 1.0, 1.0], [1e10; 3]] {
         assert!(glowing(radiance).is_none(), "{radiance:?}");
@@ -214,11 +207,10 @@ fn light_that_is_none_or_too_much_is_refused() {
     assert!(!glowing([0.0; 3]).unwrap().glows());
     let light = Grid::new([1, 1, 2], vec![[1.0; 3]; 2], Affine3A::IDENTITY).unwrap();
     assert!(medium.clone().glowing(Glow::Grid(light.clone())).is_none());
-    let thin = Coefficients::new([1.0; 3], [0.0; 3]).unwrap();
     let of_density = |size: [usize; 3]| {
         let values = vec![[1.0]; size.iter().product()];
         let density = Grid::new(size, values, Affine3A::IDENTITY).unwrap();
-        Medium::of_density(thin, density, phase).unwrap()
+        smoke(coefficients([1.0; 3], [0.0; 3]), density, 0.0)
     };
     let glow = || Glow::Grid(light.clone());
     assert!(of_density([1, 2, 1]).glowing(glow()).is_none());

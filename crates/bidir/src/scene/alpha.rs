@@ -170,20 +170,15 @@ impl Factors {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::material::Material;
-    use crate::math::{Affine3A, Vec3};
     use crate::sampler::{Domain, Sampler, SamplerKind};
-    use crate::scene::SceneBuilder;
-    use crate::shape::{Orientation, Shape, Sphere};
-    use crate::texture::{ColorTexture, FloatTexture};
+    use crate::testing::prelude::*;
     use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
     #[test]
     fn products_do_not_depend_on_order() {
         for count in [0_u8, 1, 5, 32, 33, 100] {
-            let numbers: Vec<f32> = (0..count)
-                .map(|i| (1.0 + f32::from(i)) / (1.7 + f32::from(i)))
-                .collect();
+            let number = |i| (1.0 + f32::from(i)) / (1.7 + f32::from(i));
+            let numbers: Vec<f32> = (0..count).map(number).collect();
             let product = |order: &mut dyn Iterator<Item = &f32>| {
                 let mut factors = Factors::default();
                 order.for_each(|&factor| factors.push(factor));
@@ -193,23 +188,19 @@ mod tests {
             let backwards = product(&mut numbers.iter().rev());
             assert_eq!(forwards.to_bits(), backwards.to_bits());
             let expected: f64 = numbers.iter().map(|&x| f64::from(x)).product();
-            assert!((f64::from(forwards) - expected).abs() <= 1e-6 * expected);
+            check_close(forwards, expected, 1e-6, count);
         }
     }
 
     /// Of a hundred veils in the way of a ray, those are passed that it comes to before somebody asks to stop.
     #[test]
     fn stopped_rays_look_at_no_more_surfaces() {
-        let mut builder = SceneBuilder::new();
-        let material = builder.material(Material::Diffuse {
-            reflectance: ColorTexture::Constant([0.5; 3]),
-        });
+        let mut builder = builder(1, 0.0);
         for _ in 0..100 {
-            let sphere = Sphere::new(Affine3A::IDENTITY, 1.0, Orientation::Natural);
-            let veil = builder.shape(Shape::Sphere(sphere), material, None);
+            let veil = builder.add(sphere(Vec3::ZERO, 1.0), diffuse([0.5; 3]));
             builder.alpha(veil, FloatTexture::Constant(1e-3));
         }
-        let scene = builder.build().expect("the scene is valid");
+        let scene = builder.build().scene;
         let ray = accel::Ray::new(Vec3::ZERO, Vec3::Z);
         let stream = Sampler::new(SamplerKind::Independent, 1).stream(Domain::Camera, 0, 0);
         for (stops, expected) in [(false, 100), (true, 1)] {

@@ -1,8 +1,8 @@
 //! χ² = Σ (observed - expected)² / expected, over cells of even measure: whether samples follow the
 //! density that is claimed for them.
 
-use super::gamma;
 use crate::math::{Frame, Vec2, Vec3, sqr};
+use statrs::distribution::{ChiSquared, ContinuousCDF};
 use std::f64::consts::PI;
 
 /// The domain of a density. Each is the image of the unit square under a map of even measure.
@@ -20,14 +20,8 @@ impl Domain {
     /// Returns the sphere of directions, its poles along ±y: the horizon is then a line of every grid, and
     /// the lobes in the xz plane lie where cells are near to square.
     pub(crate) fn sphere() -> Self {
-        Self::Cone(
-            Frame {
-                x: Vec3::Z,
-                y: Vec3::X,
-                z: Vec3::Y,
-            },
-            2.0,
-        )
+        let [x, y, z] = [Vec3::Z, Vec3::X, Vec3::Y];
+        Self::Cone(Frame { x, y, z }, 2.0)
     }
 
     fn measure(&self) -> f64 {
@@ -83,12 +77,20 @@ impl Domain {
 /// A domain cut into cells of even measure.
 #[derive(Clone, Copy)]
 pub(crate) struct Grid {
-    pub(crate) domain: Domain,
-    pub(crate) columns: usize,
-    pub(crate) rows: usize,
+    domain: Domain,
+    columns: usize,
+    rows: usize,
 }
 
 impl Grid {
+    pub(crate) fn new(domain: Domain, [columns, rows]: [usize; 2]) -> Self {
+        Self {
+            domain,
+            columns,
+            rows,
+        }
+    }
+
     pub(crate) fn cells(&self) -> usize {
         self.columns * self.rows
     }
@@ -105,10 +107,8 @@ impl Grid {
     fn cell(&self, point: Vec3) -> usize {
         let p = self.domain.square(point);
         // Rounding may lead out of the square, error much farther: that must not go unseen.
-        assert!(
-            p.min_element() > -1e-3 && p.max_element() < 1.001,
-            "{point} is out of the domain"
-        );
+        let is_inside = p.min_element() > -1e-3 && p.max_element() < 1.001;
+        assert!(is_inside, "{point} is out of the domain");
         let x = ((p.x * self.columns as f32) as usize).min(self.columns - 1);
         let y = ((p.y * self.rows as f32) as usize).min(self.rows - 1);
         y * self.columns + x
@@ -209,55 +209,43 @@ pub(super) fn p_value(observed: &[u64], expected: &[f64]) -> f64 {
         }
     }
     assert!(bins > 1.0, "nothing to compare");
-    gamma::upper_tail((bins - 1.0) / 2.0, statistic / 2.0)
+    ChiSquared::new(bins - 1.0)
+        .expect("freedom is positive")
+        .sf(statistic)
 }
 
 /// Returns `expected` with its first half of the probability raised by the relative `bias`, and the rest
 /// lowered to make up for it.
 pub(super) fn biased(expected: &[f64], bias: f64) -> Vec<f64> {
-    let mut before = 0.0;
-    let mut raised = 0.0;
-    for &probability in expected {
-        if before < 0.5 {
-            raised += probability;
-        }
-        before += probability;
-    }
-    let mut sum = 0.0;
-    let shift = |probability: &f64| {
-        let low = sum < 0.5;
-        sum += probability;
-        probability
-            * if low {
-                1.0 + bias
-            } else {
-                1.0 - bias * raised / (1.0 - raised)
-            }
+    let halves = || {
+        expected.iter().scan(0.0, |before, probability| {
+            let is_first = *before < 0.5;
+            *before += probability;
+            Some((is_first, probability))
+        })
     };
-    expected.iter().map(shift).collect()
+    let first = halves().filter(|(is_first, _)| *is_first);
+    let raised: f64 = first.map(|(_, probability)| probability).sum();
+    let [up, down] = [1.0 + bias, 1.0 - bias * raised / (1.0 - raised)];
+    let shift = |(is_first, probability)| probability * if is_first { up } else { down };
+    halves().map(shift).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[track_caller]
-    fn check_inverse(domain: Domain) {
-        for (x, y) in [(0.1, 0.2), (0.9, 0.6), (0.5, 0.97)] {
-            let back = domain.square(domain.point(x, y));
-            assert!(
-                (back - Vec2::new(x as f32, y as f32)).length() < 1e-4,
-                "{back}"
-            );
-        }
-    }
+    use crate::testing::{check_close, check_near};
 
     #[test]
     fn domains_map_to_the_square_and_back() {
-        check_inverse(Domain::Square);
-        check_inverse(Domain::Disk(0.3));
-        check_inverse(Domain::sphere());
-        check_inverse(Domain::Cone(Frame::from_z(Vec3::new(0.6, 0.0, -0.8)), 1e-4));
+        let cone = Domain::Cone(Frame::from_z(Vec3::new(0.6, 0.0, -0.8)), 1e-4);
+        for domain in [Domain::Square, Domain::Disk(0.3), Domain::sphere(), cone] {
+            for (x, y) in [(0.1, 0.2), (0.9, 0.6), (0.5, 0.97)] {
+                let back = domain.square(domain.point(x, y));
+                let error = back - Vec2::new(x as f32, y as f32);
+                assert!(error.length() < 1e-4, "{back}");
+            }
+        }
     }
 
     #[test]
@@ -265,24 +253,12 @@ mod tests {
         // A step along a slanted line, on top of a peak.
         let step = |p: Vec3| if p.x + 0.3 * p.y < 0.7 { 1.0 } else { 0.2 };
         let peak = |p: Vec3| 1.0 / (1e-3 + sqr(p.x - 0.31) + sqr(p.y - 0.52));
-        let grid = Grid {
-            domain: Domain::Square,
-            columns: 4,
-            rows: 4,
-        };
-        let expected: f64 = grid.expected(step, 1 << 20)[..16].iter().sum();
-        assert!((expected - (0.55 + 0.2 * 0.45)).abs() < 1e-4, "{expected}");
-        let coarse = grid.expected(peak, 1 << 20);
-        let fine = Grid {
-            columns: 64,
-            rows: 64,
-            ..grid
-        }
-        .expected(peak, 1 << 20);
-        let cell: f64 = (0..16)
-            .flat_map(|y| (0..16).map(move |x| y * 64 + x))
-            .map(|i| fine[i])
-            .sum();
-        assert!((coarse[0] / cell - 1.0).abs() < 1e-5);
+        let [coarse, fine] = [4, 64].map(|n| Grid::new(Domain::Square, [n, n]));
+        let expected: f64 = coarse.expected(step, 1 << 20)[..16].iter().sum();
+        check_near(expected, 0.55 + 0.2 * 0.45, 1e-4, "step");
+        let fine = fine.expected(peak, 1 << 20);
+        let cells = (0..16).flat_map(|y| &fine[64 * y..64 * y + 16]);
+        let (sum, cell): (f64, _) = (cells.sum(), coarse.expected(peak, 1 << 20)[0]);
+        check_close(cell, sum, 1e-5, "peak");
     }
 }

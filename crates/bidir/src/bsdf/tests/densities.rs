@@ -5,11 +5,7 @@ use crate::testing::{Battery, Domain, Grid, samples};
 /// Directions follow the density, and the part that it lacks to 1 is lost below the surface.
 #[track_caller]
 fn check(is_taken: impl Fn(&str) -> bool) {
-    let grid = Grid {
-        domain: Domain::sphere(),
-        columns: 20,
-        rows: 40,
-    };
+    let grid = Grid::new(Domain::sphere(), [20, 40]);
     let mut battery = Battery::new("BSDF densities");
     for (name, bsdf, wo) in cases().filter(|(_, bsdf, _)| !bsdf.is_delta()) {
         // From below a two-sided surface looks the same.
@@ -22,12 +18,8 @@ fn check(is_taken: impl Fn(&str) -> bool) {
             // The part of a Dirac lobe is not in the density.
             (!drawn.is_delta).then_some(drawn.wi)
         });
-        battery.chi2(
-            &name,
-            &grid,
-            |wi| bsdf.eval(wo, wi, TransportMode::Radiance).pdf,
-            draws,
-        );
+        let pdf = |wi| bsdf.eval(wo, wi, TransportMode::Radiance).pdf;
+        battery.chi2(&name, &grid, pdf, draws);
     }
     battery.check();
 }

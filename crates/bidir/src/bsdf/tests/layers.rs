@@ -15,8 +15,6 @@ use crate::spectrum::Spectrum;
 use crate::testing::{Battery, means};
 use std::fmt::Write;
 
-/// The index of most layers here.
-const ETA: f32 = 1.5;
 /// The relative error of a reflectance that a closed form may have where it is exact.
 const TOLERANCE: f64 = 0.005;
 /// Sets of walks for each direction, and walks of a set.
@@ -28,7 +26,7 @@ const WALKS_SHOWN: [u64; 2] = [64, 1 << 10];
 const COSINES: [f32; 3] = [0.2, 0.6, 1.0];
 
 /// A clear layer of the default thickness.
-pub(super) const VARNISH: Stack = Stack {
+const VARNISH: Stack = Stack {
     eta: 1.5,
     alpha: 0.0,
     thickness: 0.01,
@@ -38,53 +36,62 @@ pub(super) const VARNISH: Stack = Stack {
 };
 
 impl Stack {
-    fn filling(&self) -> InterlayerMedium {
-        InterlayerMedium {
-            thickness: self.thickness as f32,
-            albedo: Spectrum::splat(self.albedo as f32),
-            g: self.g as f32,
+    /// Returns a clear layer over a diffuse base.
+    pub(super) fn varnish([eta, alpha]: [f64; 2], rho: f64, thickness: f64) -> Self {
+        Self {
+            eta,
+            alpha,
+            thickness,
+            base: Base::Diffuse(rho),
+            ..VARNISH
         }
     }
 
     /// Returns the closed form of it.
     pub(super) fn bsdf(&self) -> Bsdf {
-        let filling = self.filling();
+        let layer = Layer::new(self.eta as f32, self.alpha as f32);
+        let ggx = Ggx::new(self.alpha as f32, self.alpha as f32);
+        let filling = InterlayerMedium {
+            thickness: self.thickness as f32,
+            albedo: Spectrum::splat(self.albedo as f32),
+            g: self.g as f32,
+        };
         match self.base {
-            Base::Diffuse(rho) => varnish(
-                [self.eta, self.alpha].map(|x| x as f32),
-                rho as f32,
-                &filling,
-            ),
+            Base::Diffuse(rho) => {
+                let slab = Slab::new(&layer, filling.thickness, filling.g);
+                let filled = slab.tables(&layer, &[filling.albedo[0]])[0];
+                let (all, rho) = ([filled; 4], Spectrum::splat(rho as f32));
+                Bsdf::CoatedDiffuse(CoatedDiffuse::new(&layer, ggx, &all, &filled, rho))
+            }
             Base::Metal { eta, k, alpha } => {
-                let alphas = [self.alpha as f32, alpha as f32];
-                lacquer(self.eta as f32, alphas, [eta as f32, k as f32], &filling)
+                let [eta, k] = [eta, k].map(|index| Spectrum::splat(index as f32));
+                let reflections = Reflections::new(&layer, alpha as f32, filling.thickness);
+                let facets = Ggx::new(alpha as f32, alpha as f32);
+                let metal = CoatedMetal {
+                    eta,
+                    k,
+                    ggx: facets,
+                };
+                let lacquered = CoatedConductor::new(&layer, &reflections, ggx, &filling, metal);
+                Bsdf::CoatedConductor(lacquered)
             }
         }
     }
 
     /// Returns a name, and the first columns of the table.
     pub(super) fn name(&self) -> String {
-        let Self {
-            eta,
-            alpha,
-            thickness,
-            albedo,
-            g,
-            base,
-        } = *self;
-        match base {
-            Base::Diffuse(rho) => {
-                format!("coateddiffuse,{eta},{alpha},{rho},,,{thickness},{albedo},{g}")
-            }
+        let (eta, alpha) = (self.eta, self.alpha);
+        let filling = format!("{},{},{}", self.thickness, self.albedo, self.g);
+        match self.base {
+            Base::Diffuse(rho) => format!("coateddiffuse,{eta},{alpha},{rho},,,{filling}"),
             Base::Metal {
                 eta: n,
                 k,
                 alpha: metal,
-            } => format!(
-                "coatedconductor,{eta},{alpha},,{metal},{:.3}+{:.3}i,{thickness},{albedo},{g}",
-                n * eta,
-                k * eta
-            ),
+            } => {
+                let index = format!("{:.3}+{:.3}i", n * eta, k * eta);
+                format!("coatedconductor,{eta},{alpha},,{metal},{index},{filling}")
+            }
         }
     }
 
@@ -108,54 +115,6 @@ fn albedo_of_draws(bsdf: &Bsdf, wo: Vec3) -> f32 {
         .filter_map(draw)
         .map(|drawn| f64::from(drawn.weight[0]));
     (weights.sum::<f64>() / n as f64) as f32
-}
-
-/// Returns the part of even light that draws of `bsdf` scatter: ∫ 2μ albedo dμ.
-pub(super) fn average(bsdf: &Bsdf) -> f64 {
-    let n = 64;
-    let at = |i: u8| ((f32::from(i) + 0.5) / f32::from(n)).sqrt();
-    let albedos = (0..n).map(|i| f64::from(albedo_of_draws(bsdf, direction(at(i), 0.3))));
-    albedos.sum::<f64>() / f64::from(n)
-}
-
-fn filling(thickness: f32, albedo: f32, g: f32) -> InterlayerMedium {
-    InterlayerMedium {
-        thickness,
-        albedo: Spectrum::splat(albedo),
-        g,
-    }
-}
-
-fn varnish([eta, alpha]: [f32; 2], rho: f32, filling: &InterlayerMedium) -> Bsdf {
-    let (layer, ggx) = (Layer::new(eta, alpha), Ggx::new(alpha, alpha));
-    let slab = Slab::new(&layer, filling.thickness, filling.g);
-    let filled = slab.tables(&layer, &[filling.albedo[0]])[0];
-    let rho = Spectrum::splat(rho);
-    Bsdf::CoatedDiffuse(CoatedDiffuse::new(&layer, ggx, &[filled; 4], &filled, rho))
-}
-
-/// Returns a metal of `index`, relative to the layer.
-fn lacquer(
-    eta: f32,
-    [alpha, metal]: [f32; 2],
-    index: [f32; 2],
-    filling: &InterlayerMedium,
-) -> Bsdf {
-    let layer = Layer::new(eta, alpha);
-    let reflections = Reflections::new(&layer, metal, filling.thickness);
-    let metal = CoatedMetal {
-        eta: Spectrum::splat(index[0]),
-        k: Spectrum::splat(index[1]),
-        ggx: Ggx::new(metal, metal),
-    };
-    let ggx = Ggx::new(alpha, alpha);
-    Bsdf::CoatedConductor(CoatedConductor::new(
-        &layer,
-        &reflections,
-        ggx,
-        filling,
-        metal,
-    ))
 }
 
 /// Returns the reflectances of the closed form of `stack`, one for each of [`COSINES`]; prints a line of the
@@ -192,37 +151,25 @@ fn compare(battery: &mut Battery, stack: &Stack, cosines: &[f32], walks: [u64; 2
 #[test]
 fn a_varnish_reflects_what_walks_between_its_surfaces_do() {
     let mut battery = Battery::new("reflectance of varnish");
-    let stack = |eta, alpha, rho, thickness| Stack {
-        eta,
-        alpha,
-        thickness,
-        base: Base::Diffuse(rho),
-        ..VARNISH
-    };
-    for (eta, alpha, rho, thickness) in [
-        (1.5, 0.0, 0.5, 0.0),
-        (1.5, 0.0, 0.9, 0.0),
-        (1.5, 0.0, 0.2, 0.01),
-        (1.5, 0.0, 0.5, 0.01),
-        (1.5, 0.0, 0.9, 0.01),
-        (1.3, 0.0, 0.9, 0.01),
-        (1.5, 0.0, 0.9, 0.5),
-        (1.5, 0.05, 0.5, 0.01),
-        (1.5, 0.1, 0.9, 0.01),
+    for (eta, alpha, rho, thickness, cosines, walks) in [
+        (1.5, 0.0, 0.5, 0.0, &COSINES[..], WALKS),
+        (1.5, 0.0, 0.9, 0.0, &COSINES, WALKS),
+        (1.5, 0.0, 0.2, 0.01, &COSINES, WALKS),
+        (1.5, 0.0, 0.5, 0.01, &COSINES, WALKS),
+        (1.5, 0.0, 0.9, 0.01, &COSINES, WALKS),
+        (1.3, 0.0, 0.9, 0.01, &COSINES, WALKS),
+        (1.5, 0.0, 0.9, 0.5, &COSINES, WALKS),
+        (1.5, 0.05, 0.5, 0.01, &COSINES, WALKS),
+        (1.5, 0.1, 0.9, 0.01, &COSINES, WALKS),
+        (1.5, 0.3, 0.2, 0.01, &[0.2], WALKS_OF_ROUGH),
+        (1.2, 0.3, 0.9, 0.01, &[0.6], WALKS_OF_ROUGH),
+        (2.0, 0.3, 0.9, 0.01, &[0.2], WALKS_OF_ROUGH),
+        (1.5, 0.3, 0.9, 0.5, &[0.2], WALKS_OF_ROUGH),
+        (1.5, 0.6, 0.5, 0.1, &[0.6], WALKS_OF_ROUGH),
+        (1.5, 1.0, 0.9, 0.01, &[0.2], WALKS_OF_ROUGH),
     ] {
-        let stack = stack(eta, alpha, rho, thickness);
-        compare(&mut battery, &stack, &COSINES, WALKS);
-    }
-    for (eta, alpha, rho, thickness, cos) in [
-        (1.5, 0.3, 0.2, 0.01, 0.2),
-        (1.2, 0.3, 0.9, 0.01, 0.6),
-        (2.0, 0.3, 0.9, 0.01, 0.2),
-        (1.5, 0.3, 0.9, 0.5, 0.2),
-        (1.5, 0.6, 0.5, 0.1, 0.6),
-        (1.5, 1.0, 0.9, 0.01, 0.2),
-    ] {
-        let stack = stack(eta, alpha, rho, thickness);
-        compare(&mut battery, &stack, &[cos], WALKS_OF_ROUGH);
+        let stack = Stack::varnish([eta, alpha], rho, thickness);
+        compare(&mut battery, &stack, cosines, walks);
     }
     // Thin haze.
     let haze = Stack {
@@ -254,12 +201,9 @@ fn a_layer_that_scatters_reflects_about_what_walks_do() {
         (0.1, 0.0, 2.0, 1.0, -0.3),
     ] {
         let stack = Stack {
-            alpha,
-            thickness,
             albedo,
             g,
-            base: Base::Diffuse(rho),
-            ..VARNISH
+            ..Stack::varnish([1.5, alpha], rho, thickness)
         };
         check_within(&stack, 0.04);
     }
@@ -300,25 +244,29 @@ fn a_lacquer_reflects_about_what_walks_between_its_surfaces_do() {
 /// Checks that a white base under a layer that absorbs nothing scatters between `least` and all of
 /// the light from every direction.
 #[track_caller]
-fn check_furnace(bsdf: &Bsdf, least: f32, case: &str) {
-    let mut line = case.to_owned();
+fn check_furnace(stack: &Stack, least: f32) {
+    let (bsdf, name) = (stack.bsdf(), stack.name());
     for cos in [0.05, 0.1, 0.2, 0.4, 0.7, 1.0] {
-        let part = albedo_of_draws(bsdf, direction(cos, 0.3));
-        let _ = write!(line, ",{part:.3}");
-        assert!(
-            (least..1.003).contains(&part),
-            "{case}, cosine {cos}: {part}"
-        );
-    }
-    if std::env::var_os("BIDIR_TEST_SHOW").is_some() {
-        println!("{line}");
+        let part = albedo_of_draws(&bsdf, direction(cos, 0.3));
+        let is_kept = (least..1.003).contains(&part);
+        assert!(is_kept, "{name}, cosine {cos}: {part}");
     }
 }
 
 #[test]
 fn white_bases_under_clear_layers_vanish_in_a_furnace_but_for_light_between_facets() {
-    let clear = filling(0.0, 0.0, 0.0);
-    let diffuser = filling(0.5, 1.0, 0.0);
+    let white = |alpha, thickness, base| Stack {
+        alpha,
+        thickness,
+        albedo: if thickness > 0.0 { 1.0 } else { 0.0 },
+        base,
+        ..VARNISH
+    };
+    let metal = |alpha| Base::Metal {
+        eta: 0.0,
+        k: 1.0,
+        alpha,
+    };
     for (alpha, least) in [
         (0.0, 0.997),
         (0.05, 0.9),
@@ -327,22 +275,10 @@ fn white_bases_under_clear_layers_vanish_in_a_furnace_but_for_light_between_face
         (0.6, 0.3),
         (1.0, 0.2),
     ] {
-        for filling in [&clear, &diffuser] {
-            let case = format!("coateddiffuse,{alpha},,{}", filling.thickness);
-            check_furnace(&varnish([ETA, alpha], 1.0, filling), least, &case);
+        for thickness in [0.0, 0.5] {
+            check_furnace(&white(alpha, thickness, Base::Diffuse(1.0)), least);
         }
-        let case = format!("coatedconductor,{alpha},0.3,0");
-        let white = [0.0, 1.0];
-        check_furnace(
-            &lacquer(ETA, [alpha, 0.3], white, &clear),
-            least * 0.6,
-            &case,
-        );
+        check_furnace(&white(alpha, 0.0, metal(0.3)), least * 0.6);
     }
-    let white = [0.0, 1.0];
-    check_furnace(
-        &lacquer(ETA, [0.0; 2], white, &clear),
-        0.999,
-        "coatedconductor,0,0,0",
-    );
+    check_furnace(&white(0.0, 0.0, metal(0.0)), 0.999);
 }

@@ -45,6 +45,16 @@ pub(super) struct Leaving {
     pub(super) early: f64,
 }
 
+/// An event in the layer.
+pub(super) enum Met {
+    /// Light, with its direction before, at a particle of the filling, which has absorbed its part.
+    Particle(Light),
+    /// The part that reaches the base.
+    Base(f64),
+    /// The part that leaves through the interface.
+    Interface(f64),
+}
+
 /// A direction that light leaves an interface along, and the part that does.
 pub(super) type Ray = (DVec3, f64);
 
@@ -63,26 +73,25 @@ impl Stack {
             height: self.thickness,
         });
         for event in 1..MOST {
-            let Some(light) = state else {
+            let Some((met, next)) = state.and_then(|light| self.event(light, stream, event)) else {
                 break;
             };
-            let early = if event <= PBRT_EVENTS { 1.0 } else { 0.0 };
-            state = self.event(light, stream, event, |out| {
+            if let Met::Interface(out) = met {
                 leaving.all += out;
-                leaving.early += out * early;
-            });
+                leaving.early += if event <= PBRT_EVENTS { out } else { 0.0 };
+            }
+            state = next;
         }
         leaving
     }
 
-    /// Returns the next event of `light`. None: nothing goes on.
-    fn event(
+    /// Returns the next event of `light`, and what goes on. None: the light ended before.
+    pub(super) fn event(
         &self,
         light: Light,
         stream: &SampleStream,
         event: usize,
-        mut leaves: impl FnMut(f64),
-    ) -> Option<Light> {
+    ) -> Option<(Met, Option<Light>)> {
         let light = light.roulette(stream.get_1d(Dimension::at(event, Purpose::Roulette)))?;
         let Light { w, part, height } = light;
         let u = pair(stream, event, Purpose::Lens);
@@ -96,33 +105,29 @@ impl Stack {
             let [u_flight, _] = pair(stream, event, Purpose::Scatter);
             let flight = -libm::log(1.0 - u_flight) * w.z.abs();
             if flight < way {
-                return Some(Light {
-                    w: henyey_greenstein(w, self.g, u),
-                    part: part * self.albedo,
-                    height: height + flight.copysign(w.z),
-                });
+                let (part, height) = (part * self.albedo, height + flight.copysign(w.z));
+                let met = Light { w, part, height };
+                let w = henyey_greenstein(w, self.g, u);
+                return Some((Met::Particle(met), Some(Light { w, ..met })));
             }
         } else {
             part *= libm::exp(-way / w.z.abs());
         }
+        let going_on = |w, share, height| Light {
+            w,
+            part: part * share,
+            height,
+        };
         if w.z < 0.0 {
-            let (w, reflectance) = self.base.reflect(-w, u)?;
-            return Some(Light {
-                w,
-                part: part * reflectance,
-                height: 0.0,
-            });
+            let reflected = self.base.reflect(-w, u);
+            let next = reflected.map(|(w, reflectance)| going_on(w, reflectance, 0.0));
+            return Some((Met::Base(part), next));
         }
         // From within, seen in the frame that is mirrored at a point.
         let (reflected, refracted) = self.interface(w, 1.0 / self.eta, u);
-        if let Some((_, share)) = refracted {
-            leaves(part * share);
-        }
-        reflected.map(|(w, share)| Light {
-            w: -w,
-            part: part * share,
-            height: self.thickness,
-        })
+        let next = reflected.map(|(w, share)| going_on(-w, share, self.thickness));
+        let leaving = refracted.map_or(0.0, |(_, share)| part * share);
+        Some((Met::Interface(leaving), next))
     }
 
     /// Returns the rays that a facet sends light from `v` to, which is above it, with `eta` the index below
@@ -147,11 +152,9 @@ impl Base {
         match self {
             Self::Diffuse(reflectance) => {
                 let sin = u[0].sqrt();
-                let (y, x) = (libm::sin(TAU * u[1]), libm::cos(TAU * u[1]));
-                Some((
-                    DVec3::new(sin * x, sin * y, (1.0 - u[0]).sqrt()),
-                    reflectance,
-                ))
+                let (y, x) = libm::sincos(TAU * u[1]);
+                let w = DVec3::new(sin * x, sin * y, (1.0 - u[0]).sqrt());
+                Some((w, reflectance))
             }
             Self::Metal { eta, k, alpha } => {
                 let m = visible_facet(alpha, v, u);
@@ -209,12 +212,9 @@ fn metal_reflectance(cos: f64, eta: f64, k: f64) -> f64 {
     // η cosθ_t = √(η² - sin²θ), in the quadrant of a wave that fades.
     let (re, im) = (eta * eta - k * k - (1.0 - cos * cos), 2.0 * eta * k);
     let modulus = (re * re + im * im).sqrt();
-    let (a, b) = (
-        ((modulus + re) / 2.0).max(0.0).sqrt(),
-        ((modulus - re) / 2.0).max(0.0).sqrt(),
-    );
-    let ratio =
-        |n: [f64; 2], d: [f64; 2]| (n[0] * n[0] + n[1] * n[1]) / (d[0] * d[0] + d[1] * d[1]);
+    let [a, b] = [modulus + re, modulus - re].map(|sum| (sum / 2.0).max(0.0).sqrt());
+    let square = |z: [f64; 2]| z[0] * z[0] + z[1] * z[1];
+    let ratio = |n, d| square(n) / square(d);
     let perpendicular = ratio([cos - a, b], [cos + a, b]);
     // η² cosθ against η cosθ_t.
     let (x, y) = ((eta * eta - k * k) * cos, 2.0 * eta * k * cos);

@@ -7,105 +7,64 @@
 //! [`simulation`](super::simulation) has the sum over all.
 
 use super::direction;
-use super::layers::{VARNISH, average};
 use super::simulation::{
-    Base, Light, Stack, fresnel, henyey_greenstein, henyey_greenstein_value, pair, unshadowed,
+    Base, Light, Met, Stack, fresnel, henyey_greenstein_value, pair, unshadowed,
 };
 use crate::bsdf::TransportMode;
-use crate::math::{Vec3, warp};
-use crate::sampler::{Dimension, Purpose, SampleStream};
-use crate::testing::{Battery, means, samples};
+use crate::math::Vec3;
+use crate::sampler::{Purpose, SampleStream};
+use crate::testing::{Battery, means};
 use glam::DVec3;
 use std::f64::consts::PI;
 
 /// Events after which no walk here has light left.
 const ENDLESS: usize = 400;
-/// pbrt-v4's `maxdepth`, unless a file says otherwise.
-const DEFAULT: usize = 10;
 /// Sets of walks for each pair of directions, and walks of a set.
 const WALKS: [u64; 2] = [64, 1 << 11];
 /// The relative error that the closed form may have.
 const TOLERANCE: f64 = 0.01;
 
 impl Stack {
-    /// Returns an estimate of f for light along `wi` seen along `wo`, by a walk of at most `most` events.
-    fn layered(&self, pair: [DVec3; 2], most: usize, stream: &SampleStream) -> f64 {
-        self.interface_value(pair[0], pair[1]) + self.within(pair, most, stream)
+    /// Returns an estimate of f for light along `wi` seen along `wo`, by a walk.
+    fn layered(&self, pair: [DVec3; 2], stream: &SampleStream) -> f64 {
+        self.interface_value(pair[0], pair[1]) + self.within(pair, stream)
     }
 
     /// Returns the part of f that enters the layer.
-    fn within(&self, [wo, wi]: [DVec3; 2], most: usize, stream: &SampleStream) -> f64 {
+    fn within(&self, [wo, wi]: [DVec3; 2], stream: &SampleStream) -> f64 {
         let at = |purpose| pair(stream, 0, purpose);
         let (_, seen) = self.interface(wo, self.eta, at(Purpose::Lens));
         let (_, lit) = self.interface(wi, self.eta, at(Purpose::LightDirection));
         let (Some((w, part)), Some(lit)) = (seen, lit) else {
             return 0.0;
         };
-        let mut light = Light {
+        let mut state = Some(Light {
             w,
             part: part / (self.eta * self.eta),
             height: self.thickness,
-        };
+        });
         let mut within = 0.0;
-        for event in 1..=most {
-            let u = stream.get_1d(Dimension::at(event, Purpose::Roulette));
-            let Some(survivor) = light.roulette(u) else {
+        for event in 1..=ENDLESS {
+            let Some((met, next)) = state.and_then(|light| self.event(light, stream, event)) else {
                 break;
             };
-            let (seen, next) = self.layer_event(survivor, lit, pairs(stream, event));
-            within += seen;
-            let Some(next) = next else {
-                break;
-            };
-            light = next;
+            within += self.shown(&met, lit);
+            state = next;
         }
         within
     }
 
-    /// What the next event of `light` shows of the light that comes down along `lit`, and how the walk goes on.
-    fn layer_event(
-        &self,
-        light: Light,
-        (down, lit): (DVec3, f64),
-        [u_flight, u]: [[f64; 2]; 2],
-    ) -> (f64, Option<Light>) {
-        let Light { w, part, height } = light;
-        let way = if w.z > 0.0 {
-            self.thickness - height
-        } else {
-            height
-        };
-        let left = |way: f64, w: DVec3| libm::exp(-way / w.z.abs());
-        let mut part = part;
-        if self.albedo > 0.0 {
-            let flight = -libm::log(1.0 - u_flight[0]) * w.z.abs();
-            if flight < way {
-                let height = height + flight.copysign(w.z);
-                let part = part * self.albedo;
+    /// Returns what an event shows of the light that comes down along `lit`.
+    fn shown(&self, met: &Met, (down, lit): (DVec3, f64)) -> f64 {
+        let left = |way: f64| lit * libm::exp(-way / down.z.abs());
+        match *met {
+            Met::Particle(Light { w, part, height }) => {
                 let phase = henyey_greenstein_value(w.dot(-down), self.g);
-                let seen = part * phase * lit / down.z.abs() * left(self.thickness - height, down);
-                let w = henyey_greenstein(w, self.g, u);
-                return (seen, Some(Light { w, part, height }));
+                part * phase / down.z.abs() * left(self.thickness - height)
             }
-        } else {
-            part *= left(way, w);
+            Met::Base(part) => part * left(self.thickness) * self.base.value(),
+            Met::Interface(_) => 0.0,
         }
-        if w.z < 0.0 {
-            let seen = part * lit * left(self.thickness, down) * self.base.value();
-            let next = self.base.reflect(-w, u).map(|(w, reflectance)| Light {
-                w,
-                part: part * reflectance,
-                height: 0.0,
-            });
-            return (seen, next);
-        }
-        let (reflected, _) = self.interface(w, 1.0 / self.eta, u);
-        let next = reflected.map(|(w, share)| Light {
-            w: -w,
-            part: part * share,
-            height: self.thickness,
-        });
-        (0.0, next)
     }
 
     /// Returns f of the interface's own reflection; zero where it is smooth.
@@ -133,10 +92,6 @@ impl Base {
     }
 }
 
-fn pairs(stream: &SampleStream, event: usize) -> [[f64; 2]; 2] {
-    [Purpose::Scatter, Purpose::Lens].map(|purpose| pair(stream, event, purpose))
-}
-
 /// Returns the pairs of directions: steep, oblique, grazing, and near the mirrored one.
 fn directions() -> [[Vec3; 2]; 4] {
     [
@@ -158,86 +113,15 @@ fn a_varnish_shows_what_stochastic_layers_of_any_depth_do() {
         (1.5, 0.3, 0.2, 0.0),
         (1.8, 0.5, 0.8, 0.1),
     ] {
-        let stack = Stack {
-            eta,
-            alpha,
-            thickness,
-            base: Base::Diffuse(rho),
-            ..VARNISH
-        };
+        let stack = Stack::varnish([eta, alpha], rho, thickness);
         let bsdf = stack.bsdf();
         for (i, [wo, wi]) in directions().into_iter().enumerate() {
             let closed = f64::from(bsdf.eval(wo, wi, TransportMode::Radiance).f[0]);
             let case = format!("{}, pair {i}", stack.name());
             let both = [wo, wi].map(Vec3::as_dvec3);
-            let walked = means(&case, WALKS, |stream| stack.layered(both, ENDLESS, stream));
+            let walked = means(&case, WALKS, |stream| stack.layered(both, stream));
             battery.mean_within(&case, walked, closed, TOLERANCE);
         }
     }
     battery.check();
-}
-
-/// Returns the reflectance of `stack` over all directions, by f of stochastic layers that end after `most` events.
-fn layered_reflectance(stack: &Stack, most: usize) -> f64 {
-    let n = 1 << 16;
-    let name = stack.name();
-    let drawn = samples(&name, n).map(|stream| {
-        let get = |purpose| warp::cosine_hemisphere(stream.get_2d(Dimension::at(1000, purpose)));
-        let [wo, wi] = [Purpose::Lens, Purpose::Scatter].map(|purpose| get(purpose).as_dvec3());
-        if wo.z.min(wi.z) < 1e-6 {
-            return 0.0;
-        }
-        let (reflected, _) = stack.interface(wo, stack.eta, pair(&stream, 1001, Purpose::Lens));
-        let part = reflected.map_or(0.0, |(_, part)| part);
-        part + PI * stack.within([wo, wi], most, &stream)
-    });
-    drawn.sum::<f64>() / n as f64
-}
-
-/// Where coats are darker than in renderers whose interfaces are clear and let light through as if they were smooth:
-/// `thickness` and facets are pbrt-v4's model, and the end of its walks makes it darker than bidir.
-#[test]
-fn the_darkness_of_coats_is_pbrts_own() {
-    for (rho, alpha) in [
-        (0.5, 0.0),
-        (0.5, 0.1),
-        (0.5, 0.3),
-        (0.9, 0.0),
-        (0.9, 0.1),
-        (0.9, 0.3),
-    ] {
-        let stack = |alpha, thickness| Stack {
-            alpha,
-            thickness,
-            base: Base::Diffuse(rho),
-            ..VARNISH
-        };
-        let closed = |stack: &Stack| average(&stack.bsdf());
-        let (clear, deep, own) = (stack(0.0, 0.0), stack(0.0, 0.01), stack(alpha, 0.01));
-        let [clear, deep, here] = [clear, deep, own].each_ref().map(closed);
-        let [endless, ended] = [ENDLESS, DEFAULT].map(|most| layered_reflectance(&own, most));
-        if std::env::var_os("BIDIR_TEST_SHOW").is_some() {
-            println!(
-                "darkness,{rho},{alpha},{clear:.4},{deep:.4},{here:.4},{endless:.4},{ended:.4}"
-            );
-        }
-        assert!(
-            (here / endless - 1.0).abs() < 0.012,
-            "{rho} {alpha}: {here} {endless}"
-        );
-        assert!(ended < endless && deep < clear, "{rho} {alpha}");
-    }
-}
-
-#[test]
-fn a_layer_without_interface_shows_its_base() {
-    let stack = Stack {
-        eta: 1.0,
-        thickness: 0.0,
-        ..VARNISH
-    };
-    let [wo, wi] = directions()[1].map(Vec3::as_dvec3);
-    let stream = samples("matched", 1).next().expect("one sample");
-    let value = stack.layered([wo, wi], DEFAULT, &stream);
-    assert!((value - 0.5 / PI).abs() < 1e-9, "{value}");
 }

@@ -1,65 +1,34 @@
 use super::*;
-use crate::camera::{Camera, Perspective, PerspectiveSettings};
-use crate::driver::{Resources, Session, Settings};
-use crate::film::{FilmSettings, Filter, FilterKind};
+use crate::driver::{Session, Settings};
+use crate::film::{Filter, FilterKind};
 use crate::integrator::IntegratorKind;
-use crate::light::{EmissionSides, InfiniteLight, Light};
-use crate::material::Material;
-use crate::math::{Affine3A, Vec2, Vec3};
-use crate::scene::{Emission, Scene, SceneBuilder};
 use crate::select::ShadowRays;
-use crate::shape::{Orientation, Shape, Sphere};
-use crate::texture::ColorTexture;
-use crate::view::View;
+use crate::testing::prelude::*;
 
 const SIZE: u32 = 6;
 
 /// Two spheres, a third that emits, and a sky, through a filter that reaches over two pixels.
-fn view() -> View {
+fn shot() -> Shot {
     let filter = Filter::new(FilterKind::Triangle, Vec2::splat(1.0));
-    let camera = Perspective::new(&PerspectiveSettings {
-        world_from_camera: Affine3A::IDENTITY,
-        resolution: Vec2::splat(SIZE as f32),
-        screen: [Vec2::new(-0.6, 0.6), Vec2::new(0.6, -0.6)],
-        lens_radius: 0.05,
-        focal_distance: 3.0,
-    });
-    let camera = Camera::Perspective(camera.expect("a rigid camera"));
-    View::new(camera, FilmSettings::new([SIZE; 2], filter)).expect("the film is not empty")
+    let mut builder = ShotBuilder::with_filter(camera(Vec3::ZERO, SIZE, 0.05), SIZE, filter);
+    let red = builder.material(diffuse([0.8, 0.5, 0.2]));
+    for (x, y, radius, emission) in [
+        (-0.7, 0.0, 0.8, None),
+        (0.7, -0.3, 0.6, None),
+        (0.6, 0.7, 0.2, emission([5.0, 6.0, 7.0])),
+    ] {
+        builder.shape(sphere(Vec3::new(x, y, 3.0), radius), red, emission);
+    }
+    builder.sky([0.3; 3]);
+    builder.build()
 }
 
-fn scene() -> Scene {
-    let mut builder = SceneBuilder::new();
-    let red = builder.material(Material::Diffuse {
-        reflectance: ColorTexture::Constant([0.8, 0.5, 0.2]),
-    });
-    let mut sphere = |x: f32, y: f32, radius: f32, emission: Option<Emission>| {
-        let place = Affine3A::from_translation(Vec3::new(x, y, 3.0));
-        let sphere = Sphere::new(place, radius, Orientation::Natural);
-        builder.shape(Shape::Sphere(sphere), red, emission);
-    };
-    sphere(-0.7, 0.0, 0.8, None);
-    sphere(0.7, -0.3, 0.6, None);
-    let light = Emission {
-        radiance: [5.0, 6.0, 7.0],
-        pattern: None,
-        sides: EmissionSides::Front,
-    };
-    sphere(0.6, 0.7, 0.2, Some(light));
-    builder.light(Light::Infinite(InfiniteLight::constant([0.3; 3])));
-    builder.build().expect("the scene is valid")
-}
-
-fn session<'a>(scene: &'a Scene, integrator: IntegratorKind, rule: &str) -> Session<'a> {
+fn session<'a>(shot: &'a Shot, integrator: IntegratorKind, rule: &str) -> Session<'a> {
     let settings = Settings {
         shadow_rays: rule.parse::<ShadowRays>().expect("a rule"),
         ..Settings::new(integrator)
     };
-    let resources = Resources {
-        threads: 1,
-        ..Resources::default()
-    };
-    Session::new(scene, &view(), settings, &resources).expect("the film is small")
+    shot.session(settings, 1)
 }
 
 /// Every sample of a pass, with its pixel.
@@ -71,10 +40,10 @@ fn pass(session: &Session<'_>, pass: u64) -> Vec<([u32; 2], Replay)> {
 
 #[test]
 fn the_terms_of_a_pass_are_its_image() {
-    let scene = scene();
+    let shot = shot();
     for (name, integrator) in IntegratorKind::NAMES {
         for rule in ["all", "per-pair", "ray-roulette:2", "budget:2"] {
-            let mut session = session(&scene, integrator, rule);
+            let mut session = session(&shot, integrator, rule);
             let mut image = [[0.0; 3]; (SIZE * SIZE) as usize];
             for (pixel, replay) in pass(&session, 0) {
                 for term in &replay.terms {
@@ -86,11 +55,9 @@ fn the_terms_of_a_pass_are_its_image() {
             }
             session.step(&());
             let rendered = session.film().develop().pixels;
-            for (a, b) in image.iter().flatten().zip(rendered.iter().flatten()) {
-                assert!(
-                    (a - b).abs() <= 1e-4 * b.max(1.0),
-                    "{name}, {rule}: {a} {b}"
-                );
+            for (a, b) in image.as_flattened().iter().zip(rendered.as_flattened()) {
+                let bound = 1e-4 * f64::from(b.max(1.0));
+                check_near(*a, *b, bound, format!("{name}, {rule}"));
             }
         }
     }
@@ -118,10 +85,10 @@ fn check_term(replayed: &ReplayedTerm) {
 
 #[test]
 fn every_term_says_what_became_of_it() {
-    let scene = scene();
+    let shot = shot();
     let mut fates = Vec::new();
     for (_, integrator) in IntegratorKind::NAMES {
-        let session = session(&scene, integrator, "ray-roulette:20");
+        let session = session(&shot, integrator, "ray-roulette:20");
         for (_, replay) in (0..16).flat_map(|index| pass(&session, index)) {
             replay.terms.iter().for_each(check_term);
             fates.extend(replay.terms.iter().map(|term| term.fate));
@@ -136,9 +103,9 @@ fn every_term_says_what_became_of_it() {
 /// Each sample brings its part of the shared light subpaths, in counters and in its replay.
 #[test]
 fn the_rays_of_a_pass_are_those_of_its_samples() {
-    let scene = scene();
+    let shot = shot();
     for (name, integrator) in IntegratorKind::NAMES {
-        let mut session = session(&scene, integrator, "all");
+        let mut session = session(&shot, integrator, "all");
         let pass = pass(&session, 0);
         let rays = pass.iter().map(|(_, r)| r.batch.worker.stats.rays.total());
         let rays: u64 = rays.sum();
@@ -155,8 +122,8 @@ fn the_rays_of_a_pass_are_those_of_its_samples() {
 
 #[test]
 fn probabilities_of_one_per_pair_sum_to_one() {
-    let scene = scene();
-    let session = session(&scene, IntegratorKind::Bdpt, "per-pair");
+    let shot = shot();
+    let session = session(&shot, IntegratorKind::Bdpt, "per-pair");
     for (_, replay) in (0..4).flat_map(|index| pass(&session, index)) {
         let selections = replay.terms.iter().filter_map(|term| term.selection);
         let sum: f64 = selections.map(|selection| selection.prob).sum();
@@ -166,8 +133,8 @@ fn probabilities_of_one_per_pair_sum_to_one() {
 
 #[test]
 fn connections_are_candidates_or_zero() {
-    let scene = scene();
-    let session = session(&scene, IntegratorKind::Bdpt, "all");
+    let shot = shot();
+    let session = session(&shot, IntegratorKind::Bdpt, "all");
     for (_, replay) in pass(&session, 0) {
         let [light, camera] =
             [replay.light(), replay.camera()].map(|subpath| subpath.vertices.len());

@@ -48,15 +48,14 @@ impl Survey {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::bsdf::FacetScattering;
     use crate::driver::training::{
-        Effort, TrainingInput,
-        tests::{WHOLE, grey, room_with, survey_of, view},
+        Effort,
+        tests::{WHOLE, grey, input, room_with, survey_of, view},
     };
     use crate::integrator::CandidateCount;
-    use crate::material::{ConductorIndex, Material, Roughness};
+    use crate::material::Material;
     use crate::path::PathRoulette;
-    use crate::texture::{ColorTexture, FloatTexture};
+    use crate::testing::{check_near, prelude::metal};
 
     /// Returns the part of first connections with light walks that are diffuse, and the mean price of one of twelve
     /// candidates more, in a room with this ball.
@@ -64,20 +63,11 @@ mod tests {
         let (scene, view) = (room_with(ball), view(WHOLE));
         let mut settings = Settings::new(IntegratorKind::Lvc);
         settings.path.mis = mis;
-        let input = TrainingInput {
-            scene: &scene,
-            view: &view,
-            settings: &settings.clone(),
-        };
-        let survey = survey_of(input, Effort::at_most(1024));
+        let survey = survey_of(input(&scene, &view, &settings), Effort::at_most(1024));
+        let (roulette, light_vertices) = (settings.path.roulette, survey.light_vertices());
         let mut cost = |count| {
             settings.lvc.candidates = CandidateCount::new(count, 1);
-            let counts = Counts::new(
-                &settings,
-                settings.path.roulette,
-                survey.light_vertices(),
-                256,
-            );
+            let counts = Counts::new(&settings, roulette, light_vertices, 256);
             survey.cost(&settings, &counts)
         };
         let [few, many] = [12, 24].map(&mut cost);
@@ -89,57 +79,37 @@ mod tests {
 
     #[test]
     fn candidates_cost_least_between_diffuse_vertices() {
-        let metal = || Material::Conductor {
-            index: ConductorIndex::Reflectance(ColorTexture::Constant([0.9; 3])),
-            scattering: FacetScattering::Single,
-            roughness: Roughness {
-                u: FloatTexture::Constant(0.5),
-                v: FloatTexture::Constant(0.5),
-                ..Roughness::SMOOTH
-            },
-        };
         for (ball, mis, expected) in [
             (grey(0.4), MisHeuristic::Balance, 1.0..=1.0),
-            (metal(), MisHeuristic::Balance, 0.5..=0.95),
+            (metal(0.5), MisHeuristic::Balance, 0.5..=0.95),
         ] {
             let [part, price] = diffuse_part_and_price(ball, mis);
             assert!(expected.contains(&part), "{part}");
             let of_all = CANDIDATE + part * (DIFFUSE_CANDIDATE - CANDIDATE);
-            assert!((price - of_all).abs() < 1e-9, "{price} for {of_all}");
+            check_near(price, of_all, 1e-9, "price");
         }
         // Other heuristics evaluate each connection alone.
         let [_, price] = diffuse_part_and_price(grey(0.4), MisHeuristic::Power);
-        assert!((price - CANDIDATE).abs() < 1e-9, "{price}");
+        check_near(price, CANDIDATE, 1e-9, "price");
     }
 
     #[test]
     fn rules_bound_the_rays_of_estimators_with_candidates() {
         let (scene, view) = (room_with(grey(0.4)), view(WHOLE));
         let settings = Settings::new(IntegratorKind::Bdpt);
-        let input = TrainingInput {
-            scene: &scene,
-            view: &view,
-            settings: &settings,
-        };
-        let survey = survey_of(input, Effort::at_most(1024));
+        let survey = survey_of(input(&scene, &view, &settings), Effort::at_most(1024));
         let cost = |integrator, shadow_rays| {
             let mut settings = Settings::new(integrator);
             settings.shadow_rays = shadow_rays;
-            survey.cost(
-                &settings,
-                &Counts::new(&settings, PathRoulette::Off, 1.0, 256),
-            )
+            let counts = Counts::new(&settings, PathRoulette::Off, 1.0, 256);
+            survey.cost(&settings, &counts)
         };
         let rules = [ShadowRays::All, ShadowRays::PerPair, ShadowRays::Budget(1)];
         let [all, pair, one] = rules.map(|rule| cost(IntegratorKind::Bdpt, rule));
-        assert!(
-            pair < 0.8 * all && (pair - one).abs() < 1e-9,
-            "{pair} {one} {all}"
-        );
+        assert!(pair < 0.8 * all, "{pair} {all}");
+        check_near(pair, one, 1e-9, "bdpt");
         let [all, pair, one] = rules.map(|rule| cost(IntegratorKind::Path, rule));
-        assert!(
-            (pair - all).abs() + (one - all).abs() < 1e-9,
-            "{pair} {one} {all}"
-        );
+        check_near(pair, all, 1e-9, "path");
+        check_near(one, all, 1e-9, "path");
     }
 }

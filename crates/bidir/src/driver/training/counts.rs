@@ -141,6 +141,7 @@ pub(super) fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::testing::check_near;
 
     const SHARES: Shares = Shares {
         hits: 0.05,
@@ -167,8 +168,7 @@ mod tests {
             (IntegratorKind::Bdpt, bdpt),
             (IntegratorKind::Lvc, lvc),
         ] {
-            let found = ratio(integrator);
-            assert!((found - expected).abs() < 1e-6, "{integrator:?}: {found}");
+            check_near(ratio(integrator), expected, 1e-6, integrator);
         }
     }
 
@@ -192,10 +192,7 @@ mod tests {
             let found = settings(start)
                 .density_ratio(&Shares { vertices, ..SHARES })
                 .all;
-            assert!(
-                (found - expected).abs() < 1e-6,
-                "{start}, {vertices}: {found}"
-            );
+            check_near(found, expected, 1e-6, format!("{start}, {vertices}"));
         }
     }
 
@@ -207,8 +204,8 @@ mod tests {
             (1920 * 1080, 1024.0, 0.0),
         ] {
             let draws = Draws::new(&LvcSettings::default(), pixels);
-            assert!((draws.subpaths - subpaths).abs() < 1e-9, "{pixels}");
-            assert!((draws.neighbours - neighbours).abs() < 1e-9, "{pixels}");
+            check_near(draws.subpaths, subpaths, 1e-9, pixels);
+            check_near(draws.neighbours, neighbours, 1e-9, pixels);
         }
     }
 }

@@ -156,10 +156,11 @@ impl Lessons {
 mod tests {
     use super::*;
     use crate::driver::training::{
-        Effort, TrainingInput,
-        tests::{WHOLE, room, survey_of, view},
+        Effort,
+        tests::{WHOLE, input, room, survey_of, view},
     };
     use crate::integrator::IntegratorKind;
+    use crate::testing::check_close;
 
     /// Two estimates of the second moment of connections: by the paths that they made, and by their parts of all
     /// paths.
@@ -167,12 +168,7 @@ mod tests {
     fn all_strategies_tell_the_second_moment_of_connections() {
         let (scene, view) = (room(), view(WHOLE));
         let settings = Settings::new(IntegratorKind::Lvc);
-        let input = TrainingInput {
-            scene: &scene,
-            view: &view,
-            settings: &settings,
-        };
-        let survey = survey_of(input, Effort::WHOLE);
+        let survey = survey_of(input(&scene, &view, &settings), Effort::WHOLE);
         let light_vertices = survey.light_vertices();
         let counts = Counts::new(&settings, settings.path.roulette, light_vertices, 256);
         let own = survey.terms.iter().map(|term| {
@@ -191,6 +187,6 @@ mod tests {
             Evidence::Traced(_) => 0.0,
         };
         let all: f64 = all.iter().map(square).sum();
-        assert!((all / own - 1.0).abs() < 0.02, "{all} for {own}");
+        check_close(all, own, 0.02, "all strategies");
     }
 }

@@ -219,8 +219,8 @@ mod tests {
     use super::*;
     use crate::driver::Settings;
     use crate::driver::training::{
-        Effort, TrainingInput,
-        tests::{WHOLE, room, survey_of, view},
+        Effort,
+        tests::{WHOLE, input, room, survey_of, view},
     };
     use crate::integrator::IntegratorKind;
 
@@ -228,12 +228,8 @@ mod tests {
     #[test]
     fn connections_know_their_vertices() {
         let (scene, view) = (room(), view(WHOLE));
-        let input = TrainingInput {
-            scene: &scene,
-            view: &view,
-            settings: &Settings::new(IntegratorKind::Lvc),
-        };
-        let survey = survey_of(input, Effort::at_most(1024));
+        let settings = Settings::new(IntegratorKind::Lvc);
+        let survey = survey_of(input(&scene, &view, &settings), Effort::at_most(1024));
         let ConnectionLog {
             vertices,
             light,
@@ -246,10 +242,8 @@ mod tests {
         let is_on_surface = |vertex: u32| {
             let point = vertices[vertex as usize][0];
             let distance = |z: f32| point.distance(Vec3::new(0.0, 0.0, z));
-            let surfaces = [(0.0, 6.0), (3.5, 1.0), (-3.0, 1.0)];
-            surfaces
-                .iter()
-                .any(|&(z, radius)| (distance(z) - radius).abs() < 1e-3)
+            let is_at = |(z, radius): (f32, f32)| (distance(z) - radius).abs() < 1e-3;
+            [(0.0, 6.0), (3.5, 1.0), (-3.0, 1.0)].into_iter().any(is_at)
         };
         assert!(camera.iter().all(|&vertex| is_on_surface(vertex)));
         assert!(light.iter().all(|&(vertex, _)| is_on_surface(vertex)));

@@ -260,12 +260,12 @@ mod tests {
     use crate::driver::training::plan::typical;
     use crate::driver::training::{
         Effort, Settings, TrainingInput,
-        tests::{lamp, room, survey_of, view, view_of},
+        tests::{input, lamp, large_view, room, survey_of, view},
     };
     use crate::film::PixelRect;
     use crate::integrator::{CandidateCount, IntegratorKind};
     use crate::path::PathRoulette;
-    use crate::view::View;
+    use crate::testing::check_close;
 
     impl SurveyTerm {
         /// Returns true where connections with light walks can make the path.
@@ -285,19 +285,8 @@ mod tests {
             &survey.log.cells(),
         );
         let variance = judge.judge(settings, &terms).variance(ShadowRays::All);
-        [
-            variance.pixels,
-            survey.cost(settings, &judge.counts(settings)),
-        ]
-    }
-
-    /// Returns a film whose blocks have 64 samples of a survey each.
-    fn large_view() -> View {
-        let whole = PixelRect {
-            min: [0; 2],
-            max: [64; 2],
-        };
-        view_of(64, whole)
+        let cost = survey.cost(settings, &judge.counts(settings));
+        [variance.pixels, cost]
     }
 
     /// Variance and cost of path tracing whose roulette begins at a surface, by surveys of these strategies.
@@ -311,12 +300,7 @@ mod tests {
         path.path.roulette = roulette;
         let of_seeds = (0..4).map(|seed| {
             settings.seed = seed;
-            let input = TrainingInput {
-                scene: &scene,
-                view: &view,
-                settings: &settings,
-            };
-            judged(input, &path)
+            judged(input(&scene, &view, &settings), &path)
         });
         of_seeds.fold([0.0; 2], |sum, of| [sum[0] + of[0], sum[1] + of[1]])
     }
@@ -329,10 +313,8 @@ mod tests {
         for start in 0..3 {
             let [variance, cost] = of_path("all", 0, start);
             let [own_variance, own_cost] = of_path("s0,s1", start, start);
-            let difference = (variance / own_variance - 1.0).abs();
-            assert!(difference < 0.2, "{start}: {variance} for {own_variance}");
-            let dearer = (cost / own_cost - 1.0).abs();
-            assert!(dearer < 0.02, "{start}: {cost} for {own_cost}");
+            check_close(variance, own_variance, 0.17, start);
+            check_close(cost, own_cost, 0.02, start);
         }
     }
 
@@ -348,21 +330,16 @@ mod tests {
             settings.path.max_depth = Some(max_depth);
             let mut variance = |count, seed| {
                 settings.seed = seed;
-                let input = TrainingInput {
-                    scene: &scene,
-                    view: &view,
-                    settings: &settings.clone(),
-                };
+                let surveyed = settings.clone();
                 settings.lvc.next_events = of(count);
-                judged(input, &settings)[0]
+                judged(input(&scene, &view, &surveyed), &settings)[0]
             };
             let [one, two, eight] =
                 [1, 2, 8].map(|count| (0..4).map(|seed| variance(count, seed)).sum::<f64>());
             let name = format!("{max_depth}: {one}, {two}, {eight}");
             assert!(0.0 < eight && eight < two, "{name}");
             // By 1 - 1/8 and by 1/2 - 1/8.
-            let ratio = (one - eight) / (two - eight) / (7.0 / 3.0);
-            assert!((ratio - 1.0).abs() < tolerance, "{name}");
+            check_close((one - eight) / (two - eight), 7.0 / 3.0, tolerance, name);
         }
     }
 
@@ -374,11 +351,7 @@ mod tests {
         };
         let (scene, view) = (lamp(), view(of_lamp));
         let settings = Settings::new(IntegratorKind::Bdpt);
-        let input = TrainingInput {
-            scene: &scene,
-            view: &view,
-            settings: &settings,
-        };
+        let input = input(&scene, &view, &settings);
         let survey = survey_of(input, Effort::WHOLE);
         let terms = survey.relative_terms(view.film()).expect("a lamp");
         let moment: f64 = terms.iter().map(|term| term.square).sum();

@@ -77,7 +77,7 @@ pub(super) fn typical(settings: &Settings) -> Settings {
 }
 
 /// The plans that `auto` compares. Plans that differ only in their shadow rays follow each other.
-const PLANS: [Plan; 15] = [
+pub(super) const PLANS: [Plan; 15] = [
     PATH,
     SHORT_PATH,
     BDPT,

@@ -221,18 +221,21 @@ mod tests {
     use crate::integrator::{CandidateCount, IntegratorKind};
     use crate::path::PathRoulette;
     use crate::sampler::{Dimension, Purpose};
-    use crate::testing::samples;
+    use crate::testing::{check_close, check_near, numbers, samples};
+
+    /// Returns where paths of camera subpaths of t vertices reach.
+    fn reach(t: usize) -> Reach {
+        Reach {
+            t,
+            surfaces: 0,
+            longer: 1.0,
+        }
+    }
 
     /// Standard normal numbers.
     fn normals() -> impl FnMut() -> f64 {
-        let mut state = 0x1234_5678_9abc_def1_u64;
-        let mut uniform = move || {
-            state ^= state << 13;
-            state ^= state >> 7;
-            state ^= state << 17;
-            (state >> 11) as f64 / (1u64 << 53) as f64
-        };
-        move || (0..12).map(|_| uniform()).sum::<f64>() - 6.0
+        let mut numbers = numbers(0x1234_5678_9abc_def1);
+        move || (0..12).map(|_| numbers()).sum::<f64>() - 6.0
     }
 
     #[test]
@@ -243,22 +246,14 @@ mod tests {
         let alone = |numbers| {
             let mut quad = Quad::new(numbers);
             for (i, value) in [100.0, 100.0, 1.0, 1.0].into_iter().enumerate() {
-                let reach = Reach {
-                    t: 2,
-                    surfaces: 0,
-                    longer: 1.0,
-                };
-                quad.add(i, Part::LightPoint, reach, value);
+                quad.add(i, Part::LightPoint, reach(2), value);
             }
             let mut sums = QuadVariance::default();
             sums.add(&quad, &counts, 1.0);
             sums.alone()
         };
         let [in_one, in_two] = [0.1, 0.9].map(|second| alone([0.1, second, 0.6, 0.6]));
-        assert!(
-            (in_one - in_two).abs() < 1e-9 * in_one.abs(),
-            "{in_one} and {in_two}"
-        );
+        check_close(in_one, in_two, 1e-9, "both");
     }
 
     /// A camera subpath has a hit of the value 1 + W, light points 2 + W + X ± 1 and connections 3 + W + Y + Z, with standard
@@ -293,11 +288,6 @@ mod tests {
                     let hit = 1.0 + w;
                     let sign = if number < 0.5 { 1.0 } else { -1.0 };
                     let (x, z) = (2.0 + w + next() + sign, 3.0 + w + y + next());
-                    let reach = |t| Reach {
-                        t,
-                        surfaces: 0,
-                        longer: 1.0,
-                    };
                     quad.add(i, Part::Hit { is_seen: false }, reach(3), hit);
                     quad.add(i, Part::LightPoint, reach(2), x);
                     quad.add(i, Part::Connection, reach(2), z);
@@ -306,14 +296,11 @@ mod tests {
                 sums.add(&quad, &counts, 1.0);
             }
             let found = (moment + sums.alone()) / (4.0 * f64::from(quads));
-            assert!(
-                (found / expected - 1.0).abs() < 0.02,
-                "{found} for {expected}"
-            );
+            check_close(found, expected, 0.02, integrator);
             // The light subpath has Y alone in common, and two camera subpaths share that but not Z.
-            assert!((sums.correlation() - 0.5).abs() < 0.02);
+            check_near(sums.correlation(), 0.5, 0.02, "correlation");
             let squares = sums.mean_squares / (4.0 * f64::from(quads));
-            assert!((squares / 10.0 - 1.0).abs() < 0.02, "{squares}");
+            check_close(squares, 10.0, 0.02, "squares");
         }
     }
 }

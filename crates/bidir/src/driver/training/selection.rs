@@ -81,27 +81,18 @@ fn threshold(candidates: &[Expected], rays: f64) -> Option<f64> {
 mod tests {
     use super::*;
     use crate::contribution::Term;
+    use crate::sampler::{Domain, Sampler, SamplerKind};
     use crate::select::{Budget, Candidate, Chosen, Draws, Selector};
     use crate::spectrum::Spectrum;
     use crate::strategy::Strategy;
-
-    /// Numbers in `[0, 1)`.
-    fn numbers(count: usize, key: u64) -> Vec<f64> {
-        let mut state = key.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1;
-        let mut next = || {
-            state ^= state << 13;
-            state ^= state >> 7;
-            state ^= state << 17;
-            (state >> 11) as f64 / (1u64 << 53) as f64
-        };
-        (0..count).map(|_| next()).collect()
-    }
+    use crate::testing::{check_close, check_near, numbers};
 
     /// Samples whose candidates have widely spread values, a part of which arrives.
     fn samples(visible: f64) -> Vec<Vec<Expected>> {
         let candidates = |sample: u32| {
-            let u = numbers(2 * 26, u64::from(sample) + 7);
-            let candidates = u.chunks_exact(2).map(|u| {
+            let mut next = numbers((u64::from(sample) + 7).wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1);
+            let candidates = (0..26).map(|_| {
+                let u = [next(), next()];
                 let value = libm::exp(3.0 * u[0]);
                 Expected {
                     block: 0,
@@ -125,10 +116,10 @@ mod tests {
         let arrived: f64 = candidates.iter().map(|of| of.value).sum();
         let mut chosen: Vec<Chosen> = Vec::new();
         let draws = 256;
+        let sampler = Sampler::new(SamplerKind::Independent, 1);
         let square = |i: u32| {
             chosen.clear();
-            let stream = crate::sampler::Sampler::new(crate::sampler::SamplerKind::Independent, 1)
-                .stream(crate::sampler::Domain::Camera, 0, i.into());
+            let stream = sampler.stream(Domain::Camera, 0, i.into());
             Budget { rays }.select(&offered, Draws(&stream), &mut chosen);
             let sum = |chosen: &Chosen| candidates[chosen.candidate as usize].value / chosen.prob;
             let error = chosen.iter().map(sum).sum::<f64>() - arrived;
@@ -158,8 +149,7 @@ mod tests {
             let samples = samples(visible);
             let found: f64 = samples.iter().map(|of| variance(of, f64::from(rays))).sum();
             let expected: f64 = samples.iter().map(|of| simulated(of, rays)).sum();
-            let ratio = found / expected;
-            assert!((0.9..1.1).contains(&ratio), "{visible}, {rays}: {ratio}");
+            check_close(found, expected, 0.09, format!("{visible}, {rays}"));
         }
     }
 
@@ -170,10 +160,12 @@ mod tests {
         samples.truncate(2);
         let all: Vec<_> = samples.concat();
         let of_one: Vec<_> = all.iter().map(|of| Expected { sample: 0, ..*of }).collect();
-        assert!((variance(&all, 6.0) / variance(&of_one, 12.0) - 1.0).abs() < 1e-9);
+        let [own, one] = [variance(&all, 6.0), variance(&of_one, 12.0)];
+        check_close(own, one, 1e-9, "a block");
         let twice: Vec<_> = (of_one.iter().map(|of| Expected { count: 2.0, ..*of })).collect();
         let doubled: Vec<_> = of_one.iter().flat_map(|of| [*of; 2]).collect();
-        assert!((variance(&twice, 9.0) / variance(&doubled, 9.0) - 1.0).abs() < 1e-9);
-        assert!(variance(&twice, 104.0).abs() < 1e-9);
+        let [counted, there] = [&twice, &doubled].map(|of| variance(of, 9.0));
+        check_close(counted, there, 1e-9, "twice");
+        check_near(variance(&twice, 104.0), 0.0, 1e-9, "all");
     }
 }

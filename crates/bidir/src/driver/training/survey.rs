@@ -203,65 +203,40 @@ impl<'a> Surveyor<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::driver::training::tests::{lamp, survey_of, view};
+    use crate::driver::training::tests::{input, lamp, survey_of, view};
     use crate::driver::{Resources, Session};
     use crate::film::PixelRect;
-    use crate::film::{FilmSettings, Filter};
-    use crate::light::{Light, PointLight};
-    use crate::material::Material;
-    use crate::math::{Affine3A, Vec3};
-    use crate::path::{MAX_VERTICES, PathSettings};
-    use crate::scene::{Scene, SceneBuilder};
-    use crate::shape::{Orientation, Shape, Sphere};
+    use crate::path::MAX_VERTICES;
     use crate::spectrum::luminance;
-    use crate::texture::ColorTexture;
+    use crate::testing::prelude::*;
 
     /// Returns a lamp in a white sphere: no walk ends before it is as long as any may be.
-    fn white_room() -> Scene {
-        let mut builder = SceneBuilder::new();
-        let white = builder.material(Material::Diffuse {
-            reflectance: ColorTexture::Constant([1.0; 3]),
-        });
-        let wall = Sphere::new(Affine3A::IDENTITY, 1.0, Orientation::Natural);
-        builder.shape(Shape::Sphere(wall), white, None);
-        builder.light(Light::Point(PointLight {
-            position: Vec3::new(0.0, 0.5, 0.0),
-            intensity: [1.0; 3],
-        }));
-        builder.build().expect("the scene is valid")
+    fn white_room() -> Shot {
+        let camera = narrow_camera(Vec3::ZERO, 8, 1.0);
+        let mut builder = ShotBuilder::new(camera, 8);
+        builder.add(sphere(Vec3::ZERO, 1.0), diffuse([1.0; 3]));
+        builder.light(point_light(Vec3::new(0.0, 0.5, 0.0)));
+        builder.build()
     }
 
     #[test]
     fn where_walks_do_not_end_samples_and_training_do() {
-        let film = FilmSettings::new([8; 2], Filter::default());
-        let (scene, view) = (white_room(), crate::testing::view(film));
-        let settings = Settings {
-            path: PathSettings {
-                max_depth: None,
-                ..PathSettings::default()
-            },
-            ..Settings::default()
-        };
-        let input = TrainingInput {
-            scene: &scene,
-            view: &view,
-            settings: &settings,
-        };
+        let (room, mut settings) = (white_room(), Settings::default());
+        settings.path.max_depth = None;
+        let input = input(&room.scene, &room.view, &settings);
         let survey = survey_of(input, Effort::WHOLE);
         let longest = survey.stats.samples * (MAX_VERTICES as u64 - 1);
         assert_eq!(survey.stats.rays.camera, longest);
         // All pairs are half a million.
         let of_sample = extent::work(&survey.stats);
         assert!((20_000.0..40_000.0).contains(&of_sample), "{of_sample}");
-        assert_eq!(
-            (survey.stats.samples, survey.is_short),
-            (FIRST_SAMPLES, false)
-        );
+        let samples = survey.stats.samples;
+        assert_eq!((samples, survey.is_short), (FIRST_SAMPLES, false));
     }
 
     /// Compares the mean of training with that of the image by these strategies.
     #[track_caller]
-    fn check_mean(strategies: &str, tolerance: f32) {
+    fn check_mean(strategies: &str, tolerance: f64) {
         let scene = lamp();
         let view = view(PixelRect {
             min: [7, 2],
@@ -277,22 +252,16 @@ mod tests {
                 seed,
                 ..settings.clone()
             };
-            let input = TrainingInput {
-                scene: &scene,
-                view: &view,
-                settings: &settings,
-            };
-            let survey = survey_of(input, Effort::WHOLE);
+            let survey = survey_of(input(&scene, &view, &settings), Effort::WHOLE);
             survey.luminance / survey.samples()
         });
-        let trained = trainings.sum::<f64>() as f32 / 16.0;
-        let mut session = Session::new(&scene, &view, settings, &Resources::default())
-            .expect("the film is small");
+        let trained = trainings.sum::<f64>() / 16.0;
+        let session = Session::new(&scene, &view, settings, &Resources::default());
+        let mut session = session.expect("the film is small");
         while session.film().passes().len() < 4096 && session.step(&()) {}
         let pixels = session.film().develop().pixels;
         let mean = pixels.iter().copied().map(luminance).sum::<f32>() / pixels.len() as f32;
-        let difference = (trained / mean - 1.0).abs();
-        assert!(difference < tolerance, "{strategies}: {trained} for {mean}");
+        check_close(trained, mean, tolerance, strategies);
     }
 
     /// Light images of pixels that are not rendered are none of the image: with them it would be more than

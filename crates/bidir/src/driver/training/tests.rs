@@ -1,18 +1,14 @@
-use super::plan::{BDPT, LVC, PATH, SHORT_PATH, lvc_of};
+use super::plan::{BDPT, LVC, PATH, PLANS, SHORT_PATH, lvc_of};
 use super::*;
-use crate::camera::{Camera, Perspective, PerspectiveSettings};
 use crate::driver::{Resources, Session, SessionError, Stop};
 use crate::film::{FilmSettings, Filter, FilterKind, PixelRect};
 use crate::integrator::SamplesPerSubpath;
-use crate::light::EmissionSides;
 use crate::material::Material;
-use crate::math::{Affine3A, Vec2, Vec3};
 use crate::sampler::SamplerKind;
-use crate::scene::{Emission, SceneBuilder};
+use crate::scene::SceneBuilder;
 use crate::select::ShadowRays;
-use crate::shape::{Orientation, Shape, Sphere};
-use crate::spectrum::luminance;
-use crate::texture::ColorTexture;
+use crate::spectrum::{Rgb, luminance};
+use crate::testing::prelude::*;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 pub(super) const WHOLE: PixelRect = PixelRect {
@@ -32,15 +28,29 @@ pub(super) fn view_of(size: u32, crop: PixelRect) -> View {
         crop,
         ..FilmSettings::new([size; 2], filter)
     };
-    let camera = Perspective::new(&PerspectiveSettings {
-        world_from_camera: Affine3A::IDENTITY,
-        resolution: Vec2::splat(size as f32),
-        screen: [Vec2::new(-1.0, 1.0), Vec2::new(1.0, -1.0)],
-        lens_radius: 0.1,
-        focal_distance: 2.0,
-    });
-    let camera = Camera::Perspective(camera.expect("a rigid camera"));
+    let camera = camera_with(Vec3::ZERO, size, 1.0, [0.1, 2.0]);
     View::new(camera, film).expect("the film is not empty")
+}
+
+/// Returns a film whose blocks have 64 samples of a survey each.
+pub(super) fn large_view() -> View {
+    let whole = PixelRect {
+        min: [0; 2],
+        max: [64; 2],
+    };
+    view_of(64, whole)
+}
+
+pub(super) fn input<'a>(
+    scene: &'a Scene,
+    view: &'a View,
+    settings: &'a Settings,
+) -> TrainingInput<'a> {
+    TrainingInput {
+        scene,
+        view,
+        settings,
+    }
 }
 
 /// Returns the samples of training that nobody stops.
@@ -51,30 +61,25 @@ pub(super) fn survey_of(input: TrainingInput<'_>, effort: Effort<'_>) -> Survey 
 
 /// Returns a diffuse surface.
 pub(super) fn grey(reflectance: f32) -> Material {
-    Material::Diffuse {
-        reflectance: ColorTexture::Constant([reflectance; 3]),
-    }
+    diffuse([reflectance; 3])
 }
 
 fn add_sphere(
     builder: &mut SceneBuilder,
     [z, radius]: [f32; 2],
     material: Material,
-    radiance: Option<[f32; 3]>,
+    radiance: Option<Rgb>,
 ) {
     let material = builder.material(material);
-    let place = Affine3A::from_translation(Vec3::new(0.0, 0.0, z));
-    let sphere = Shape::Sphere(Sphere::new(place, radius, Orientation::Natural));
-    let light = radiance.map(|radiance| Emission {
-        radiance,
-        pattern: None,
-        sides: EmissionSides::Front,
-    });
-    builder.shape(sphere, material, light);
+    builder.shape(
+        sphere(Vec3::Z * z, radius),
+        material,
+        radiance.and_then(emission),
+    );
 }
 
 /// Returns a black sphere of this radiance, at this place before the camera.
-fn sphere(z: f32, radiance: Option<[f32; 3]>) -> Scene {
+fn black_sphere(z: f32, radiance: Option<Rgb>) -> Scene {
     let mut builder = SceneBuilder::new();
     add_sphere(&mut builder, [z, 1.5], grey(0.0), radiance);
     builder.build().expect("the scene is valid")
@@ -82,7 +87,7 @@ fn sphere(z: f32, radiance: Option<[f32; 3]>) -> Scene {
 
 /// Returns a black lamp before nothing.
 pub(super) fn lamp() -> Scene {
-    sphere(3.0, Some([2.0; 3]))
+    black_sphere(3.0, Some([2.0; 3]))
 }
 
 /// Returns a lamp and a grey ball in a grey sphere.
@@ -101,7 +106,7 @@ pub(super) fn room_with(ball: Material) -> Scene {
 
 /// Returns the estimator that `auto` takes for a black sphere.
 fn planned(z: f32, radiance: Option<[f32; 3]>) -> IntegratorKind {
-    let scene = sphere(z, radiance);
+    let scene = black_sphere(z, radiance);
     let settings = Settings::new(IntegratorKind::Auto);
     let prepared = prepare(&scene, &view(WHOLE), settings, Effort::WHOLE);
     let (decided, training) = prepared.expect("nobody stops it");
@@ -112,23 +117,51 @@ fn planned(z: f32, radiance: Option<[f32; 3]>) -> IntegratorKind {
 
 #[test]
 fn without_lights_and_where_none_is_found_there_is_a_plan() {
-    assert_eq!(planned(3.0, Some([2.0; 3])), IntegratorKind::Path);
     assert_eq!(planned(3.0, None), IntegratorKind::Path);
     // Behind the camera: where nothing was found, the plan is the one that makes most paths.
     assert_eq!(planned(-9.0, Some([2.0; 3])), IntegratorKind::Lvc);
 }
 
+/// By another survey than that which chose it, a plan costs about as little as the best one.
+#[test]
+fn no_plan_is_much_better_than_the_one_that_is_chosen() {
+    let view = large_view();
+    for (name, ball) in [("grey", grey(0.4)), ("metal", metal(0.3))] {
+        let scene = room_with(ball);
+        let [chosen, other] = [0, 1].map(|seed| {
+            let mut settings = independent();
+            settings.seed = seed;
+            settings
+        });
+        let prepared = prepare(&scene, &view, chosen, Effort::WHOLE).expect("nobody stops it");
+        let plan = prepared
+            .1
+            .and_then(|training| training.plan)
+            .expect("it is open");
+        let input = input(&scene, &view, &other);
+        let survey = survey_of(input, Effort::WHOLE);
+        let terms = survey.relative_terms(view.film()).expect("a lamp");
+        let cells = survey.log.cells();
+        let judge = known::Judge::new(input, &plan::typical(&other), &survey, &cells);
+        let product = |plan: Plan| {
+            let settings = plan.apply(&other);
+            let variance = judge.judge(&settings, &terms).variance(plan.shadow_rays);
+            variance.mean() * survey.cost(&settings, &judge.counts(&settings))
+        };
+        let least = PLANS.map(product).into_iter().fold(f64::INFINITY, f64::min);
+        let ratio = product(plan) / least;
+        assert!(ratio < 1.2, "{name}: {plan} costs {ratio} times the best");
+    }
+}
+
 /// A thread keeps the subpaths of 2048 samples: of the longest ones there are fewer.
 #[test]
 fn long_light_subpaths_are_few() {
-    let scene = sphere(3.0, None);
+    let scene = black_sphere(3.0, None);
     let settings = Settings::new(IntegratorKind::Lvc);
-    let input = TrainingInput {
-        scene: &scene,
-        view: &view(WHOLE),
-        settings: &settings,
-    };
-    let mut training = Training::new(&survey_of(input, Effort::at_most(16)));
+    let view = view(WHOLE);
+    let survey = survey_of(input(&scene, &view, &settings), Effort::at_most(16));
+    let mut training = Training::new(&survey);
     let film = FilmSettings::new([1024; 2], Filter::default());
     for (rays, expected) in [(5.0, 2), (128.0, 2), (200.0, 4), (1023.0, 16)] {
         training.subpath_rays = rays;
@@ -150,7 +183,7 @@ fn every_group_has_a_light_subpath() {
         settings.lvc.samples_per_subpath = SamplesPerSubpath::power_of_two(exponent);
         let session = Session::new(&scene, &view(WHOLE), settings, &Resources::default());
         let mut session = session.expect("the film is small");
-        (0..256).for_each(|_| assert!(session.step(&())));
+        steps(&mut session, 256);
         let pixels = session.film().develop().pixels;
         pixels.iter().map(|pixel| f64::from(pixel[1])).sum::<f64>()
     };
@@ -162,13 +195,8 @@ fn every_group_has_a_light_subpath() {
 fn rendered(integrator: IntegratorKind, effort: Effort<'_>) -> (Vec<[u32; 3]>, u64) {
     let settings = Settings::new(integrator);
     let scene = room();
-    let session = Session::with_effort(
-        &scene,
-        &view(WHOLE),
-        settings,
-        &Resources::default(),
-        effort,
-    );
+    let (view, resources) = (view(WHOLE), Resources::default());
+    let session = Session::with_effort(&scene, &view, settings, &resources, effort);
     let mut session = session.expect("the film is small");
     session.step(&());
     let pixels = session.film().develop().pixels;
@@ -205,8 +233,8 @@ fn rendered_variance(scene: &Scene, view: &View, settings: &Settings) -> f64 {
     let passes = 32;
     let [width, height] = view.film().resolution.map(|n| n as usize);
     let area = width * height;
-    let mut session = Session::new(scene, view, settings.clone(), &Resources::default())
-        .expect("the film is small");
+    let session = Session::new(scene, view, settings.clone(), &Resources::default());
+    let mut session = session.expect("the film is small");
     let [mut sums, mut squares, mut before] = [(); 3].map(|()| vec![0.0; area]);
     for pass in 1..=passes {
         session.step(&());
@@ -243,22 +271,13 @@ fn predicted_variances<const N: usize>(scene: &Scene, view: &View, plans: [Plan;
     let mut sums = [0.0; N];
     for seed in 0..surveys {
         auto.seed = seed;
-        let settings = &auto;
-        let input = TrainingInput {
-            scene,
-            view,
-            settings,
-        };
+        let input = input(scene, view, &auto);
         let survey = survey_of(input, Effort::WHOLE);
         let terms = survey.relative_terms(view.film()).expect("a lamp");
-        let judge = known::Judge::new(
-            input,
-            &plan::typical(settings),
-            &survey,
-            &survey.log.cells(),
-        );
+        let cells = survey.log.cells();
+        let judge = known::Judge::new(input, &plan::typical(&auto), &survey, &cells);
         for (sum, plan) in sums.iter_mut().zip(plans) {
-            let judgement = judge.judge(&plan.apply(settings), &terms);
+            let judgement = judge.judge(&plan.apply(&auto), &terms);
             *sum += judgement.variance(plan.shadow_rays).pixels / surveys as f64;
         }
     }
@@ -268,11 +287,7 @@ fn predicted_variances<const N: usize>(scene: &Scene, view: &View, plans: [Plan;
 /// Surveys predict the variance of renders, without a fitted constant.
 #[test]
 fn predicted_variances_are_those_of_renders() {
-    let crop = PixelRect {
-        min: [0; 2],
-        max: [64; 2],
-    };
-    let (scene, view) = (room(), view_of(64, crop));
+    let (scene, view) = (room(), large_view());
     let all_rays = Plan {
         shadow_rays: ShadowRays::All,
         ..lvc_of(24, 8, 1)

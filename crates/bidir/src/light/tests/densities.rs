@@ -1,16 +1,14 @@
 use super::{
-    FIRE, Surroundings, ember, environment, examples, fire, fireplace, numbers, pole, receivers,
-    turn,
+    AreaLight, FIRE, Surroundings, ember, emission_of, environment, fire, fireplace,
+    for_each_light, numbers, point_for, pole, receivers, turn,
 };
-use crate::light::{
-    EmissionSides, InfiniteLight, Light, LightContext, LightPoint, Part, VolumeLight,
-};
-use crate::math::{Frame, PI, Vec2, Vec3, direction_to_square, sqr, square_to_direction, warp};
+use crate::light::{EmissionSides, InfiniteLight, Light, LightPoint, Part, VolumeLight};
+use crate::math::{Frame, PI, direction_to_square, sqr, square_to_direction, warp};
 use crate::medium::{self, Glow, MediumId};
-use crate::sampler::{Dimension, Purpose};
+use crate::sampler::SampleStream;
 use crate::shape::{Mesh, Shape};
 use crate::spectrum::luminance;
-use crate::testing::{Battery, Domain, Grid, check_close, samples};
+use crate::testing::{Domain, Grid, prelude::*};
 
 const N: u64 = 1 << 20;
 
@@ -24,88 +22,85 @@ fn directions(light: &Light) -> Domain {
 
 /// Local directions around the normal of a surface; world directions where there is none.
 fn frame(at: &LightPoint) -> Frame {
-    if at.locus.n_g == Vec3::ZERO {
-        Frame {
-            x: Vec3::X,
-            y: Vec3::Y,
-            z: Vec3::Z,
-        }
-    } else {
-        Frame::from_z(at.locus.n_g)
+    let [x, y, z] = Vec3::AXES;
+    match at.locus.n_g {
+        n if n == Vec3::ZERO => Frame { x, y, z },
+        n => Frame::from_z(n),
     }
 }
 
 /// Rays leave finite lights in directions that follow the density.
 #[test]
 fn directions_follow_the_density() {
-    let surroundings = Surroundings::new();
-    let context = surroundings.context();
     let mut battery = Battery::new("light directions");
-    for (name, light) in examples(&surroundings)
-        .into_iter()
-        .filter(|(_, l)| !l.is_infinite())
-    {
-        let narrow = name == "spot, narrow";
-        let domain = if narrow {
-            Domain::Cone(pole(), 5.5e-5)
-        } else {
-            directions(&light)
-        };
-        let grid = Grid {
-            domain,
-            columns: 20,
-            rows: 40,
+    for_each_light(|name, light, context| {
+        if light.is_infinite() {
+            return;
+        }
+        let domain = match name {
+            "spot, narrow" => Domain::Cone(pole(), 5.5e-5),
+            _ => directions(light),
         };
         let draws = samples(name, N).map(|sample| {
-            let (u_position, u_depth, u_direction) = numbers(&sample);
-            let drawn = light.sample_emission(&context, u_position, || u_depth, u_direction)?;
+            let drawn = emission_of(light, context, &sample)?;
             Some(frame(&drawn.from.at).to_local(drawn.direction))
         });
-        let at = light
-            .sample_next_event(
-                &context,
-                Part::Whole,
-                receivers()[0],
-                Vec2::splat(0.3),
-                || 0.3,
-            )
-            .unwrap()
-            .at;
-        let pdf = |w| light.pdf_direction(&context, &at, frame(&at).to_world(w));
-        battery.chi2(name, &grid, pdf, draws);
-    }
+        let at = point_for(light, context, receivers()[0], Vec2::splat(0.3));
+        let at = at.unwrap().at;
+        let pdf = |w| light.pdf_direction(context, &at, frame(&at).to_world(w));
+        battery.chi2(name, &Grid::new(domain, [20, 40]), pdf, draws);
+    });
     battery.check();
 }
 
 /// Rays from infinity cross the scene's disk evenly.
 #[test]
 fn rays_from_infinity_cross_the_disk_by_the_density() {
-    let surroundings = Surroundings::new();
-    let context = surroundings.context();
-    let grid = Grid {
-        domain: Domain::Disk(context.radius),
-        columns: 16,
-        rows: 24,
-    };
     let mut battery = Battery::new("rays from infinity");
-    for (name, light) in examples(&surroundings)
-        .into_iter()
-        .filter(|(_, l)| l.is_infinite())
-    {
+    for_each_light(|name, light, context| {
+        if !light.is_infinite() {
+            return;
+        }
+        let grid = Grid::new(Domain::Disk(context.radius), [16, 24]);
         let draws = samples(name, N).map(|sample| {
-            let (u_position, u_depth, u_direction) = numbers(&sample);
-            let drawn = light.sample_emission(&context, u_position, || u_depth, u_direction)?;
+            let drawn = emission_of(light, context, &sample)?;
             let local = Frame::from_z(drawn.direction).to_local(drawn.origin - context.centre);
             Some(local.with_z(0.0))
         });
-        let at = LightPoint::at_infinity(Vec3::Z);
-        battery.chi2(
-            name,
-            &grid,
-            |_| light.pdf_direction(&context, &at, -Vec3::Z),
-            draws,
-        );
-    }
+        let pdf = light.pdf_direction(context, &LightPoint::at_infinity(Vec3::Z), -Vec3::Z);
+        battery.chi2(name, &grid, |_| pdf, draws);
+    });
+    battery.check();
+}
+
+/// Checks that points of a light are drawn by the density, for rays and for a receiver alike, counted on a square of which
+/// a point has `area` in the light's measure.
+#[track_caller]
+fn check_points(
+    light: &Light,
+    grid: &Grid,
+    to_square: impl Fn(&LightPoint) -> Vec3,
+    to_light: impl Fn(Vec3) -> (LightPoint, f32),
+) {
+    let surroundings = Surroundings::new();
+    let (context, receiver) = (surroundings.context(), receivers()[0]);
+    let u = |sample: SampleStream| sample.get_2d(Dimension::at(0, Purpose::NextEventPosition));
+    let density = |pdf: &dyn Fn(&LightPoint) -> f32, p: Vec3| match to_light(p) {
+        (at, area) if area > 0.0 => pdf(&at) * area,
+        _ => 0.0,
+    };
+    let mut battery = Battery::new("points of a light");
+    let rays = samples("rays", N)
+        .map(|sample| Some(to_square(&emission_of(light, &context, &sample)?.from.at)));
+    let pdf = |p| density(&|at| light.pdf_position(&context, at), p);
+    battery.chi2("rays", grid, pdf, rays);
+    let points = samples("receivers", N).map(|sample| {
+        Some(to_square(
+            &point_for(light, &context, receiver, u(sample))?.at,
+        ))
+    });
+    let of_point = |at: &LightPoint| light.pdf_next_event(&context, Part::Whole, receiver, at);
+    battery.chi2("receivers", grid, |p| density(&of_point, p), points);
     battery.check();
 }
 
@@ -113,43 +108,16 @@ fn rays_from_infinity_cross_the_disk_by_the_density() {
 /// counted on the octahedral square, which has even measure and the texels' borders for lines.
 #[test]
 fn environments_are_drawn_by_the_density() {
-    let surroundings = Surroundings::new();
-    let context = surroundings.context();
-    let grid = Grid {
-        domain: Domain::Square,
-        columns: 24,
-        rows: 24,
-    };
-    let mut battery = Battery::new("environments");
     let to_square =
         |at: &LightPoint| direction_to_square(turn().transpose() * at.locus.point).extend(0.0);
-    let direction = |p: Vec3| LightPoint::at_infinity(turn() * square_to_direction(p.truncate()));
-    let lights = [
-        ("image", environment()),
-        ("constant", InfiniteLight::constant([1.0; 3])),
-    ];
-    for (name, light) in lights.map(|(name, light)| (name, Light::Infinite(light))) {
-        let rays = samples(name, N).map(|sample| {
-            let (u_position, u_depth, u_direction) = numbers(&sample);
-            let drawn = light.sample_emission(&context, u_position, || u_depth, u_direction)?;
-            Some(to_square(&drawn.from.at))
-        });
-        let pdf = |p| light.pdf_position(&context, &direction(p)) * 4.0 * PI;
-        battery.chi2(&format!("{name}, rays"), &grid, pdf, rays);
-        let points = samples(name, N).map(|sample| {
-            let u = sample.get_2d(Dimension::at(0, Purpose::NextEventPosition));
-            Some(to_square(
-                &light
-                    .sample_next_event(&context, Part::Whole, receivers()[0], u, || 0.3)?
-                    .at,
-            ))
-        });
-        let pdf = |p| {
-            light.pdf_next_event(&context, Part::Whole, receivers()[0], &direction(p)) * 4.0 * PI
-        };
-        battery.chi2(&format!("{name}, receivers"), &grid, pdf, points);
+    let to_light = |p: Vec3| {
+        let w = turn() * square_to_direction(p.truncate());
+        (LightPoint::at_infinity(w), 4.0 * PI)
+    };
+    for light in [environment(), InfiniteLight::constant([1.0; 3])] {
+        let grid = Grid::new(Domain::Square, [24, 24]);
+        check_points(&Light::Infinite(light), &grid, to_square, to_light);
     }
-    battery.check();
 }
 
 /// Points of a fire lie in its cells, and in eighths of them, as their density says.
@@ -163,13 +131,9 @@ fn points_of_a_fire_follow_the_density() {
     let count: usize = counts.iter().product();
     let volume = fireplace().matrix3.determinant().abs() / count as f32;
     let part = |i: usize| {
-        let at = [
-            i % counts[0],
-            i / counts[0] % counts[1],
-            i / (counts[0] * counts[1]),
-        ];
-        let at: [f32; 3] = std::array::from_fn(|k| (at[k] as f32 + 0.5) / counts[k] as f32);
-        fireplace().transform_point3(Vec3::from_array(at))
+        let [nx, ny, _] = counts;
+        let at = Vec3::from([i % nx, i / nx % ny, i / (nx * ny)].map(|k| k as f32 + 0.5));
+        fireplace().transform_point3(at / Vec3::from(counts.map(|n| n as f32)))
     };
     let in_fire = |point| LightPoint::in_medium(point, MediumId::default());
     let probs = (0..count).map(|i| f64::from(light.pdf(&in_fire(part(i))) * volume));
@@ -200,12 +164,8 @@ fn environments_are_drawn_by_luminance() {
         let at = LightPoint::at_infinity(warp::uniform_sphere(numbers(&sample).0));
         let expected = luminance(light.emitted(&context, &at, -at.locus.point)) * cross_section;
         let power = light.power(&context);
-        check_close(
-            light.pdf_position(&context, &at),
-            expected / power,
-            1e-4,
-            "luminance",
-        );
+        let pdf = light.pdf_position(&context, &at);
+        check_close(pdf, expected / power, 1e-4, "luminance");
     }
 }
 
@@ -229,71 +189,25 @@ fn on_mesh(mesh: &Mesh, p: Vec3) -> (LightPoint, f32) {
 fn on_square(mesh: &Mesh, at: &LightPoint) -> Vec3 {
     let [a, b, c] = mesh.triangle(at.primitive as usize);
     let normal = (b - a).cross(c - a);
-    let barycentric =
-        |edge: Vec3| normal.dot(edge.cross(at.locus.point - a)) / normal.length_squared();
+    let offset = at.locus.point - a;
+    let barycentric = |edge: Vec3| normal.dot(edge.cross(offset)) / normal.length_squared();
     let (b1, b2) = (-barycentric(c - a), barycentric(b - a));
     let x = (b1 + b2).clamp(0.0, 1.0);
     let y = if x > 0.0 { b2 / x } else { 0.0 };
     let within = (x * x).min(0.999_999);
-    Vec3::new(
-        (at.primitive as f32 + within) / mesh.triangle_count() as f32,
-        y,
-        0.0,
-    )
+    let column = (at.primitive as f32 + within) / mesh.triangle_count() as f32;
+    Vec3::new(column, y, 0.0)
 }
 
 /// Points of a mesh of unlike triangles are drawn by the density, for rays and for receivers.
 #[test]
 fn points_of_a_mesh_follow_the_density() {
-    let surroundings = Surroundings::new();
-    let context = surroundings.context();
-    let Shape::Mesh(mesh) = &surroundings.shapes[0] else {
+    let shapes = Surroundings::new().shapes;
+    let Shape::Mesh(mesh) = &shapes[0] else {
         panic!("the first shape is the mesh")
     };
-    let light = super::AreaLight::new(0, &surroundings.shapes[0], [1.0; 3], EmissionSides::Front);
-    let light = Light::Area(light);
-    let grid = Grid {
-        domain: Domain::Square,
-        columns: 30,
-        rows: 16,
-    };
-    let over_square = |pdf: &dyn Fn(&LightContext<'_>, &LightPoint) -> f32, p: Vec3| {
-        let (at, area) = on_mesh(mesh, p);
-        if area > 0.0 {
-            pdf(&context, &at) * area
-        } else {
-            0.0
-        }
-    };
-    let mut battery = Battery::new("points of a mesh");
-    let rays = samples("mesh, rays", N).map(|sample| {
-        let (u_position, u_depth, u_direction) = numbers(&sample);
-        Some(on_square(
-            mesh,
-            &light
-                .sample_emission(&context, u_position, || u_depth, u_direction)?
-                .from
-                .at,
-        ))
-    });
-    let position = |p| over_square(&|context, at| light.pdf_position(context, at), p);
-    battery.chi2("rays", &grid, position, rays);
-    let receiver = receivers()[0];
-    let points = samples("mesh, receivers", N).map(|sample| {
-        let u = sample.get_2d(Dimension::at(0, Purpose::NextEventPosition));
-        Some(on_square(
-            mesh,
-            &light
-                .sample_next_event(&context, Part::Whole, receiver, u, || 0.3)?
-                .at,
-        ))
-    });
-    let pdf = |p| {
-        over_square(
-            &|context, at| light.pdf_next_event(context, Part::Whole, receiver, at),
-            p,
-        )
-    };
-    battery.chi2("receivers", &grid, pdf, points);
-    battery.check();
+    let light = AreaLight::new(0, &shapes[0], [1.0; 3], EmissionSides::Front);
+    let grid = Grid::new(Domain::Square, [30, 16]);
+    let (to_square, to_light) = (|at: &_| on_square(mesh, at), |p| on_mesh(mesh, p));
+    check_points(&Light::Area(light), &grid, to_square, to_light);
 }

@@ -5,10 +5,9 @@ use super::{Surroundings, examples, receivers};
 use crate::light::{
     AreaLight, ChosenEmitter, EmissionSides, Facing, Light, LightTree, Part, Receiver,
 };
-use crate::math::{PI, Vec2, Vec3, sin_cos, warp};
-use crate::sampler::{Dimension, Purpose};
+use crate::math::{PI, sin_cos, warp};
 use crate::shape::{Mesh, Shape};
-use crate::testing::{check_close, samples};
+use crate::testing::prelude::*;
 
 /// Shapes, lights of all kinds and a tree over them.
 struct World {
@@ -22,10 +21,8 @@ impl World {
         let mut surroundings = Surroundings::new();
         surroundings.shapes.push(Shape::Mesh(ring()));
         let index = surroundings.shapes.len() - 1;
-        let mut lights: Vec<Light> = examples(&surroundings)
-            .into_iter()
-            .map(|(_, light)| light)
-            .collect();
+        let examples = examples(&surroundings).into_iter();
+        let mut lights: Vec<Light> = examples.map(|(_, light)| light).collect();
         for sides in [EmissionSides::Front, EmissionSides::Both] {
             let shape = &surroundings.shapes[index];
             let light = AreaLight::new(index, shape, [0.5, 1.0, 4.0], sides);
@@ -55,11 +52,8 @@ impl World {
 
     /// Returns every emitter once, with its probability.
     fn emitters(&self, tree: &LightTree, receiver: &Receiver) -> Vec<ChosenEmitter> {
-        let found = self
-            .primitives()
-            .into_iter()
-            .map(|(light, primitive)| tree.find(|| *receiver, light, primitive));
-        let mut emitters: Vec<ChosenEmitter> = found.collect();
+        let find = |(light, primitive)| tree.find(|| *receiver, light, primitive);
+        let mut emitters: Vec<_> = self.primitives().into_iter().map(find).collect();
         emitters.dedup();
         emitters
     }
@@ -68,23 +62,19 @@ impl World {
 /// Returns a band of triangles that faces outwards all around, and is not flat.
 fn ring() -> Mesh {
     const N: u32 = 24;
-    let positions = (0..2 * N).map(|i| {
+    let position = |i: u32| {
         let (sin, cos) = sin_cos(PI * i as f32 / N as f32);
         let radius = 3.0 + 0.4 * (i % 3) as f32;
-        Vec3::new(
-            radius * cos,
-            radius * sin,
-            (i % 2) as f32 + 0.1 * (i % 5) as f32,
-        )
-    });
+        let z = (i % 2) as f32 + 0.1 * (i % 5) as f32;
+        Vec3::new(radius * cos, radius * sin, z)
+    };
+    let triangle = |i: u32| match i % 2 {
+        0 => [i, (i + 2) % (2 * N), i + 1],
+        _ => [i, (i + 1) % (2 * N), (i + 2) % (2 * N)],
+    };
     Mesh {
-        positions: positions.collect(),
-        triangles: (0..2 * N)
-            .map(|i| match i % 2 {
-                0 => [i, (i + 2) % (2 * N), i + 1],
-                _ => [i, (i + 1) % (2 * N), (i + 2) % (2 * N)],
-            })
-            .collect(),
+        positions: (0..2 * N).map(position).collect(),
+        triangles: (0..2 * N).map(triangle).collect(),
         ..Mesh::default()
     }
 }
@@ -93,26 +83,22 @@ fn ring() -> Mesh {
 fn all_receivers() -> Vec<Receiver> {
     let n = Vec3::new(0.48, -0.6, 0.64);
     let on_a_lamp = ring().positions[4];
-    let points = receivers()
-        .into_iter()
-        .chain([on_a_lamp, Vec3::ZERO, Vec3::splat(1e4)]);
-    points
-        .flat_map(|point| {
-            let (front, back) = (Facing::Front(n), Facing::Front(-n));
-            [front, back, Facing::Both(n), Facing::Anywhere]
-                .map(|facing| Receiver { point, facing })
-        })
-        .collect()
+    let others = [on_a_lamp, Vec3::ZERO, Vec3::splat(1e4)];
+    let (front, back) = (Facing::Front(n), Facing::Front(-n));
+    let facings = [front, back, Facing::Both(n), Facing::Anywhere];
+    let at = |point| facings.map(|facing| Receiver { point, facing });
+    receivers().into_iter().chain(others).flat_map(at).collect()
 }
 
 fn worlds() -> [(&'static str, World); 4] {
+    let is_point = |light: &Light| matches!(light, Light::Point(_));
     [
         ("all kinds", World::new(|_| true)),
         ("finite", World::new(|light| !light.is_infinite())),
         ("infinite", World::new(Light::is_infinite)),
         (
             "one finite",
-            World::new(|light| light.is_infinite() || matches!(light, Light::Point(_))),
+            World::new(|light| light.is_infinite() || is_point(light)),
         ),
     ]
 }
@@ -124,13 +110,9 @@ fn probabilities_sum_to_one_and_are_those_of_the_draws() {
         for (receiver, k) in all_receivers().into_iter().zip(0..) {
             let emitters = world.emitters(&tree, &receiver);
             let sum: f32 = emitters.iter().map(|emitter| emitter.prob).sum();
-            check_close(sum, 1.0, 1e-4, name);
-            check_draws(
-                &tree,
-                &receiver,
-                &emitters,
-                &format!("{name}, receiver {k}"),
-            );
+            let case = format!("{name}, receiver {k}");
+            check_close(sum, 1.0, 1e-4, &case);
+            check_draws(&tree, &receiver, &emitters, &case);
         }
     }
 }
@@ -164,22 +146,17 @@ fn whatever_lights_a_receiver_can_be_drawn() {
         let get = |dimension| sample.get_2d(Dimension::at(dimension, Purpose::Scatter));
         let (n, place) = (warp::uniform_sphere(get(0)), warp::uniform_sphere(get(1)));
         let point = place * (8.0 * get(2).x) + Vec3::new(0.5, -1.0, 1.0);
-        let receiver = Receiver {
-            point,
-            facing: Facing::Front(n),
-        };
+        let facing = Facing::Front(n);
+        let receiver = Receiver { point, facing };
         for emitter in world.emitters(&tree, &receiver) {
             let ChosenEmitter { light, part, prob } = emitter;
             let light = &world.lights[light as usize];
             let shines = (3..20).any(|i| {
-                let Some(drawn) = light.sample_next_event(&context, part, point, get(i), || 0.3)
-                else {
+                let drawn = light.sample_next_event(&context, part, point, get(i), || 0.3);
+                // A triangle without area is drawn by nobody else.
+                let Some(drawn) = drawn.filter(|drawn| drawn.pdf.is_finite()) else {
                     return false;
                 };
-                // A triangle without area is drawn by nobody else.
-                if !drawn.pdf.is_finite() {
-                    return false;
-                }
                 let w = drawn.at.locus.direction_from(point).normalize();
                 let emitted = light.emitted(&context, &drawn.at, -w);
                 n.dot(w) > 0.0 && emitted.iter().any(|&lane| lane > 0.0)
@@ -234,10 +211,9 @@ fn half_of_the_choices_know_of_the_sky() {
 fn one_emitter_takes_no_number() {
     let world = World::new(|light| matches!(light, Light::Point(_)));
     let receiver = all_receivers()[0];
-    let drawn = world
-        .tree()
-        .sample(|| receiver, || panic!("a number is asked for"));
-    assert_eq!(drawn, Some(world.tree().find(|| receiver, 0, 0)));
+    let tree = world.tree();
+    let drawn = tree.sample(|| receiver, || panic!("a number is asked for"));
+    assert_eq!(drawn, Some(tree.find(|| receiver, 0, 0)));
     assert!((drawn.unwrap().prob - 1.0).abs() <= 0.0);
     let dark = World::new(|_| false);
     assert!(dark.tree().sample(|| receiver, || 0.5).is_none());
@@ -252,8 +228,7 @@ fn what_is_near_and_faces_the_receiver_is_preferred() {
         point: Vec3::new(8.0, 0.0, 0.5),
         facing: Facing::Front(-Vec3::X),
     };
-    let probs = (0..48).map(|i| world.tree().find(|| outside, ring, i).prob);
-    let probs: Vec<f32> = probs.collect();
-    assert!(probs[0] > 5.0 * probs[24], "{} and {}", probs[0], probs[24]);
-    assert!(Vec2::new(probs[12], probs[36]).max_element() < probs[0]);
+    let [near, far, a, b] = [0, 24, 12, 36].map(|i| world.tree().find(|| outside, ring, i).prob);
+    let is_preferred = near > 5.0 * far && near > a.max(b);
+    assert!(is_preferred, "{near}, {far}, {a}, {b}");
 }

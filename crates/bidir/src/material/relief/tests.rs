@@ -3,7 +3,8 @@
 use super::*;
 use crate::math::{Affine3A, PI, sin_cos};
 use crate::shape::{Cylinder, Disk, Mesh, Orientation, Shape, Sphere, WorldFromObject};
-use crate::texture::{Bilerp, Mapping, Noise, NoiseKind, TextureSpace};
+use crate::testing::prelude::fbm;
+use crate::texture::{Bilerp, Mapping, TextureSpace};
 
 /// Returns the points of the first primitive with their frames under a relief, where a pixel is `width` wide.
 fn frames(shape: &Shape, relief: &Relief, width: f32) -> Vec<(SurfacePoint, Frame)> {
@@ -50,10 +51,21 @@ fn ramp(a: f32, b: f32) -> Relief {
 }
 
 fn normal_map(stored: [f32; 3], bitangent: Bitangent) -> Relief {
-    Relief::NormalMap(NormalMap {
+    Relief::NormalMap(map_of(stored, bitangent))
+}
+
+fn map_of(stored: [f32; 3], bitangent: Bitangent) -> NormalMap {
+    NormalMap {
         texture: ColorTexture::Constant(stored),
         scale: 1.0,
         bitangent,
+    }
+}
+
+fn reversed(mesh: Mesh) -> Shape {
+    Shape::Mesh(Mesh {
+        orientation: Orientation::Reversed,
+        ..mesh
     })
 }
 
@@ -74,26 +86,17 @@ fn a_ramp_tilts_a_plane() {
     let mirrored = [Vec2::ZERO, -Vec2::X, Vec2::new(-1.0, 0.5)];
     for uvs in [along, turned, mirrored] {
         // The height is linear: its gradient over the plane follows from its corners.
-        let height = uvs.map(|uv| 0.3 * uv.x - 0.2 * uv.y);
-        let gradient = Vec2::new(height[1] - height[0], 0.0) / 2.0;
-        let gradient = Vec2::new(gradient.x, (height[2] - height[1]) / 3.0);
-        let expected = Vec3::new(-gradient.x, -gradient.y, 1.0).normalize();
+        let [a, b, c] = uvs.map(|uv| 0.3 * uv.x - 0.2 * uv.y);
+        let [dx, dy] = [(b - a) / 2.0, (c - b) / 3.0];
         for width in [0.0, 0.001, 0.3] {
-            let shape = Shape::Mesh(triangle(uvs));
-            for (_, frame) in frames(&shape, &ramp(0.3, -0.2), width) {
-                check_normal(&frame, expected);
-            }
+            let check = |shape: &Shape, z| {
+                for (_, frame) in frames(shape, &ramp(0.3, -0.2), width) {
+                    check_normal(&frame, Vec3::new(-dx, -dy, z).normalize());
+                }
+            };
+            check(&Shape::Mesh(triangle(uvs)), 1.0);
             // A reversed front pushes to its own side.
-            let reversed = Shape::Mesh(Mesh {
-                orientation: Orientation::Reversed,
-                ..triangle(uvs)
-            });
-            for (_, frame) in frames(&reversed, &ramp(0.3, -0.2), width) {
-                check_normal(
-                    &frame,
-                    Vec3::new(-gradient.x, -gradient.y, -1.0).normalize(),
-                );
-            }
+            check(&reversed(triangle(uvs)), -1.0);
         }
     }
 }
@@ -125,12 +128,8 @@ fn interpolated_normals_are_pushed_along() {
 fn a_sphere_bulges() {
     let (r, e) = (2.0, 0.4);
     // v runs from θ = π at the bottom; over a thin band the ramp of v is that of θ.
-    let sphere = Sphere::partial(
-        Affine3A::IDENTITY,
-        r,
-        Vec3::new(-r, r, 2.0 * PI),
-        Orientation::Natural,
-    );
+    let (limits, front) = (Vec3::new(-r, r, 2.0 * PI), Orientation::Natural);
+    let sphere = Sphere::partial(Affine3A::IDENTITY, r, limits, front);
     for (surface, frame) in frames(&Shape::Sphere(sphere), &ramp(0.0, e), 1e-3) {
         let p = surface.point / r;
         let theta = PI * (1.0 - surface.uv.y);
@@ -145,27 +144,18 @@ fn a_sphere_bulges() {
 
 #[test]
 fn a_constant_height_or_a_flat_map_changes_nothing() {
-    let sphere = Sphere::new(
-        Affine3A::from_scale(Vec3::new(1.0, 2.0, 0.5)),
-        1.0,
-        Orientation::Natural,
-    );
-    let disk = Disk::new(
+    let stretched = Affine3A::from_scale(Vec3::new(1.0, 2.0, 0.5));
+    let [tilted, turned] = [
         Affine3A::from_rotation_x(1.0),
-        0.2,
-        [0.1, 1.0],
-        4.0,
-        Orientation::Reversed,
-    );
-    let mesh = triangle([Vec2::ZERO; 3]);
+        Affine3A::from_rotation_y(2.0),
+    ];
     let limits = Vec3::new(-0.4, 0.7, 5.0);
-    let turned = Affine3A::from_rotation_y(2.0);
-    let cylinder = Cylinder::new(turned, 0.6, limits, Orientation::Natural);
+    let (front, back) = (Orientation::Natural, Orientation::Reversed);
     for shape in [
-        Shape::Disk(disk),
-        Shape::Mesh(mesh),
-        Shape::Sphere(sphere),
-        Shape::Cylinder(cylinder),
+        Shape::Disk(Disk::new(tilted, 0.2, [0.1, 1.0], 4.0, back)),
+        Shape::Mesh(triangle([Vec2::ZERO; 3])),
+        Shape::Sphere(Sphere::new(stretched, 1.0, front)),
+        Shape::Cylinder(Cylinder::new(turned, 0.6, limits, front)),
     ] {
         let level = Relief::Displacement(FloatTexture::Constant(0.0));
         for relief in [level, normal_map([0.5, 0.5, 1.0], Bitangent::RightHanded)] {
@@ -185,37 +175,36 @@ fn normal_maps_follow_the_parameters() {
     let upright = [Vec2::ZERO, Vec2::X, Vec2::ONE];
     let mirrored = [Vec2::ZERO, Vec2::X, Vec2::new(1.0, -1.0)];
     let flipped = Vec3::new(0.0, -0.6, 0.8);
-    for (uvs, map, bitangent, expected) in [
-        (upright, n, Bitangent::RightHanded, n),
-        (upright, sideways, Bitangent::RightHanded, sideways),
-        (upright, sideways, Bitangent::AlongV, sideways),
-        (mirrored, sideways, Bitangent::RightHanded, sideways),
-        (mirrored, sideways, Bitangent::AlongV, flipped),
-    ] {
-        let relief = normal_map(stored(map), bitangent);
-        for (_, frame) in frames(&Shape::Mesh(triangle(uvs)), &relief, 0.0) {
-            check_normal(&frame, expected);
-        }
-    }
-    // With a tangent of its own a surface has the same sides, whatever the parameters' directions.
-    for (uvs, expected) in [
-        (upright, Vec3::new(-0.6, 0.0, 0.8)),
-        (mirrored, n),
-        (upright.map(|uv| -uv), Vec3::new(-0.6, 0.0, 0.8)),
+    let (right_handed, along_v) = (Bitangent::RightHanded, Bitangent::AlongV);
+    for (uvs, tangent, map, bitangent, expected) in [
+        (upright, None, n, right_handed, n),
+        (upright, None, sideways, right_handed, sideways),
+        (upright, None, sideways, along_v, sideways),
+        (mirrored, None, sideways, right_handed, sideways),
+        (mirrored, None, sideways, along_v, flipped),
+        // With a tangent of its own a surface has the same sides, whatever the parameters' directions.
+        (upright, Some(Vec3::Y), sideways, along_v, n.with_x(-0.6)),
+        (mirrored, Some(Vec3::Y), sideways, along_v, n),
+        (
+            upright.map(|uv| -uv),
+            Some(Vec3::Y),
+            sideways,
+            along_v,
+            n.with_x(-0.6),
+        ),
     ] {
         let mesh = Mesh {
-            tangents: vec![Vec3::Y; 3],
+            tangents: tangent.map_or(Vec::new(), |tangent| vec![tangent; 3]),
             ..triangle(uvs)
         };
-        let relief = normal_map(stored(sideways), Bitangent::AlongV);
+        let relief = normal_map(stored(map), bitangent);
         for (_, frame) in frames(&Shape::Mesh(mesh), &relief, 0.0) {
             check_normal(&frame, expected);
         }
     }
     let half = Relief::NormalMap(NormalMap {
-        texture: ColorTexture::Constant(stored(n)),
         scale: 0.5,
-        bitangent: Bitangent::RightHanded,
+        ..map_of(stored(n), right_handed)
     });
     for (_, frame) in frames(&Shape::Mesh(triangle(upright)), &half, 0.0) {
         check_normal(&frame, Vec3::new(0.3, 0.0, 0.8).normalize());
@@ -225,19 +214,15 @@ fn normal_maps_follow_the_parameters() {
 /// However rough: unit frames on the front, and nothing that is not a number.
 #[test]
 fn relief_stays_in_front() {
-    let wild = FloatTexture::Noise(Arc::new(Noise {
-        kind: NoiseKind::Fbm {
-            octaves: 8,
-            roughness: 1.0,
-        },
-        space: TextureSpace::new(Affine3A::from_scale(Vec3::splat(30.0))),
-    }));
+    let space = TextureSpace::new(Affine3A::from_scale(Vec3::splat(30.0)));
+    let wild = fbm(8, 1.0, space);
     let sphere = Sphere::new(Affine3A::IDENTITY, 1.0, Orientation::Reversed);
     let nan = Relief::Displacement(FloatTexture::Constant(f32::NAN));
     let black = normal_map([0.5; 3], Bitangent::AlongV);
     for relief in [Relief::Displacement(wild), nan, black] {
         for (surface, frame) in frames(&Shape::Sphere(sphere), &relief, 0.0) {
-            assert!(frame.z.dot(surface.n_g) >= 0.0 && (frame.z.length() - 1.0).abs() < 1e-5);
+            let is_unit = (frame.z.length() - 1.0).abs() < 1e-5;
+            assert!(frame.z.dot(surface.n_g) >= 0.0 && is_unit);
         }
     }
 }
@@ -288,10 +273,8 @@ fn check_differentials(
         Some(place) => place.0.transform_point3(p.as_dvec3()).as_vec3(),
     };
     for i in 0..16 {
-        let uv = Vec2::new(
-            0.1 + 0.05 * i as f32,
-            (0.3 + 0.37 * i as f32).fract() * 0.8 + 0.1,
-        );
+        let v = (0.3 + 0.37 * i as f32).fract() * 0.8 + 0.1;
+        let uv = Vec2::new(0.1 + 0.05 * i as f32, v);
         let surface = |uv: Vec2| {
             let p = world(point(uv));
             match place {
@@ -306,15 +289,11 @@ fn check_differentials(
             let (after, before) = (surface(uv + axis * h), surface(uv - axis * h));
             let slope = |a: Vec3, b: Vec3| (a - b) / (2.0 * h);
             let expected = slope(after.point, before.point);
-            assert!(
-                dp.distance(expected) < 5e-3 * expected.length(),
-                "{dp}, {expected}"
-            );
+            let is_near = dp.distance(expected) < 5e-3 * expected.length();
+            assert!(is_near, "{dp}, {expected}");
             let expected = slope(after.shading.z, before.shading.z);
-            assert!(
-                dn.distance(expected) < 5e-3 * (1.0 + expected.length()),
-                "{dn}, {expected}"
-            );
+            let is_near = dn.distance(expected) < 5e-3 * (1.0 + expected.length());
+            assert!(is_near, "{dn}, {expected}");
         }
         let [gradient_u, gradient_v] = d.gradients();
         assert!((gradient_u.dot(d.dp_du) - 1.0).abs() < 1e-3);

@@ -2,30 +2,22 @@
 
 use super::*;
 use crate::bsdf::{FacetScattering, Thickness, TransportMode};
-use crate::material::{Anisotropy, ConductorIndex};
+use crate::material::{Anisotropy, CoatSettings};
 use crate::math::{ONE_MINUS_EPSILON, Vec2, Vec3};
 use crate::spectrum::Lanes;
-use crate::texture::{
-    Beyond, Change, ColorTexture, FloatTexture, Image, ImageFilter, ImageMap, Mapping,
-    TexturePoint, Wrap,
-};
+use crate::testing::prelude::{coat, diffuse, image_map, mix, principled, reflecting};
+use crate::texture::{ColorTexture, FloatTexture, ImageFilter, TexturePoint};
 use std::sync::Arc;
 
 /// Numbers that are even but for one texel of 64 x 64.
 fn speck(even: f32, other: f32) -> FloatTexture {
     let mut texels = vec![[even]; 64 * 64];
     texels[70] = [other];
-    FloatTexture::Image(Arc::new(ImageMap {
-        image: Arc::new(Image::new(64, texels).unwrap()),
-        wrap: Wrap::all(Beyond::Repeat),
-        filter: ImageFilter::Point,
-        change: Change::Scale(1.0),
-        mapping: Mapping::IDENTITY,
-    }))
+    FloatTexture::Image(Arc::new(image_map(64, texels, ImageFilter::Point)))
 }
 
-fn grey() -> ColorTexture {
-    ColorTexture::Constant([0.5; 3])
+fn grey() -> Material {
+    diffuse([0.5; 3])
 }
 
 fn rough(u: FloatTexture, v: FloatTexture) -> Roughness {
@@ -38,19 +30,16 @@ fn evenly(value: f32) -> Roughness {
     rough(texture.clone(), texture)
 }
 
-fn diffuse() -> Material {
-    Material::Diffuse {
-        reflectance: grey(),
-    }
-}
-
 fn metal(roughness: Roughness) -> Material {
-    let index = ConductorIndex::Reflectance(grey());
     Material::Conductor {
-        index,
+        index: reflecting([0.5; 3]),
         roughness,
         scattering: FacetScattering::Single,
     }
+}
+
+fn mirror() -> Material {
+    metal(Roughness::SMOOTH)
 }
 
 fn glass(eta: f32, roughness: Roughness) -> Material {
@@ -61,33 +50,22 @@ fn glass(eta: f32, roughness: Roughness) -> Material {
     }
 }
 
-fn coat(eta: f32, roughness: Roughness) -> CoatSettings {
+fn coat_of(eta: f32, roughness: Roughness) -> CoatSettings {
     CoatSettings {
         eta,
         roughness,
-        thickness: FloatTexture::Constant(0.01),
-        albedo: ColorTexture::Constant([0.0; 3]),
-        g: FloatTexture::Constant(0.0),
+        ..coat(0.0)
     }
 }
 
 fn varnish(eta: f32, roughness: Roughness) -> Material {
-    Material::CoatedDiffuse(CoatedDiffuseMaterial::new(coat(eta, roughness), grey()))
+    let base = ColorTexture::Constant([0.5; 3]);
+    Material::CoatedDiffuse(CoatedDiffuseMaterial::new(coat_of(eta, roughness), base))
 }
 
 fn lacquer(eta: f32, interface: f32, metal: f32) -> Material {
-    let (coat, index) = (
-        coat(eta, evenly(interface)),
-        ConductorIndex::Reflectance(grey()),
-    );
-    let material = CoatedConductorMaterial::new(coat, index, evenly(metal));
-    Material::CoatedConductor(material)
-}
-
-fn principled(change: impl FnOnce(&mut PrincipledMaterial)) -> Material {
-    let mut material = PrincipledMaterial::default();
-    change(&mut material);
-    Material::Principled(Arc::new(material))
+    let (coat, index) = (coat_of(eta, evenly(interface)), reflecting([0.5; 3]));
+    Material::CoatedConductor(CoatedConductorMaterial::new(coat, index, evenly(metal)))
 }
 
 fn mixture(amount: FloatTexture, materials: [Material; 2]) -> Material {
@@ -96,10 +74,7 @@ fn mixture(amount: FloatTexture, materials: [Material; 2]) -> Material {
 
 /// Returns the mirrors of this part beside what is diffuse.
 fn mirrors(amount: f32) -> Material {
-    mixture(
-        FloatTexture::Constant(amount),
-        [diffuse(), metal(Roughness::SMOOTH)],
-    )
+    mix([grey(), mirror()], amount)
 }
 
 /// Returns true where draws at the middle of all texels, by the least and the largest numbers and some between,
@@ -125,7 +100,7 @@ fn draws_find_dirac(material: &Material) -> bool {
 }
 
 #[track_caller]
-fn check(is_specular: bool, materials: impl IntoIterator<Item = Material>) {
+fn check_all(is_specular: bool, materials: impl IntoIterator<Item = Material>) {
     for (i, material) in materials.into_iter().enumerate() {
         let kind = material.kind();
         assert_eq!(material.may_be_specular(), is_specular, "{kind} {i}");
@@ -133,41 +108,38 @@ fn check(is_specular: bool, materials: impl IntoIterator<Item = Material>) {
     }
 }
 
+#[track_caller]
+fn specular(materials: impl IntoIterator<Item = Material>) {
+    check_all(true, materials);
+}
+
+#[track_caller]
+fn finite(materials: impl IntoIterator<Item = Material>) {
+    check_all(false, materials);
+}
+
 #[test]
 fn interfaces_are_specular_where_they_are_smooth() {
-    check(true, [metal(Roughness::SMOOTH), metal(evenly(1e-7))]);
-    check(true, [metal(rough(speck(0.3, 0.0), speck(0.2, 0.0)))]);
-    let nan = rough(speck(0.3, f32::NAN), FloatTexture::Constant(0.0));
-    check(true, [metal(nan)]);
-    let across = rough(FloatTexture::Constant(0.0), FloatTexture::Constant(0.3));
+    let [smooth, across] = [0.0, 0.3].map(FloatTexture::Constant);
+    let nan = rough(speck(0.3, f32::NAN), smooth.clone());
+    let speckled = rough(speck(0.3, 0.0), speck(0.2, 0.0));
+    specular([mirror(), metal(evenly(1e-7)), metal(speckled), metal(nan)]);
     let away = rough(speck(0.3, 0.1), FloatTexture::Constant(0.2));
-    check(
-        false,
-        [diffuse(), metal(evenly(0.1)), metal(across), metal(away)],
-    );
-    check(
-        true,
-        [glass(1.5, Roughness::SMOOTH), glass(1.0, evenly(0.5))],
-    );
-    check(true, [Material::ThinDielectric { eta: 1.5 }]);
-    check(false, [glass(1.5, evenly(0.5))]);
+    finite([grey(), metal(evenly(0.1)), metal(away)]);
+    finite([metal(rough(smooth, across)), glass(1.5, evenly(0.5))]);
+    specular([glass(1.5, Roughness::SMOOTH), glass(1.0, evenly(0.5))]);
+    specular([Material::ThinDielectric { eta: 1.5 }]);
 }
 
 #[test]
 fn coats_are_specular_where_they_are_smooth_and_reflect() {
-    check(
-        true,
-        [varnish(1.5, Roughness::SMOOTH), lacquer(1.5, 0.0, 0.3)],
-    );
-    check(true, [lacquer(1.5, 0.0, 0.0), lacquer(1.0, 0.0, 0.0)]);
-    check(
-        true,
-        [varnish(1.5, rough(speck(0.3, 0.0), speck(0.3, 0.0)))],
-    );
-    check(false, [varnish(1.5, evenly(0.3))]);
+    let speckled = rough(speck(0.3, 0.0), speck(0.3, 0.0));
+    specular([varnish(1.5, Roughness::SMOOTH), varnish(1.5, speckled)]);
+    specular([(1.5, 0.3), (1.5, 0.0), (1.0, 0.0)].map(|(eta, metal)| lacquer(eta, 0.0, metal)));
+    finite([varnish(1.5, evenly(0.3))]);
     // By Fresnel's equations it reflects what rounding leaves.
     assert!(!varnish(1.0, Roughness::SMOOTH).may_be_specular());
-    check(false, [lacquer(1.5, 0.3, 0.0), lacquer(1.5, 0.3, 0.3)]);
+    finite([lacquer(1.5, 0.3, 0.0), lacquer(1.5, 0.3, 0.3)]);
 }
 
 #[test]
@@ -179,16 +151,13 @@ fn principled_materials_are_specular_where_a_layer_is() {
             material.coat_roughness = ScaledFloat::constant(roughness);
         })
     };
-    check(
-        true,
-        [coated(1.0, 0.0), coated(0.1, 0.0), coated(1e-3, 0.02)],
-    );
-    check(false, [coated(0.0, 0.0), coated(1.0, 0.2)]);
+    specular([coated(1.0, 0.0), coated(0.1, 0.0), coated(1e-3, 0.02)]);
+    finite([coated(0.0, 0.0), coated(1.0, 0.2)]);
     let speckled = |even: f32, other: f32| {
         principled(|material| material.roughness.texture = Some(speck(even, other)))
     };
-    check(true, [speckled(0.6, 0.0), speckled(0.6, 0.03)]);
-    check(false, [principled(|_| ()), speckled(0.6, 0.1)]);
+    specular([speckled(0.6, 0.0), speckled(0.6, 0.03)]);
+    finite([principled(|_| ()), speckled(0.6, 0.1)]);
     let brushed = |strength| {
         principled(|material| {
             material.roughness = zero();
@@ -199,8 +168,8 @@ fn principled_materials_are_specular_where_a_layer_is() {
             };
         })
     };
-    check(true, [brushed(0.0)]);
-    check(false, [brushed(0.5)]);
+    specular([brushed(0.0)]);
+    finite([brushed(0.5)]);
     let cloth = |transmission| {
         principled(|material| {
             (material.metallic, material.specular, material.roughness) = (zero(), zero(), zero());
@@ -208,29 +177,14 @@ fn principled_materials_are_specular_where_a_layer_is() {
             material.thickness = Thickness::Solid;
         })
     };
-    check(true, [cloth(0.1)]);
-    check(false, [cloth(0.0)]);
+    specular([cloth(0.1)]);
+    finite([cloth(0.0)]);
 }
 
 #[test]
 fn mixtures_are_specular_where_a_part_is_however_small() {
-    check(
-        true,
-        [mirrors(1.0), mirrors(0.2), mirrors(1e-3), mirrors(0.9999)],
-    );
-    check(false, [mirrors(0.0)]);
-    let parts = || [diffuse(), metal(Roughness::SMOOTH)];
-    check(true, [mixture(speck(0.0, 0.01), parts())]);
-    let [first, second] = parts();
-    check(
-        false,
-        [mixture(FloatTexture::Constant(1.0), [second, first])],
-    );
-    check(
-        true,
-        [mixture(
-            FloatTexture::Constant(0.5),
-            [diffuse(), mirrors(0.01)],
-        )],
-    );
+    specular([1.0, 0.2, 1e-3, 0.9999].map(mirrors));
+    specular([mixture(speck(0.0, 0.01), [grey(), mirror()])]);
+    specular([mix([grey(), mirrors(0.01)], 0.5)]);
+    finite([mirrors(0.0), mix([mirror(), grey()], 1.0)]);
 }

@@ -1,14 +1,12 @@
 //! Collisions are as likely as weights take them to be, and as closed forms say.
 
 use super::*;
-use crate::math::{Affine3A, Vec3};
-use crate::medium::{Coefficients, Grid as Cells, HenyeyGreenstein, Medium};
+use crate::medium::{Grid as Cells, Medium};
 use crate::sampler::SampleStream;
+use crate::scene::Edge;
 use crate::scene::passage::Crossing;
-use crate::scene::{Edge, SceneBuilder};
-use crate::shape::{Orientation, Shape, Sphere};
 use crate::spectrum::Rgb;
-use crate::testing::{Battery, Domain, Grid, check_close, samples};
+use crate::testing::{Domain, Grid, prelude::*};
 use accel::Stop;
 use std::sync::atomic::AtomicBool;
 
@@ -19,54 +17,42 @@ const START: Vec3 = Vec3::new(0.1, -0.2, -3.0);
 const AROUND: [Rgb; 2] = [[0.02, 0.05, 0.0], [0.1, 0.2, 0.4]];
 const INSIDE: [Rgb; 2] = [[0.1, 0.0, 0.3], [1.5, 0.4, 0.1]];
 
-fn coefficients([absorption, scattering]: [Rgb; 2]) -> Coefficients {
-    Coefficients::new(absorption, scattering).expect("coefficients")
-}
-
-fn phase() -> HenyeyGreenstein {
-    HenyeyGreenstein::new(0.3).expect("a mean cosine")
-}
-
 /// Returns a scene in one medium.
-fn filled(medium: Medium) -> (SceneBuilder, MediumId) {
-    let mut builder = SceneBuilder::new();
-    let around = builder.medium(medium);
-    builder.medium_at(START, around);
+fn filled(medium: Medium) -> (ShotBuilder, MediumId) {
+    let mut builder = builder(1, 0.0);
+    let around = builder.fill(medium);
     (builder, around)
 }
 
-fn fog() -> (SceneBuilder, MediumId) {
-    filled(Medium::homogeneous(coefficients(AROUND), phase()))
+fn fog() -> (ShotBuilder, MediumId) {
+    filled(medium(AROUND[0], AROUND[1], 0.3))
 }
 
 /// Fog around a ball of another medium.
 fn ball_in_fog() -> Scene {
     let (mut builder, outside) = fog();
-    let inside = builder.medium(Medium::homogeneous(coefficients(INSIDE), phase()));
-    let ball = Sphere::new(Affine3A::IDENTITY, 1.0, Orientation::Natural);
-    builder.boundary(Shape::Sphere(ball), MediumSides { outside, inside });
-    builder.build().expect("the scene is valid")
+    let inside = builder.medium(medium(INSIDE[0], INSIDE[1], 0.3));
+    builder.bound(sphere(Vec3::ZERO, 1.0), outside, inside);
+    builder.build().scene
 }
 
 /// Smoke in cells of a box around the origin, without a boundary.
-fn smoke() -> Scene {
+fn cells() -> Scene {
     let size = [4, 4, 8];
     let value = |i: usize| [((i * 7 + i / 16 * 2) % 9) as f32 / 3.0];
     let place =
         Affine3A::from_translation(Vec3::splat(-2.0)) * Affine3A::from_scale(Vec3::splat(4.0));
     let cells = Cells::new(size, (0..128).map(value).collect(), place).expect("a grid");
-    let smoke = Medium::of_density(coefficients(INSIDE), cells, phase()).expect("thin smoke");
-    filled(smoke).0.build().expect("the scene is valid")
+    let smoke = smoke(coefficients(INSIDE[0], INSIDE[1]), cells, 0.3);
+    filled(smoke).0.build().scene
 }
 
 /// Returns the place of a collision as a part of `REACH`. None: there is none up to there.
 fn collision(scene: &Scene, stream: &SampleStream) -> Option<Vec3> {
     let ray = Ray::new(START, Vec3::Z);
     let chances = RayDraws::new(stream, 1);
-    let medium = scene.medium_at(START);
-    let Interaction::Medium(locus, _) =
-        scene.advance(&ray, medium, chances, Lanes::Rgb).interaction
-    else {
+    let advance = scene.advance(&ray, scene.medium_at(START), chances, Lanes::Rgb);
+    let Interaction::Medium(locus, _) = advance.interaction else {
         return None;
     };
     let part = (locus.point.z - START.z) / REACH;
@@ -99,17 +85,13 @@ fn stopped_rays_go_through_no_media() {
 
 #[test]
 fn collisions_follow_their_density() {
-    let grid = Grid {
-        domain: Domain::Square,
-        columns: 96,
-        rows: 1,
-    };
+    let grid = Grid::new(Domain::Square, [96, 1]);
     let mut battery = Battery::new("distances in media");
-    let even = fog().0.build().expect("the scene is valid");
+    let even = fog().0.build().scene;
     for (case, scene) in [
         ("even", even),
         ("a ball in fog", ball_in_fog()),
-        ("cells", smoke()),
+        ("cells", cells()),
     ] {
         let pdf = |p: Vec3| density(&scene, p.x * REACH) * REACH;
         let draws = samples(case, 1 << 20).map(|stream| collision(&scene, &stream));
@@ -128,15 +110,12 @@ fn densities_are_those_of_closed_forms() {
         let within = t.clamp(enter, leave) - enter;
         let lanes = (0..3).map(|lane| {
             let [outside, inside] = [AROUND, INSIDE].map(|[a, s]| a[lane] + s[lane]);
-            let here = if t > enter && t < leave {
-                inside
-            } else {
-                outside
-            };
+            let is_inside = t > enter && t < leave;
+            let here = if is_inside { inside } else { outside };
             here * libm::expf(-outside * (t - within) - inside * within)
         });
         let expected = lanes.sum::<f32>() / 3.0;
-        check_close(density(&scene, t), expected, 1e-4, &format!("t = {t}"));
+        check_close(density(&scene, t), expected, 1e-4, format!("t = {t}"));
     }
 }
 
@@ -161,40 +140,36 @@ fn boundaries_in_one_place_have_one_order() {
 /// A guess stands where nothing was crossed, and the medium is the same everywhere and not too thick.
 #[test]
 fn right_guesses_are_known_as_such() {
-    let even = || fog().0.build().expect("the scene is valid");
-    let side = Vec3::X * 2.0;
+    let even = || fog().0.build().scene;
+    let (side, end) = (Vec3::X * 2.0, -START);
     for (case, scene, [from, to], expected) in [
-        ("fog", even(), [START, -START], true),
+        ("fog", even(), [START, end], true),
         ("thick fog", even(), [START, START + Vec3::Z * 20.0], false),
         (
             "past a ball",
             ball_in_fog(),
-            [START + side, side - START],
+            [START + side, end + side],
             true,
         ),
         ("into a ball", ball_in_fog(), [START, Vec3::ZERO], false),
-        ("through a ball", ball_in_fog(), [START, -START], false),
+        ("through a ball", ball_in_fog(), [START, end], false),
         (
             "in a ball",
             ball_in_fog(),
             [Vec3::Z * -0.1, Vec3::Z * 0.2],
             true,
         ),
-        ("smoke", smoke(), [Vec3::ZERO, Vec3::Z], false),
+        ("smoke", cells(), [Vec3::ZERO, Vec3::Z], false),
     ] {
         let [a, b] = [from, to].map(|point| Locus::in_medium(point, scene.medium_at(point)));
         let (ends, lanes) = ([&a, &b], Lanes::Rgb);
-        let edge = scene
-            .edge(ends, lanes, Stop::NEVER)
-            .expect("nothing is opaque");
+        let edge = scene.edge(ends, lanes, Stop::NEVER);
+        let edge = edge.expect("nothing is opaque");
         assert_eq!(edge.is_guessed, expected, "{case}");
         let guess = scene.guessed_edge(&a, &b, lanes);
         let numbers = |edge: &Edge| {
-            let lanes = (0..3).map(|lane| edge.transmittance[lane]);
-            lanes
-                .chain([edge.to_b, edge.to_a])
-                .map(f32::to_bits)
-                .collect::<Vec<_>>()
+            let [r, g, b] = [0, 1, 2].map(|lane| edge.transmittance[lane]);
+            [r, g, b, edge.to_b, edge.to_a].map(f32::to_bits)
         };
         assert_eq!(numbers(&edge) == numbers(&guess), expected, "{case}");
     }

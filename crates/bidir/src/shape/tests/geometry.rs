@@ -1,42 +1,28 @@
 use super::{Example, disk, examples, mirrored, moved, sphere, triangle, uneven};
 use crate::locus::Locus;
-use crate::material::Material;
-use crate::math::{DAffine3, DVec3, ONE_MINUS_EPSILON, PI, Vec2, Vec3, warp};
-use crate::sampler::{Dimension, Purpose};
-use crate::scene::{Scene, SceneBuilder};
+use crate::math::{DAffine3, DVec3, ONE_MINUS_EPSILON, PI, warp};
+use crate::scene::Scene;
 use crate::shape::{Disk, Mesh, Orientation, Shape, Sphere, SurfacePoint, WorldFromObject};
-use crate::testing::samples;
-use crate::texture::ColorTexture;
+use crate::testing::prelude::{
+    Dimension, Purpose, Vec2, Vec3, builder, check_close, check_near, diffuse, samples,
+};
 
 /// Returns the points of the surface, drawn.
 fn points(example: &Example) -> impl Iterator<Item = SurfacePoint> {
     samples(example.name, 200).map(|sample| {
-        example
-            .shape
-            .sample(0, sample.get_2d(Dimension::at(0, Purpose::LightPosition)))
-            .surface
+        let u = sample.get_2d(Dimension::at(0, Purpose::LightPosition));
+        example.shape.sample(0, u).surface
     })
 }
 
 /// Checks that normal, shading frame and error are what they say.
 #[track_caller]
 fn check_surface(example: &Example, at: &SurfacePoint) {
-    let name = example.name;
-    assert!(
-        (at.n_g.length() - 1.0).abs() < 1e-5,
-        "{name}: n_g {}",
-        at.n_g
-    );
-    assert!(
-        (at.shading.z - at.n_g).length() < 1e-5,
-        "{name}: n_s {}",
-        at.shading.z
-    );
-    assert!(at.shading.x.dot(at.shading.z).abs() < 1e-5, "{name}");
-    assert!(
-        (at.shading.x.cross(at.shading.y) - at.shading.z).length() < 1e-5,
-        "{name}"
-    );
+    let (name, frame) = (example.name, at.shading);
+    check_near(at.n_g.length(), 1.0, 1e-5, name);
+    assert!(frame.z.distance(at.n_g) < 1e-5, "{name}: n_s {}", frame.z);
+    assert!(frame.x.dot(frame.z).abs() < 1e-5, "{name}");
+    assert!(frame.x.cross(frame.y).distance(frame.z) < 1e-5, "{name}");
     // Neighbours on the surface lie across the normal.
     let square = (example.square)(at.point);
     let h = 1e-3;
@@ -45,13 +31,9 @@ fn check_surface(example: &Example, at: &SurfacePoint) {
         if !(0.02..0.98).contains(&x) || !(0.0..1.0).contains(&y) {
             continue;
         }
-        let near = Vec3::from_array((example.point)(x, y).map(|x| x as f32));
-        let away = (near - at.point).normalize();
-        assert!(
-            away.dot(at.n_g).abs() < 0.02,
-            "{name}: {away} is not across {}",
-            at.n_g
-        );
+        let away = ((example.point)(x, y).as_vec3() - at.point).normalize();
+        let is_across = away.dot(at.n_g).abs() < 0.02;
+        assert!(is_across, "{name}: {away} is not across {}", at.n_g);
     }
 }
 
@@ -71,16 +53,10 @@ fn points_lie_on_the_surface_within_their_error() {
         for at in points(&example) {
             let square = (example.square)(at.point).clamp(Vec2::ZERO, Vec2::ONE);
             let exact = (example.point)(f64::from(square.x), f64::from(square.y));
-            let offset: f64 = (0..3)
-                .map(|i| (exact[i] - f64::from(at.point[i])) * f64::from(at.n_g[i]))
-                .sum();
-            let distance = offset.abs();
-            assert!(
-                distance <= f64::from(at.error),
-                "{}: {distance} > {}",
-                example.name,
-                at.error
-            );
+            let offset = exact - at.point.as_dvec3();
+            let distance = offset.dot(at.n_g.as_dvec3()).abs();
+            let (name, error) = (example.name, at.error);
+            assert!(distance <= f64::from(error), "{name}: {distance} > {error}");
         }
     }
 }
@@ -128,13 +104,8 @@ fn the_front_is_the_outside_unless_reversed() {
         }
         let reversed = Shape::Sphere(Sphere::new(map, 0.7, Orientation::Reversed));
         let flat = disk("disk", map, [0.0, 1.0], 2.0 * PI);
-        let flat_reversed = Shape::Disk(Disk::new(
-            map,
-            0.3,
-            [0.0, 1.0],
-            2.0 * PI,
-            Orientation::Reversed,
-        ));
+        let (radii, back) = ([0.0, 1.0], Orientation::Reversed);
+        let flat_reversed = Shape::Disk(Disk::new(map, 0.3, radii, 2.0 * PI, back));
         for u in [Vec2::new(0.2, 0.3), Vec2::new(0.9, 0.8)] {
             let [natural, other] = [&ball.shape, &reversed].map(|s| s.sample(0, u).surface.n_g);
             assert!((natural + other).length() < 1e-6);
@@ -152,9 +123,8 @@ fn the_front_of_a_mesh_follows_its_winding_or_its_normals() {
     let [a, b, c] = faceted.triangle(0);
     let winding = (b - a).cross(c - a).normalize();
     let front = |mesh: &Mesh| {
-        Shape::Mesh(mesh.clone())
-            .sample(0, Vec2::splat(0.4))
-            .surface
+        let shape = Shape::Mesh(mesh.clone());
+        shape.sample(0, Vec2::splat(0.4)).surface
     };
     assert!((front(&faceted).n_g - winding).length() < 1e-6);
     let reversed = Mesh {
@@ -182,22 +152,18 @@ fn a_mesh_has_the_tangents_of_its_vertices() {
     let [a, b, c] = along_u.triangle(0);
     let normal = (b - a).cross(c - a).normalize();
     let [first, second] = [(b - a).normalize(), (c - a).normalize()];
-    let mesh = Mesh {
-        tangents: vec![first + normal * 3.0, second - normal, Vec3::ZERO],
+    let with = |tangents| Mesh {
+        tangents,
         ..along_u.clone()
     };
+    let mesh = with(vec![first + normal * 3.0, second - normal, Vec3::ZERO]);
     let at = Vec2::new(0.5, 0.2);
     let tangent = |mesh: &Mesh, place: Option<&WorldFromObject>| {
         let shape = Shape::Mesh(mesh.clone());
         let point = a * 0.3 + b * 0.5 + c * 0.2;
         let surface = match place {
             None => shape.surface_point(0, at, point),
-            Some(place) => shape.surface_point_at(
-                place,
-                0,
-                at,
-                place.0.transform_point3(point.as_dvec3()).as_vec3(),
-            ),
+            Some(place) => shape.surface_point_at(place, 0, at, place.point(point)),
         };
         surface.shading.x
     };
@@ -206,16 +172,9 @@ fn a_mesh_has_the_tangents_of_its_vertices() {
     let stretched = DVec3::new(1.0, -3.0, 0.5);
     let place = WorldFromObject(DAffine3::from_scale(stretched));
     let moved = (expected.as_dvec3() * stretched).as_vec3().normalize();
-    let flat = Mesh {
-        tangents: vec![first, second, Vec3::ZERO],
-        ..along_u.clone()
-    };
+    let flat = with(vec![first, second, Vec3::ZERO]);
     assert!(tangent(&flat, Some(&place)).distance(moved) < 1e-6);
-    let without = Mesh {
-        tangents: vec![normal; 3],
-        ..along_u.clone()
-    };
-    assert!(tangent(&without, None).is_finite());
+    assert!(tangent(&with(vec![normal; 3]), None).is_finite());
 }
 
 #[test]
@@ -226,38 +185,29 @@ fn triangles_of_any_size_have_their_area() {
             triangles: vec![[0, 1, 2]],
             ..Mesh::default()
         };
-        let area = triangle.triangle_area(0);
-        assert!(
-            (area / (size * size / 2.0) - 1.0).abs() < 1e-5,
-            "{size}: {area}"
-        );
+        check_close(triangle.triangle_area(0), size * size / 2.0, 1e-5, size);
     }
 }
 
 /// Returns a scene of one shape, which is an object at `place` if there is one.
 fn scene_of(shape: Shape, place: Option<DAffine3>) -> Scene {
-    let mut builder = SceneBuilder::new();
-    let material = builder.material(Material::Diffuse {
-        reflectance: ColorTexture::Constant([0.5; 3]),
-    });
+    let mut builder = builder(1, 0.0);
     if let Some(place) = place {
-        let object = builder.object();
+        let (object, material) = (builder.object(), builder.material(diffuse([0.5; 3])));
         builder.object_shape(object, shape, material);
         builder.instance(object, place);
     } else {
-        builder.shape(shape, material, None);
+        builder.add(shape, diffuse([0.5; 3]));
     }
-    builder.build().expect("the scene is valid")
+    builder.build().scene
 }
 
 /// Rays are as inexact as they are long, surfaces as their coordinates are large.
 #[test]
 fn no_surface_shadows_itself_from_afar() {
-    let place = DAffine3::from_scale_rotation_translation(
-        DVec3::new(0.02, -0.01, 0.03),
-        glam::DQuat::from_rotation_x(0.6),
-        DVec3::new(0.1, -0.04, 0.07),
-    );
+    let (scale, shift) = (DVec3::new(0.02, -0.01, 0.03), DVec3::new(0.1, -0.04, 0.07));
+    let turn = glam::DQuat::from_rotation_x(0.6);
+    let place = DAffine3::from_scale_rotation_translation(scale, turn, shift);
     for example in examples() {
         for place in [None, Some(place)] {
             let name = (example.name, place.is_some());

@@ -8,28 +8,20 @@ use crate::testing::{Battery, Domain, Grid, check_close, samples};
 fn stretch(example: &Example, x: f64, y: f64) -> f64 {
     let h = 1e-4;
     let (x, y) = (x.clamp(h, 1.0 - h), y.clamp(h, 1.0 - h));
-    let difference = |a: [f64; 3], b: [f64; 3]| -> [f64; 3] {
-        std::array::from_fn(|i| (a[i] - b[i]) / (2.0 * h))
-    };
-    let dx = difference((example.point)(x + h, y), (example.point)(x - h, y));
-    let dy = difference((example.point)(x, y + h), (example.point)(x, y - h));
-    let cross = |i: usize, j: usize| dx[i] * dy[j] - dx[j] * dy[i];
-    let [a, b, c] = [cross(1, 2), cross(2, 0), cross(0, 1)];
-    (a * a + b * b + c * c).sqrt()
+    let point = &example.point;
+    let dx = (point(x + h, y) - point(x - h, y)) / (2.0 * h);
+    let dy = (point(x, y + h) - point(x, y - h)) / (2.0 * h);
+    dx.cross(dy).length()
 }
 
 fn point(example: &Example, p: Vec3) -> Vec3 {
-    Vec3::from_array((example.point)(f64::from(p.x), f64::from(p.y)).map(|x| x as f32))
+    (example.point)(f64::from(p.x), f64::from(p.y)).as_vec3()
 }
 
 /// Drawn points follow the density, and it integrates to one over the area.
 #[test]
 fn samples_follow_the_density() {
-    let grid = Grid {
-        domain: Domain::Square,
-        columns: 20,
-        rows: 24,
-    };
+    let grid = Grid::new(Domain::Square, [20, 24]);
     let mut battery = Battery::new("shape densities");
     for example in examples() {
         let shape = &example.shape;
@@ -53,12 +45,8 @@ fn areas_are_those_of_a_fine_grid() {
         let midpoint = |i: i32| (f64::from(i) + 0.5) / f64::from(n);
         let cells = (0..n * n).map(|i| stretch(&example, midpoint(i % n), midpoint(i / n)));
         let area = cells.sum::<f64>() / f64::from(n * n);
-        check_close(
-            example.shape.primitive_area(0),
-            area as f32,
-            2e-4,
-            example.name,
-        );
+        let found = example.shape.primitive_area(0);
+        check_close(found, area, 2e-4, example.name);
     }
 }
 
@@ -72,12 +60,8 @@ fn the_density_of_a_sample_is_that_of_its_point() {
             let u = sample.get_2d(Dimension::at(1, Purpose::NextEventPosition));
             let drawn = shape.sample_from(0, receiver, u);
             let SurfacePoint { point, n_g, .. } = drawn.surface;
-            check_close(
-                drawn.pdf,
-                shape.pdf_from(0, receiver, point, n_g),
-                1e-4,
-                name,
-            );
+            let pdf = shape.pdf_from(0, receiver, point, n_g);
+            check_close(drawn.pdf, pdf, 1e-4, name);
         }
     }
 }

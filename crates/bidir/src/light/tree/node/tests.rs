@@ -28,11 +28,9 @@ impl Flat {
     /// Returns the product of both cosines.
     fn cosines(&self, receiver: &Receiver) -> f32 {
         let w = (self.point - receiver.point).normalize();
-        let leaves = -self.n.dot(w);
-        let leaves = if self.is_mirrored {
-            leaves.abs()
-        } else {
-            leaves
+        let leaves = match -self.n.dot(w) {
+            cos if self.is_mirrored => cos.abs(),
+            cos => cos,
         };
         let arrives = match receiver.facing {
             Facing::Front(n) => n.dot(w),
@@ -75,10 +73,8 @@ fn no_cosine_of_an_emitter_is_above_the_bound() {
         let across = offset(receiver.point, &node.centre);
         let bound = node.importances(&receiver, &across)[2] * clamped / around.intensity;
         for emitter in &emitters {
-            prop_assert!(
-                emitter.cosines(&receiver) <= bound * 1.001 + 1e-4,
-                "{bound}"
-            );
+            let is_bounded = emitter.cosines(&receiver) <= bound * 1.001 + 1e-4;
+            prop_assert!(is_bounded, "{bound}");
         }
         prop_assert!(bound <= 1.001);
         Ok(())
