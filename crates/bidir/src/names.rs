@@ -148,18 +148,3 @@ impl<T: FromStr<Err: Display>> serde::de::Visitor<'_> for Parse<T> {
         self.visit_str(&number.to_string())
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_wrong_name_is_near_another_or_all_are_listed() {
-        let unknown = |given| UnknownName::new(given, &["balance", "power"]).to_string();
-        assert_eq!(
-            unknown("balence"),
-            "unknown name `balence`: did you mean `balance`?"
-        );
-        assert_eq!(unknown("x"), "unknown name `x`: expected balance, power");
-    }
-}

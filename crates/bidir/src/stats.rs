@@ -184,14 +184,11 @@ mod tests {
         };
         let (mut forwards, mut backwards) = (Stats::default(), Stats::default());
         (0..200).for_each(|pass| forwards.drop_contribution(at(pass)));
-        (0..200)
-            .rev()
-            .for_each(|pass| backwards.drop_contribution(at(pass)));
+        let passes = (0..200).rev();
+        passes.for_each(|pass| backwards.drop_contribution(at(pass)));
         assert_eq!(forwards, backwards);
-        assert_eq!(
-            (forwards.dropped, forwards.dropped_list.len()),
-            (200, LISTED_DROPS)
-        );
+        let listed = forwards.dropped_list.len();
+        assert_eq!((forwards.dropped, listed), (200, LISTED_DROPS));
         let mut sum = Stats::default();
         sum += &backwards;
         assert_eq!(sum, forwards);

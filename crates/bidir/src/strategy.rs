@@ -191,14 +191,9 @@ mod tests {
     #[track_caller]
     fn check(text: &str, inside: &[(usize, usize)], outside: &[(usize, usize)]) {
         let strategies: Strategies = text.parse().unwrap();
-        assert!(
-            inside.iter().all(|&(s, t)| strategies.contains(s, t)),
-            "{text}"
-        );
-        assert!(
-            outside.iter().all(|&(s, t)| !strategies.contains(s, t)),
-            "{text}"
-        );
+        let contains = |&(s, t): &(usize, usize)| strategies.contains(s, t);
+        assert!(inside.iter().all(contains), "{text}");
+        assert!(!outside.iter().any(contains), "{text}");
         assert_eq!(strategies.to_string().parse(), Ok(strategies));
     }
 
@@ -210,11 +205,8 @@ mod tests {
         check("all,-s1,+s1t4", &[(1, 4), (2, 2)], &[(1, 3)]);
         check("-s0", &[(1, 2), (2, 1)], &[(0, 2)]);
         check("t1", &[(1, 1), (5, 1)], &[(1, 2)]);
-        check(
-            "s63,s70t70",
-            &[(63, 63), (63, 64), (70, 70)],
-            &[(62, 63), (64, 63), (70, 6)],
-        );
+        let inside = [(63, 63), (63, 64), (70, 70)];
+        check("s63,s70t70", &inside, &[(62, 63), (64, 63), (70, 6)]);
     }
 
     #[test]

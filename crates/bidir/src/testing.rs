@@ -18,7 +18,8 @@ use crate::math::Vec3;
 use crate::sampler::{Domain as StreamDomain, SampleStream, Sampler, SamplerKind};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
-use std::fmt::Display;
+use std::fmt::{Debug, Display};
+use std::str::FromStr;
 
 /// Names that most tests use.
 pub(crate) mod prelude {
@@ -253,6 +254,21 @@ impl Battery {
         println!("{name}: {count} cases, seed {seed}");
         let is_fine = report.is_empty();
         assert!(is_fine, "{name}, seed {seed}, level {level:.1e}:{report}");
+    }
+}
+
+/// Checks that the first texts are written as they are read, and the others refused.
+#[track_caller]
+pub(crate) fn check_texts<T>(good: &[&str], bad: &[&str])
+where
+    T: FromStr<Err: Debug> + Display,
+{
+    for text in good {
+        let value: T = text.parse().expect(text);
+        assert_eq!(value.to_string(), *text);
+    }
+    for text in bad {
+        assert!(text.parse::<T>().is_err(), "{text}");
     }
 }
 

@@ -260,14 +260,10 @@ mod tests {
     use crate::spectrum::Rgb;
     use std::iter;
 
-    fn film(width: u32, height: u32, filter: Filter) -> Film {
-        let settings = FilmSettings::new([width, height], filter);
-        Film::new(settings, u64::MAX).unwrap()
-    }
-
     #[test]
     fn both_layers_add_up_with_their_own_counts() {
-        let mut film = film(2, 2, Filter::default());
+        let settings = FilmSettings::new([2, 2], Filter::default());
+        let mut film = Film::new(settings, u64::MAX).unwrap();
         for pass in 0..2u8 {
             let buffer = PassBuffer::new(film.settings(), film.layers()).unwrap();
             buffer.set_camera_sample(3, [1.0, f32::from(pass), 0.0]);
@@ -294,24 +290,5 @@ mod tests {
         let settings = FilmSettings::new([1_000_000, 1_000_000], Filter::default());
         let error = Film::new(settings, 1 << 33).unwrap_err();
         assert!(matches!(error, FilmError::TooLarge { .. }));
-    }
-
-    #[test]
-    fn order_does_not_change_a_bit() {
-        let values = [[1e-7, 3.0, 1e9], [0.1, 1e-9, 5.0], [7e5, 0.3, 2e-5]];
-        let add = |order: [usize; 3]| {
-            let mut film = film(1, 1, Filter::default());
-            let buffer = PassBuffer::new(film.settings(), film.layers()).unwrap();
-            let place = SplatPlace {
-                raster: Vec2::splat(0.5),
-                u: Vec2::splat(0.5),
-            };
-            for i in order {
-                buffer.splat(film.settings(), place, values[i], iter::empty());
-            }
-            film.add_pass(0, &buffer);
-            film
-        };
-        assert!(add([0, 1, 2]) == add([2, 0, 1]));
     }
 }

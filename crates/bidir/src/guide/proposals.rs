@@ -323,6 +323,7 @@ fn last_units(kappa: &[f64], squares: &[f64]) -> LastUnits {
 mod tests {
     use super::*;
     use crate::math::Vec3;
+    use crate::testing::{check_close, check_near};
 
     #[test]
     fn visibility_is_what_arrives() {
@@ -337,14 +338,10 @@ mod tests {
         let proposals = LightProposals::new(cells, &sums);
         let root = |light| f64::from(proposals.row(y).root_visibility(light));
         let half_a_unit = 0.5 / f64::from(VISIBILITY_UNITS);
-        let check = |light, expected: f64| {
-            let error = (root(light) - expected).abs();
-            assert!(error < 1.01 * half_a_unit, "{} for {expected}", root(light));
-        };
-        check(seen, libm::sqrt(0.26));
         // Not hidden for sure.
-        check(hidden, 0.25);
-        assert!((root(unknown) - 1.0).abs() < 1e-6);
+        for (light, expected) in [(seen, libm::sqrt(0.26)), (hidden, 0.25), (unknown, 1.0)] {
+            check_near(root(light), expected, 1.01 * half_a_unit, "a root");
+        }
     }
 
     #[test]
@@ -358,8 +355,13 @@ mod tests {
             sums.see(Cells::pair(z, y), i % 4 == 0);
         }
         let after = LightProposals::new(cells, &sums);
-        let root = f64::from(after.row(y).root_visibility(z));
-        assert!((root - libm::sqrt(0.26)).abs() < 1.0 / f64::from(VISIBILITY_UNITS));
+        let unit = 1.0 / f64::from(VISIBILITY_UNITS);
+        check_near(
+            after.row(y).root_visibility(z),
+            libm::sqrt(0.26),
+            unit,
+            "a root",
+        );
         for (after, before) in after.rows.iter().zip(&before.rows) {
             assert_eq!(after.last, before.last);
         }
@@ -373,9 +375,9 @@ mod tests {
         let kappa = |cell: usize| (1 + cell % 5) as f64;
         let mut sums = PairSums::uniform((0..Cells::COUNT).map(kappa).collect());
         let y = Cells::cell(5);
-        (0..Cells::COUNT)
-            .step_by(3)
-            .for_each(|z| sums.add(Cells::pair(Cells::cell(z), y), (z % 11) as f64));
+        for z in (0..Cells::COUNT).step_by(3) {
+            sums.add(Cells::pair(Cells::cell(z), y), (z % 11) as f64);
+        }
         let all: f64 = sums.light_vertices.iter().sum();
         let proposals = LightProposals::new(Cells::new(&mut []), &sums);
         for cell in 0..Cells::COUNT {
@@ -383,10 +385,7 @@ mod tests {
             let row = proposals.row(y);
             let drawn = 2.0 * all / f64::from(inverse_prob(row.units(z), counts));
             let counted = proposals.count_factor(z, row);
-            assert!(
-                (drawn - counted).abs() < 1e-6 * counted,
-                "{drawn}, {counted}"
-            );
+            check_close(drawn, counted, 1e-6, cell);
         }
     }
 
@@ -416,11 +415,8 @@ mod tests {
             }
             assert_eq!(uniform, u32::from(UNIFORM_UNITS));
             for (cell, &count) in of_cell.iter().enumerate() {
-                assert_eq!(
-                    count,
-                    u32::from(row.units(Cells::cell(cell))),
-                    "cell {cell}"
-                );
+                let units = row.units(Cells::cell(cell));
+                assert_eq!(count, u32::from(units), "cell {cell}");
             }
         }
     }
@@ -480,19 +476,12 @@ mod tests {
         for light in [z, other] {
             let square = if light == z { own } else { 0.0 };
             let found = sums.count_factor(all, [light, y], [square, 0.0]);
-            if light == z {
-                let expected = before.count_factor(light, before.row(y));
-                assert!(
-                    (found / expected - 1.0).abs() < 1e-3,
-                    "{found} for {expected}"
-                );
-            } else {
-                let learned = LightProposals::new(cells.clone(), &sums);
-                let after = learned.count_factor(light, learned.row(y));
-                assert!((found / after - 1.0).abs() < 1e-3, "{found} for {after}");
-            }
+            let all = LightProposals::new(cells.clone(), &sums);
+            let known = if light == z { &before } else { &all };
+            let expected = known.count_factor(light, known.row(y));
+            check_close(found, expected, 1e-3, "a factor");
         }
         let found = sums.root_visibility_without(pair, false);
-        assert!((found - before.row(y).root_visibility(z)).abs() < 1e-6);
+        check_near(found, before.row(y).root_visibility(z), 1e-6, "a root");
     }
 }

@@ -96,15 +96,10 @@ mod tests {
 
     #[test]
     fn limbs_carry_and_borrow() {
-        let values = [
-            1i128 << 63,
-            1 << 63,
-            -1,
-            5 << 70,
-            -(3 << 70),
-            i128::from(u64::MAX),
-            -(1 << 90),
-        ];
+        let carries = [1i128 << 63, 1 << 63, -1, 5 << 70, -(3 << 70)];
+        let values = carries
+            .into_iter()
+            .chain([i128::from(u64::MAX), -(1 << 90)]);
         let mut sum = FixedSum::default();
         let mut expected = 0;
         for value in values {
@@ -124,10 +119,16 @@ mod tests {
                 scope.spawn(|| (0..10_000).for_each(|i| sum.add((i128::from(i) << 50) - 7)));
             }
         });
-        assert_eq!(
-            sum.get(),
-            4 * (0..10_000i128).map(|i| (i << 50) - 7).sum::<i128>()
-        );
+        let expected: i128 = (0..10_000i128).map(|i| (i << 50) - 7).sum();
+        assert_eq!(sum.get(), 4 * expected);
+    }
+
+    /// Checks a fixed-point number against the conversion of the language.
+    #[track_caller]
+    fn check_float(fixed: i128, scale: i32) {
+        let expected = fixed as f64 * power_of_two(-scale);
+        let found = to_f64(fixed, scale).to_bits();
+        assert_eq!(found, expected.to_bits(), "{fixed}");
     }
 
     #[test]
@@ -137,12 +138,7 @@ mod tests {
         ] {
             let fixed = (value * power_of_two(VALUE_SCALE)) as i128;
             assert_eq!(from_f64(value, VALUE_SCALE), fixed, "{value}");
-            let back = fixed as f64 * power_of_two(-VALUE_SCALE);
-            assert_eq!(
-                to_f64(fixed, VALUE_SCALE).to_bits(),
-                back.to_bits(),
-                "{value}"
-            );
+            check_float(fixed, VALUE_SCALE);
         }
         assert_eq!(from_f64(f64::NAN, VALUE_SCALE), 0);
     }
@@ -154,46 +150,22 @@ mod tests {
         for exponent in -3..=127 {
             for _ in 0..64 {
                 bits = bits.wrapping_mul(0x9e37_79b9_7f4a_7c15).rotate_left(29) + 1;
-                let value =
-                    (1.0 + (bits >> 12) as f64 * power_of_two(-52)) * power_of_two(exponent);
+                let digits = 1.0 + (bits >> 12) as f64 * power_of_two(-52);
+                let value = digits * power_of_two(exponent);
                 for value in [value, -value] {
                     assert_eq!(from_f64(value, 0), value as i128, "{value}");
                 }
                 let fixed = (i128::from(bits) << 64 | i128::from(!bits)) >> (127 - exponent.max(0));
                 for fixed in [fixed, -fixed, fixed | 1, fixed & !0xff] {
-                    assert_eq!(
-                        to_f64(fixed, 0).to_bits(),
-                        (fixed as f64).to_bits(),
-                        "{fixed}"
-                    );
+                    check_float(fixed, 0);
                 }
             }
         }
-        for fixed in [
-            i128::MIN,
-            i128::MAX,
-            1 << 63,
-            -(1 << 63),
-            (1 << 63) - 1,
-            (1 << 64) - 1,
-        ] {
-            assert_eq!(
-                to_f64(fixed, 0).to_bits(),
-                (fixed as f64).to_bits(),
-                "{fixed}"
-            );
+        for fixed in [i128::MIN, i128::MAX, 1 << 63, -(1 << 63)] {
+            check_float(fixed, 0);
+            check_float(fixed - fixed.signum(), 0);
         }
+        check_float((1 << 64) - 1, 0);
         assert_eq!(from_f64(f64::INFINITY, 0), i128::MAX);
-    }
-
-    #[test]
-    fn floats_survive_the_round_trip() {
-        for value in [0.0, 1.0, -2.5, 1e-9, 1e12] {
-            let back = to_f64(from_f64(value, VALUE_SCALE), VALUE_SCALE);
-            assert!(
-                (back - value).abs() <= 1e-17 + value.abs() * 1e-15,
-                "{value} {back}"
-            );
-        }
     }
 }

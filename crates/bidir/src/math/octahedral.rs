@@ -58,9 +58,13 @@ mod tests {
                 assert!((direction_to_square(d) - p).length() < 1e-3, "{p} {d}");
             }
         }
-        assert!((square_to_direction(Vec2::splat(0.5)) - Vec3::Z).length() < 1e-6);
-        assert!((square_to_direction(Vec2::ZERO) + Vec3::Z).length() < 1e-6);
-        assert!((square_to_direction(Vec2::new(1.0, 0.5)) - Vec3::X).length() < 1e-6);
-        assert!((square_to_direction(Vec2::new(0.5, 1.0)) - Vec3::Y).length() < 1e-6);
+        for (x, y, w) in [
+            (0.5, 0.5, Vec3::Z),
+            (0.0, 0.0, -Vec3::Z),
+            (1.0, 0.5, Vec3::X),
+            (0.5, 1.0, Vec3::Y),
+        ] {
+            assert!(square_to_direction(Vec2::new(x, y)).distance(w) < 1e-6);
+        }
     }
 }

@@ -64,38 +64,3 @@ pub fn triangle(u: Vec2) -> Vec2 {
         Vec2::new(u.x - b2, b2)
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::math::sqr;
-
-    /// Checks that the mean of `f` over an n×n midpoint grid is `expected`.
-    #[track_caller]
-    fn check_mean(f: impl Fn(Vec2) -> f32, expected: f32) {
-        let n = 256;
-        let mut sum = 0.0;
-        for i in 0..n {
-            for j in 0..n {
-                sum += f64::from(f(Vec2::new(i as f32 + 0.5, j as f32 + 0.5) / n as f32));
-            }
-        }
-        let mean = sum / f64::from(n * n);
-        assert!(
-            (mean - f64::from(expected)).abs() < 2e-4,
-            "{mean} instead of {expected}"
-        );
-    }
-
-    #[test]
-    fn moments_of_warped_points_are_those_of_their_densities() {
-        check_mean(|u| concentric_disk(u).length_squared(), 0.5);
-        check_mean(|u| concentric_disk(u).x, 0.0);
-        check_mean(|u| cosine_hemisphere(u).z, 2.0 / 3.0);
-        check_mean(|u| uniform_sphere(u).z, 0.0);
-        check_mean(|u| sqr(uniform_sphere(u).z), 1.0 / 3.0);
-        check_mean(|u| uniform_cone(u, 0.25).z, 0.875);
-        check_mean(|u| triangle(u).x, 1.0 / 3.0);
-        check_mean(|u| triangle(u).x * triangle(u).y, 1.0 / 12.0);
-    }
-}

@@ -148,16 +148,12 @@ mod tests {
 
     /// Returns p_j by its definition, as a product over the whole path.
     fn density(path: &PathDensities, j: usize) -> f64 {
-        let product: f64 = path
-            .vertices
-            .iter()
-            .enumerate()
-            .map(|(i, x)| match (i < j, i, j) {
-                (true, 0, 1) => f64::from(path.next_event),
-                (true, ..) => f64::from(x.from_light),
-                (false, ..) => f64::from(x.from_camera),
-            })
-            .product();
+        let density = |(i, x): (usize, &VertexDensities)| match (i < j, i, j) {
+            (true, 0, 1) => f64::from(path.next_event),
+            (true, ..) => f64::from(x.from_light),
+            (false, ..) => f64::from(x.from_camera),
+        };
+        let product: f64 = path.vertices.iter().enumerate().map(density).product();
         if path.is_possible(j) { product } else { 0.0 }
     }
 

@@ -108,26 +108,27 @@ impl fmt::Display for PathRoulette {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::testing::{check_near, check_texts};
 
     #[test]
     fn names_are_read_and_written() {
-        for text in ["albedo:0", "albedo:3", "throughput:2", "off"] {
-            assert_eq!(text.parse::<PathRoulette>().unwrap().to_string(), text);
-        }
+        let good = ["albedo:0", "albedo:3", "throughput:2", "off"];
+        check_texts::<PathRoulette>(&good, &["", "albedo:", "off:2", "throughput:x"]);
         assert_eq!("albedo".parse(), Ok(PathRoulette::Albedo { start: 0 }));
-        for text in ["", "albedo:", "off:2", "throughput:x"] {
-            assert!(text.parse::<PathRoulette>().is_err(), "{text}");
-        }
     }
 
     #[test]
     fn only_local_probabilities_are_in_densities() {
         let albedo = PathRoulette::Albedo { start: 1 };
-        assert!((albedo.survival_prob(1, 0.3, 0.9) - 0.3).abs() < 1e-6);
-        assert!((albedo.density_factor(1, || 0.3) - 0.3).abs() < 1e-6);
-        assert!((albedo.density_factor(0, || 0.3) - 1.0).abs() < 1e-6);
         let throughput = PathRoulette::Throughput { start: 0 };
-        assert!((throughput.survival_prob(0, 0.3, 0.9) - 0.9).abs() < 1e-6);
-        assert!((throughput.density_factor(0, || 0.3) - 1.0).abs() < 1e-6);
+        for (found, expected) in [
+            (albedo.survival_prob(1, 0.3, 0.9), 0.3),
+            (albedo.density_factor(1, || 0.3), 0.3),
+            (albedo.density_factor(0, || 0.3), 1.0),
+            (throughput.survival_prob(0, 0.3, 0.9), 0.9),
+            (throughput.density_factor(0, || 0.3), 1.0),
+        ] {
+            check_near(found, expected, 1e-6, "a probability");
+        }
     }
 }

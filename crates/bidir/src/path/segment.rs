@@ -89,6 +89,7 @@ pub(super) fn inverse(x: f32) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::testing::check_close;
 
     fn on_surface(point: Vec3, n_g: Vec3) -> Locus {
         Locus::on_surface(point, n_g, 0.0)
@@ -100,10 +101,7 @@ mod tests {
             assert!((segment.w - w).length() < 1e-6, "{segment:?}");
             let found = [segment.geometry_term, segment.to_b, segment.to_a];
             for (a, b) in found.into_iter().zip(expected) {
-                assert!(
-                    (a - b).abs() <= 1e-6 * b,
-                    "{found:?} instead of {expected:?}"
-                );
+                check_close(a, b, 1e-6, format!("{segment:?}"));
             }
         }
     }

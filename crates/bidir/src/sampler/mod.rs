@@ -222,10 +222,8 @@ mod tests {
             for index in begin..begin + n {
                 let p = stream(index).get_2d(DIMENSION);
                 let cell = (p.y * rows as f32) as u64 * columns + (p.x * columns as f32) as u64;
-                assert!(
-                    !std::mem::replace(&mut seen[cell as usize], true),
-                    "{columns}x{rows}"
-                );
+                let was_seen = std::mem::replace(&mut seen[cell as usize], true);
+                assert!(!was_seen, "{columns}x{rows}");
             }
         }
     }
@@ -234,12 +232,8 @@ mod tests {
     fn aligned_ranges_are_nets() {
         let sampler = Sampler::new(SamplerKind::Sobol, 7);
         let stream = |index| sampler.stream(Domain::Camera, 5, index);
-        for (begin, log2_n) in [
-            (0, 8),
-            (3 << 8, 8),
-            (1 << 20, 10),
-            ((1 << 40) + (5 << 10), 10),
-        ] {
+        let far = (1 << 40) + (5 << 10);
+        for (begin, log2_n) in [(0, 8), (3 << 8, 8), (1 << 20, 10), (far, 10)] {
             check_elementary_intervals(begin, log2_n, stream);
             check_elementary_intervals(begin, log2_n, |i| sampler.member(Domain::Light, 9, i));
             check_elementary_intervals(begin, log2_n, |i| sampler.member(Domain::Light, i, 9));
@@ -249,11 +243,8 @@ mod tests {
     #[test]
     fn numbers_beyond_two_to_the_32_differ_from_those_below() {
         let sampler = Sampler::new(SamplerKind::Sobol, 1);
-        let low = sampler.stream(Domain::Light, 0, 17).get_2d(DIMENSION);
-        let high = sampler
-            .stream(Domain::Light, 0, 17 + (1 << 32))
-            .get_2d(DIMENSION);
-        assert_ne!(low, high);
+        let at = |index| sampler.stream(Domain::Light, 0, index).get_2d(DIMENSION);
+        assert_ne!(at(17), at(17 + (1 << 32)));
     }
 
     /// Checks the mean and the variance of a uniform number, and its correlation with another's.
@@ -279,10 +270,8 @@ mod tests {
     fn numbers_for_things_are_uniform_and_unrelated() {
         for kind in [SamplerKind::Independent, SamplerKind::Sobol] {
             let sampler = Sampler::new(kind, 3);
-            let get = |index, dimension, key| {
-                let stream = sampler.stream(Domain::Camera, 9, index);
-                stream.get_for(dimension, key)
-            };
+            let stream = |index| sampler.stream(Domain::Camera, 9, index);
+            let get = |index, dimension, key| stream(index).get_for(dimension, key);
             let other = Dimension::at(4, Purpose::Alpha);
             check_moments(|i| (get(i, DIMENSION, 1), get(i, DIMENSION, 2)));
             check_moments(|i| (get(7, DIMENSION, i), get(8, DIMENSION, i)));
@@ -304,19 +293,14 @@ mod tests {
             check_moments(|i| (base(i), get(Domain::Camera, 10, i, DIMENSION)));
             check_moments(|i| (base(i), get(Domain::Light, 9, i, DIMENSION)));
             check_moments(|i| (get(Domain::Camera, i, 4, DIMENSION), base(i)));
-            let seeded = Sampler::new(kind, 4);
+            let seeded = |i| Sampler::new(kind, 4).stream(Domain::Camera, 9, i);
             let member = |member, index, dimension| {
                 let stream = sampler.member(Domain::Light, member, index);
                 stream.get_1d(dimension)
             };
             check_moments(|i| (member(i, 3, DIMENSION), member(i, 3, other)));
             check_moments(|i| (member(3, i, DIMENSION), member(3, i, other)));
-            check_moments(|i| {
-                (
-                    base(i),
-                    seeded.stream(Domain::Camera, 9, i).get_1d(DIMENSION),
-                )
-            });
+            check_moments(|i| (base(i), seeded(i).get_1d(DIMENSION)));
         }
     }
 }

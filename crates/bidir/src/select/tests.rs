@@ -2,6 +2,7 @@ use super::*;
 use crate::sampler::{Domain, Sampler, SamplerKind};
 use crate::spectrum::Spectrum;
 use crate::strategy::Strategy;
+use crate::testing::{check_near, check_texts};
 
 fn candidate(s: usize, t: usize, score: f32) -> Candidate {
     Candidate {
@@ -21,31 +22,26 @@ fn candidate(s: usize, t: usize, score: f32) -> Candidate {
 fn candidates() -> Vec<Candidate> {
     let scores = [0.5, 2e-3, 40.0, 1e-6, 3.0, 2.0];
     let pairs = [(1, 2), (1, 3), (1, 4), (2, 2), (2, 3), (2, 4)];
-    pairs
-        .iter()
-        .zip(scores)
-        .map(|(&(s, t), score)| candidate(s, t, score))
-        .collect()
+    let all = pairs.into_iter().zip(scores);
+    all.map(|((s, t), score)| candidate(s, t, score)).collect()
 }
 
 /// Two light points, and three vertices of a light cache of which two are as deep, in the order of cells;
 /// two camera vertices share one of them.
 fn cached_candidates() -> Vec<Candidate> {
-    let ends = [
-        (0, (1, 2)),
-        (0, (1, 2)),
-        (8, (2, 2)),
-        (1, (3, 2)),
-        (10, (2, 2)),
-        (8, (2, 3)),
+    let all = [
+        (0, (1, 2), 0.5),
+        (0, (1, 2), 40.0),
+        (8, (2, 2), 2e-3),
+        (1, (3, 2), 3.0),
+        (10, (2, 2), 1.0),
+        (8, (2, 3), 2e-2),
     ];
-    let scores = [0.5, 40.0, 2e-3, 3.0, 1.0, 2e-2];
-    let all = ends.into_iter().zip(scores);
-    all.map(|((light_vertex, (s, t)), score)| Candidate {
+    let candidate = |(light_vertex, (s, t), score)| Candidate {
         light_vertex,
         ..candidate(s, t, score)
-    })
-    .collect()
+    };
+    all.map(candidate).into()
 }
 
 const RULES: [ShadowRays; 8] = [
@@ -95,10 +91,7 @@ fn check_frequencies(candidates: &[Candidate]) {
             // Five standard deviations of a binomial frequency.
             let bound = 5.0 * (prob * (1.0 - prob) / n as f64).sqrt() + 1e-9;
             assert!(prob > 0.0, "{rule} {i}");
-            assert!(
-                (frequency - prob).abs() <= bound,
-                "{rule} {i}: {frequency} {prob}"
-            );
+            check_near(frequency, prob, bound, format!("{rule} {i}"));
         }
     }
 }
@@ -147,15 +140,16 @@ fn vertices_of_a_light_cache_have_one_ray_each() {
 }
 
 #[test]
-fn chosen_ones_of_others_are_left_alone() {
+fn chosen_ones_of_others_are_left_alone_also_where_there_are_no_candidates() {
     let stream = Sampler::new(SamplerKind::Independent, 1).stream(Domain::Camera, 0, 0);
     let before = Chosen {
         candidate: 5,
         prob: 0.25,
     };
     for rule in RULES {
-        let mut chosen = vec![before];
-        let selector = rule.selector(10.0);
+        let (mut chosen, selector) = (vec![before], rule.selector(10.0));
+        selector.select(&[], Draws(&stream), &mut chosen);
+        assert_eq!(chosen, [before], "{rule}");
         selector.select(&cached_candidates(), Draws(&stream), &mut chosen);
         assert_eq!(chosen[0], before, "{rule}");
     }
@@ -165,8 +159,8 @@ fn chosen_ones_of_others_are_left_alone() {
 fn one_ray_of_budget_is_one_per_pair() {
     let probabilities = |rule: ShadowRays| rule.selector(10.0).probabilities(&candidates());
     let budget = probabilities(ShadowRays::Budget(1));
-    for (a, b) in budget.iter().zip(probabilities(ShadowRays::PerPair)) {
-        assert!((a - b).abs() < 1e-6);
+    for (a, b) in budget.into_iter().zip(probabilities(ShadowRays::PerPair)) {
+        check_near(a, b, 1e-6, "a candidate");
     }
 }
 
@@ -187,26 +181,9 @@ fn a_budget_holds_for_scores_that_vanish_beside_others() {
 }
 
 #[test]
-fn no_candidates_no_rays() {
-    let sampler = Sampler::new(SamplerKind::Independent, 1);
-    let stream = sampler.stream(Domain::Camera, 0, 0);
-    for rule in RULES {
-        let mut chosen = Vec::new();
-        rule.selector(1.0).select(&[], Draws(&stream), &mut chosen);
-        assert!(chosen.is_empty());
-    }
-}
-
-#[test]
 fn rules_are_read_and_written() {
-    for rule in RULES {
-        assert_eq!(rule.to_string().parse(), Ok(rule));
-    }
-    assert_eq!(
-        "ray-roulette".parse(),
-        Ok(ShadowRays::RayRoulette(ShadowRays::DEFAULT_ROULETTE))
-    );
-    for text in [
+    let names = RULES.map(|rule| rule.to_string());
+    let bad = [
         "",
         "none",
         "budget",
@@ -214,7 +191,8 @@ fn rules_are_read_and_written() {
         "budget:x",
         "ray-roulette:-1",
         "all:2",
-    ] {
-        assert!(text.parse::<ShadowRays>().is_err(), "{text}");
-    }
+    ];
+    check_texts::<ShadowRays>(&names.each_ref().map(String::as_str), &bad);
+    let default = ShadowRays::RayRoulette(ShadowRays::DEFAULT_ROULETTE);
+    assert_eq!("ray-roulette".parse(), Ok(default));
 }

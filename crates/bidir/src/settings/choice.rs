@@ -70,10 +70,7 @@ mod tests {
             assert_eq!(choice.to_string(), text);
         }
         assert_eq!("suited".parse::<Choice<u8>>(), Ok(Choice::Automatic));
-        let error = "x".parse::<Choice<u8>>().unwrap_err();
-        assert_eq!(
-            error.to_string(),
-            "invalid digit found in string, or `auto`"
-        );
+        let error = "x".parse::<Choice<u8>>().unwrap_err().to_string();
+        assert_eq!(error, "invalid digit found in string, or `auto`");
     }
 }

@@ -8,6 +8,7 @@ mod ranges;
 use super::TexturePoint;
 use crate::math::{Vec2, Vec3};
 use crate::shape::Differentials;
+use crate::testing::check_near;
 
 fn at(u: f32, v: f32) -> TexturePoint {
     TexturePoint::of_parameters(Vec2::new(u, v))
@@ -33,8 +34,5 @@ fn seen(uv: Vec2, width: f32) -> TexturePoint {
 
 #[track_caller]
 fn check(value: f32, expected: f32) {
-    assert!(
-        (value - expected).abs() < 1e-5,
-        "{value} instead of {expected}"
-    );
+    check_near(value, expected, 1e-5, "a texture");
 }

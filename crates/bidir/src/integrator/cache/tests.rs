@@ -6,6 +6,7 @@ use crate::guide::PairSums;
 use crate::locus::Locus;
 use crate::math::Vec3;
 use crate::medium::MediumId;
+use crate::testing::check_near;
 
 const SUBPATHS: usize = 20;
 /// The places of numbers that are drawn with, evenly spaced.
@@ -61,10 +62,7 @@ fn check(proposals: Option<&LightProposals>, cells: &Cells) {
     for (i, (count, inverse_prob)) in found.into_iter().enumerate() {
         let prob = f64::from(count) / f64::from(DRAWS);
         let told = 1.0 / inverse_prob;
-        assert!(
-            (prob - told).abs() < 3.0 / f64::from(DRAWS),
-            "{i}: {prob} instead of {told}"
-        );
+        check_near(prob, told, 3.0 / f64::from(DRAWS), i);
     }
 }
 

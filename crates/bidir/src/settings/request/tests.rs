@@ -70,10 +70,8 @@ fn choices_are_made_or_left_open() {
         assert_eq!(Request::of(&again), Request::of(&own), "{name}");
     }
     let texts = Request::of(&Settings::new(IntegratorKind::Auto)).texts();
-    assert!(
-        open.iter().all(|(name, text)| texts[*name] == *text),
-        "{texts:?}"
-    );
+    let is_open = open.iter().all(|(name, text)| texts[*name] == *text);
+    assert!(is_open, "{texts:?}");
 }
 
 #[test]
@@ -101,16 +99,22 @@ fn settings_without_influence_are_named() {
 #[test]
 fn wrong_names_and_values_are_refused_in_words() {
     let error = |name, value| Request::default().set(name, value).unwrap_err().to_string();
-    assert_eq!(
-        error("mis", "balence"),
-        "unknown name `balence`: did you mean `balance`?"
-    );
-    assert_eq!(
-        error("light-point", "x"),
-        "unknown name `x`: expected fresh, shared"
-    );
+    for (name, value, expected) in [
+        (
+            "mis",
+            "balence",
+            "unknown name `balence`: did you mean `balance`?",
+        ),
+        (
+            "light-point",
+            "x",
+            "unknown name `x`: expected fresh, shared",
+        ),
+        ("max-depth", "-1", "expected a whole number"),
+    ] {
+        assert_eq!(error(name, value), expected);
+    }
     assert!(error("strategies", "s").contains("is not a strategy"));
-    assert_eq!(error("max-depth", "-1"), "expected a whole number");
     assert!(error("candidates", "0").contains("from 1 to 4096"));
     assert!(error("mis", "5").contains("unknown name `5`"));
     assert!(error("sharpness", "1").contains("sharpness"));

@@ -3,15 +3,13 @@
 use super::super::*;
 use super::{at, check, seen};
 use crate::math::{Vec2, square_to_direction};
+use crate::testing::{check_near, prelude::image_map};
 
 fn map(wrap: Wrap, filter: ImageFilter) -> ImageMap<1> {
-    let image = Image::new(2, vec![[1.0], [2.0], [3.0], [4.0]]).unwrap();
+    let texels = vec![[1.0], [2.0], [3.0], [4.0]];
     ImageMap {
-        image: Arc::new(image.with_copies()),
         wrap,
-        filter,
-        change: Change::Scale(1.0),
-        mapping: Mapping::IDENTITY,
+        ..image_map(2, texels, filter)
     }
 }
 
@@ -39,36 +37,23 @@ fn texel_centres_keep_their_value_and_the_middle_is_the_mean() {
 #[test]
 fn borders_wrap_as_asked() {
     let value = |wrap, filter, u, v| map(wrap, filter).eval(&at(u, v))[0];
-    check(
-        value(Wrap::all(Beyond::Repeat), ImageFilter::Point, -0.75, 1.75),
-        1.0,
-    );
-    let mirrored = Wrap::all(Beyond::Mirror);
-    check(value(mirrored, ImageFilter::Point, -0.25, 0.75), 1.0);
-    check(value(mirrored, ImageFilter::Point, 1.25, 1.25), 2.0);
-    check(value(mirrored, ImageFilter::Point, 2.25, 0.75), 1.0);
+    let [repeat, mirrored, clamp, black] =
+        [Beyond::Repeat, Beyond::Mirror, Beyond::Clamp, Beyond::Black].map(Wrap::all);
     let each = Wrap::Axes([Beyond::Clamp, Beyond::Repeat]);
-    check(value(each, ImageFilter::Point, 7.25, 1.75), 2.0);
-    check(value(each, ImageFilter::Point, -3.25, -0.25), 1.0);
-    check(
-        value(Wrap::all(Beyond::Clamp), ImageFilter::Point, 7.0, -3.0),
-        4.0,
-    );
-    check(
-        value(Wrap::all(Beyond::Black), ImageFilter::Point, 1.25, 0.5),
-        0.0,
-    );
-    check(
-        value(Wrap::all(Beyond::Black), ImageFilter::Bilinear, 0.0, 0.75),
-        0.5,
-    );
-    for wrap in [
-        Wrap::all(Beyond::Repeat),
-        mirrored,
-        Wrap::all(Beyond::Clamp),
-        Wrap::all(Beyond::Black),
-        Wrap::OctahedralSphere,
+    for (wrap, u, v, expected) in [
+        (repeat, -0.75, 1.75, 1.0),
+        (mirrored, -0.25, 0.75, 1.0),
+        (mirrored, 1.25, 1.25, 2.0),
+        (mirrored, 2.25, 0.75, 1.0),
+        (each, 7.25, 1.75, 2.0),
+        (each, -3.25, -0.25, 1.0),
+        (clamp, 7.0, -3.0, 4.0),
+        (black, 1.25, 0.5, 0.0),
     ] {
+        check(value(wrap, ImageFilter::Point, u, v), expected);
+    }
+    check(value(black, ImageFilter::Bilinear, 0.0, 0.75), 0.5);
+    for wrap in [repeat, mirrored, clamp, black, Wrap::OctahedralSphere] {
         let far = map(wrap, ImageFilter::Bilinear).eval(&at(f32::MAX, -1e30));
         assert!(far[0].is_finite());
     }
@@ -93,23 +78,19 @@ fn octahedral_maps_have_no_border() {
         square_to_direction(p).to_array()
     });
     let map = ImageMap {
-        image: Arc::new(Image::new(n, directions.collect()).unwrap()),
         wrap: Wrap::OctahedralSphere,
-        filter: ImageFilter::Point,
-        change: Change::Scale(1.0),
-        mapping: Mapping::IDENTITY,
+        ..image_map(n, directions.collect(), ImageFilter::Point)
     };
     let texel = 1.0 / n as f32;
     for i in 0..n {
         let along = (i as f32 + 0.5) * texel;
-        let inside = [
-            [0.5 * texel, along],
-            [1.0 - 0.5 * texel, along],
-            [along, 0.5 * texel],
-            [along, 1.0 - 0.5 * texel],
-        ];
-        let outward = [[-texel, 0.0], [texel, 0.0], [0.0, -texel], [0.0, texel]];
-        for (uv, step) in inside.into_iter().zip(outward) {
+        let (near, far) = (0.5 * texel, 1.0 - 0.5 * texel);
+        for (uv, step) in [
+            ([near, along], [-texel, 0.0]),
+            ([far, along], [texel, 0.0]),
+            ([along, near], [0.0, -texel]),
+            ([along, far], [0.0, texel]),
+        ] {
             let here = Vec3::from(map.eval(&at(uv[0], uv[1])));
             let beyond = Vec3::from(map.eval(&at(uv[0] + step[0], uv[1] + step[1])));
             assert!(here.distance(beyond) < 5.0 * texel, "{here} and {beyond}");
@@ -123,34 +104,28 @@ fn octahedral_maps_have_no_border() {
 fn copies_are_chosen_by_the_width_of_a_pixel() {
     let n = 64;
     let texels = (0..n * n).map(|i| [((i * 7919) % 251) as f32]);
-    let image = Arc::new(Image::new(n, texels.collect()).unwrap().with_copies());
-    let map = ImageMap {
-        image: Arc::clone(&image),
-        filter: ImageFilter::Trilinear,
-        ..map(Wrap::all(Beyond::Repeat), ImageFilter::Trilinear)
-    };
+    let map = image_map(n, texels.collect(), ImageFilter::Trilinear);
+    let image = &map.image;
     let uv = Vec2::new(0.37, 0.61);
     let of_copy = |level: usize| {
-        let image = Arc::new(image.copy(level).clone());
-        let filter = ImageFilter::Bilinear;
-        ImageMap {
-            image,
-            filter,
+        let copy = ImageMap {
+            image: Arc::new(image.copy(level).clone()),
+            filter: ImageFilter::Bilinear,
             ..map.clone()
-        }
-        .eval(&at(uv.x, uv.y))[0]
+        };
+        copy.eval(&at(uv.x, uv.y))[0]
     };
     let texel = 1.0 / n as f32;
     check(map.eval(&seen(uv, 0.7 * texel))[0], of_copy(0));
     for level in 0..=6_usize {
         let width = texel * (1 << level) as f32;
-        let value = map.eval(&seen(uv, width))[0];
-        assert!((value - of_copy(level)).abs() < 1e-3, "{level}");
+        check_near(map.eval(&seen(uv, width))[0], of_copy(level), 1e-3, level);
     }
     let between = map.eval(&seen(uv, 2f32.sqrt() * texel))[0];
-    assert!((between - f32::midpoint(of_copy(0), of_copy(1))).abs() < 1e-3);
+    let middle = f32::midpoint(of_copy(0), of_copy(1));
+    check_near(between, middle, 1e-3, "between");
     let mean = image.texels().iter().map(|texel| texel[0]).sum::<f32>() / (n * n) as f32;
-    assert!((map.eval(&seen(uv, 100.0))[0] - mean).abs() < 1e-3);
+    check_near(map.eval(&seen(uv, 100.0))[0], mean, 1e-3, "far away");
 }
 
 /// Stretched parameters: the direction in which texels are widest decides, so nothing is blurred.

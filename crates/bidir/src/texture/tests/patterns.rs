@@ -4,6 +4,7 @@ use super::super::*;
 use super::{at, at_point, check, seen};
 use crate::math::{PI, Vec2};
 use crate::spectrum::luminance;
+use crate::testing::prelude::fbm;
 
 #[test]
 fn mixtures_and_factors_follow_their_formulas() {
@@ -29,13 +30,11 @@ fn mixtures_and_factors_follow_their_formulas() {
         (Vec3::X, 0.0),
         (Vec3::new(0.0, -0.6, 0.8), 0.6),
     ] {
-        check(
-            direction.eval(&TexturePoint {
-                normal,
-                ..at(0.0, 0.0)
-            }),
-            expected,
-        );
+        let at = TexturePoint {
+            normal,
+            ..at(0.0, 0.0)
+        };
+        check(direction.eval(&at), expected);
     }
 }
 
@@ -98,15 +97,7 @@ fn noise_is_zero_at_whole_numbers_smooth_and_without_mean() {
 /// If no octave is wider than a pixel, only the mean is left; without an extent all octaves are.
 #[test]
 fn octaves_finer_than_a_pixel_are_left_out() {
-    let texture = |octaves| {
-        FloatTexture::Noise(Arc::new(Noise {
-            kind: NoiseKind::Fbm {
-                octaves,
-                roughness: 0.5,
-            },
-            space: TextureSpace::WORLD,
-        }))
-    };
+    let texture = |octaves| fbm(octaves, 0.5, TextureSpace::WORLD);
     let point = Vec3::new(0.3, 0.7, 0.2);
     let with = |width| TexturePoint {
         point,
@@ -138,10 +129,8 @@ fn dots_cover_their_share() {
             dots.eval(&at(uv.x, uv.y)) > 0.5
         });
         let share = inside.count() as f32 / (fine * fine) as f32;
-        assert!(
-            share == 0.0 || (share - PI * 0.35 * 0.35).abs() < 0.02,
-            "{share}"
-        );
+        let is_dot = (share - PI * 0.35 * 0.35).abs() < 0.02;
+        assert!(share == 0.0 || is_dot, "{share}");
         with_dot += usize::from(share > 0.0);
     }
     let share = with_dot as f32 / (cells * cells) as f32;

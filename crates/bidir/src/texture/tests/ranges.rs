@@ -2,16 +2,14 @@
 
 use super::super::*;
 use super::at;
-use crate::math::Affine3A;
+use crate::testing::{check_near, prelude::image_map};
 
 fn image(texels: &[f32], wrap: Beyond, change: Change) -> FloatTexture {
     let texels = texels.iter().map(|&texel| [texel]).collect();
     FloatTexture::Image(Arc::new(ImageMap {
-        image: Arc::new(Image::new(2, texels).unwrap().with_copies()),
         wrap: Wrap::all(wrap),
-        filter: ImageFilter::Bilinear,
         change,
-        mapping: Mapping::IDENTITY,
+        ..image_map(2, texels, ImageFilter::Bilinear)
     }))
 }
 
@@ -42,9 +40,8 @@ fn board(textures: [FloatTexture; 2]) -> FloatTexture {
 #[track_caller]
 fn check(texture: &FloatTexture, bounds: [f32; 2]) {
     let Range { least, most } = texture.range();
-    for (found, expected) in [least, most].into_iter().zip(bounds) {
-        assert!((found - expected).abs() < 1e-6, "{found}, not {expected}");
-    }
+    check_near(least, bounds[0], 1e-6, "least");
+    check_near(most, bounds[1], 1e-6, "most");
     for i in 0..40 * 40 {
         let [u, v] = [i % 40, i / 40].map(|k| k as f32 * 0.1 - 1.53);
         let value = texture.eval(&at(u, v));
@@ -57,36 +54,32 @@ fn no_value_is_outside_of_its_bounds() {
     use Texture::Constant;
     let texels = [0.5, 0.25, 0.75, 0.5];
     let plain = || image(&texels, Beyond::Repeat, Change::Scale(1.0));
-    check(&plain(), [0.25, 0.75]);
-    check(
-        &image(&texels, Beyond::Black, Change::Scale(2.0)),
-        [0.0, 1.5],
-    );
     let inverted = image(&texels, Beyond::Clamp, Change::ScaleAndInvert(2.0));
-    check(&inverted, [0.0, 0.5]);
-    check(&scale(plain(), -2.0), [-1.5, -0.5]);
-    check(&board([plain(), Constant(0.1)]), [0.1, 0.75]);
-    check(
-        &mix([plain(), Constant(2.0)], Constant(0.5)),
-        [1.125, 1.375],
-    );
-    check(&mix([plain(), Constant(2.0)], Constant(1.0)), [2.0, 2.0]);
-    check(&mix([Constant(0.2), Constant(0.4)], plain()), [0.25, 0.35]);
-    check(&bilerp([0.5; 4]), [0.5, 0.5]);
+    for (texture, bounds) in [
+        (plain(), [0.25, 0.75]),
+        (
+            image(&texels, Beyond::Black, Change::Scale(2.0)),
+            [0.0, 1.5],
+        ),
+        (inverted, [0.0, 0.5]),
+        (scale(plain(), -2.0), [-1.5, -0.5]),
+        (board([plain(), Constant(0.1)]), [0.1, 0.75]),
+        (mix([plain(), Constant(2.0)], Constant(0.5)), [1.125, 1.375]),
+        (mix([plain(), Constant(2.0)], Constant(1.0)), [2.0, 2.0]),
+        (mix([Constant(0.2), Constant(0.4)], plain()), [0.25, 0.35]),
+        (bilerp([0.5; 4]), [0.5, 0.5]),
+    ] {
+        check(&texture, bounds);
+    }
 }
 
 #[test]
 fn what_may_be_anything_has_no_bounds() {
-    let noise = FloatTexture::Noise(Arc::new(Noise {
-        kind: NoiseKind::Windy,
-        space: TextureSpace::new(Affine3A::IDENTITY),
-    }));
+    let (kind, space) = (NoiseKind::Windy, TextureSpace::WORLD);
+    let noise = FloatTexture::Noise(Arc::new(Noise { kind, space }));
     let ends = [1.0, 2.0].map(FloatTexture::Constant);
-    for texture in [
-        noise.clone(),
-        mix(ends, noise),
-        bilerp([0.1, 0.2, 0.3, 0.4]),
-    ] {
+    let corners = bilerp([0.1, 0.2, 0.3, 0.4]);
+    for texture in [noise.clone(), mix(ends, noise), corners] {
         assert_eq!(texture.range(), Range::ALL);
     }
 }
