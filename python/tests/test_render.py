@@ -120,7 +120,7 @@ def test_a_session_continues_from_a_film(cornell: bidir.Scene, tmp_path: Path) -
     assert again.film() == whole.film
     assert again.film().counts == whole.film.counts
     other = bidir.Session(cornell, bidir.Path(max_depth=1))
-    with pytest.raises(bidir.FilmError, match="max-depth is 1 here"):
+    with pytest.raises(bidir.FilmError, match="max-depth is 1 in this render"):
         other.resume(tmp_path / "a.film")
 
 
@@ -133,7 +133,7 @@ def test_render_continues_from_its_checkpoint(cornell: bidir.Scene, tmp_path: Pa
     assert image.film == bidir.render(cornell, spp=5).film == bidir.Film.load(path)
     with pytest.raises(bidir.FilmError, match="beyond the 3"):
         bidir.render(cornell, spp=3, checkpoint=path)
-    with pytest.raises(bidir.FilmError, match="seed is 1 here"):
+    with pytest.raises(bidir.FilmError, match="seed is 1 in this render"):
         bidir.render(cornell, spp=9, seed=1, checkpoint=path)
 
 
