@@ -1,9 +1,9 @@
 //! The light that a layer leaves for the lobes under it: bounds of directional albedos in closed form.
 //!
-//! A lobe on top reflects the fraction E(μ) of the light from a direction of cosine μ. The lobe below is scaled by 1
-//! - Ẽ(μ) for each of its two directions, Ẽ ≥ E, so that both together never gain energy. The bounds were fitted to
-//! quadratures, as docs/derivations/principled.md describes; they are at most 0.08 above the true values for α >
-//! 0.05.
+//! A lobe on top reflects the fraction E(μ) of the light from a direction of cosine μ. The lobe below is scaled
+//! by 1 - Ẽ(μ) for each of its two directions, Ẽ ≥ E, so that both together never gain energy. The bounds were
+//! fitted to quadratures, as docs/derivations/principled.md describes; they are at most 0.08 above the true values
+//! for α > 0.05.
 
 use crate::bsdf::fresnel;
 use crate::math::sqr;
