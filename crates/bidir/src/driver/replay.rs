@@ -210,7 +210,7 @@ fn land(film: &FilmSettings, place: SplatPlace) -> (Landing, f32) {
         pixel: picked.map(|(i, _)| film.crop.pixel(i)),
     };
     let weight = picked.map_or(0.0, |(_, weight)| weight);
-    (landing, weight / film.light_paths() as f32)
+    (landing, weight / film.pixel_count() as f32)
 }
 
 #[cfg(test)]

@@ -61,7 +61,7 @@ impl Session<'_> {
         let of_sample = squares * exposure * exposure / samples as f64;
         let (pixels, paths) = match strategy.t {
             1 => {
-                let pixels = film.light_paths().max(1) as f64;
+                let pixels = film.pixel_count().max(1) as f64;
                 (pixels, self.counts().light_subpaths)
             }
             _ => (1.0, 1.0),

@@ -1,4 +1,4 @@
-//! Turns sums into values: mean = camera / passes + light / (passes · light paths), times exposure.
+//! Turns sums into values: mean = camera / passes + light / (passes · pixels), times exposure.
 
 use super::layers::{Aov, AovKind, PART_SUMS, PICTURE_SUMS};
 use super::{CAMERA, Film, LIGHT, MOMENT};
@@ -90,9 +90,9 @@ impl Film {
 
     /// Returns the mean of camera samples plus the mean of splats, without exposure.
     fn mean(&self, camera: i128, light: i128) -> f64 {
-        let light_paths = self.samples() * self.settings.light_paths().max(1) as f64;
+        let all_pixels = self.samples() * self.settings.pixel_count().max(1) as f64;
         fixed::to_f64(camera, VALUE_SCALE) / self.samples()
-            + fixed::to_f64(light, VALUE_SCALE) / light_paths
+            + fixed::to_f64(light, VALUE_SCALE) / all_pixels
     }
 
     fn develop_pixel(&self, sums: &[i128]) -> (Rgb, Rgb) {

@@ -1,9 +1,10 @@
 //! The film: exact sums of contributions.
 //!
 //! A film has two layers, as bidirectional estimators need: **camera samples**, normalised per pixel and pass, and
-//! the **light image**, whose splats may be anywhere and are normalised by the number of light paths. Sums are
-//! fixed-point integers ([`fixed`]), so that addition is associative and commutative: the film has the same bits for
-//! any number of threads, any order, and any split of the passes.
+//! the **light image**, whose splats may be anywhere and are divided by the number of pixels; where samples share
+//! light subpaths, splats are scaled up beforehand. Sums are fixed-point integers ([`fixed`]), so that addition is
+//! associative and commutative: the film has the same bits for any number of threads, any order, and any split of
+//! the passes.
 //!
 //! A pixel's value is ∫ h(x - q) L(x) dx with ∫ h = 1 ([`Filter`]). Camera samples are drawn by |h|, up to the steps
 //! of tables. A splat goes to one pixel drawn by |h|, so that neighbouring pixels stay uncorrelated and filters may
@@ -219,7 +220,7 @@ impl Film {
             !self.passes.contains(index),
             "pass {index} was added before"
         );
-        let per_light_path = 1.0 / self.settings.light_paths().max(1) as f64;
+        let per_pixel = 1.0 / self.settings.pixel_count().max(1) as f64;
         self.sums
             .par_chunks_exact_mut(self.layers.sums())
             .enumerate()
@@ -231,7 +232,7 @@ impl Film {
                     picture[CAMERA + channel] += camera[channel];
                     picture[LIGHT + channel] += light[channel];
                     let total = fixed::to_f64(camera[channel], VALUE_SCALE)
-                        + fixed::to_f64(light[channel], VALUE_SCALE) * per_light_path;
+                        + fixed::to_f64(light[channel], VALUE_SCALE) * per_pixel;
                     let square = fixed::from_f64(total * total, MOMENT_SCALE);
                     let moment = &mut picture[MOMENT + channel];
                     *moment = moment.saturating_add(square);

@@ -89,9 +89,8 @@ impl FilmSettings {
         Some((self.crop.index(x, y)?, weight))
     }
 
-    /// Returns the number of light subpaths of a pass in which each sample has its own: one for each pixel of the
-    /// crop. If k samples share a subpath, weights and the light image use 1/k of this number.
-    pub fn light_paths(&self) -> u64 {
+    /// Returns the number of pixels of the crop, which is that of samples of a pass.
+    pub fn pixel_count(&self) -> u64 {
         self.crop.area()
     }
 }

@@ -7,7 +7,7 @@ use super::{Entry, Fate, Lists};
 use crate::contribution::is_summable;
 use crate::path::{Subpaths, Vertex, Weights};
 use crate::sampler::SampleStream;
-use crate::scene::ShadowRays;
+use crate::scene::ShadowRayBuffers;
 use crate::select::{Candidate, Chosen};
 use crate::spectrum::Spectrum;
 use crate::stats::{Clock, Stats, Stopwatch};
@@ -86,7 +86,7 @@ pub struct Candidates {
 #[derive(Debug, Default)]
 pub struct Worker {
     pub(super) weights: Weights,
-    pub(super) shadow_rays: ShadowRays,
+    pub(super) shadow_rays: ShadowRayBuffers,
     /// The counters.
     pub stats: Stats,
     /// Measures stages, where the host has a clock for it.

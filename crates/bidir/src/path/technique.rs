@@ -84,7 +84,7 @@ impl SampleCounts {
         Self {
             connections: [1.0; 2],
             next_events: [1.0; 2],
-            light_subpaths: film.light_paths() as f64,
+            light_subpaths: film.pixel_count() as f64,
         }
     }
 }

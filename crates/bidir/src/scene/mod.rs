@@ -26,7 +26,7 @@ pub use nesting::Volume;
 pub use object::ObjectId;
 
 pub use space::RenderSpace;
-pub(crate) use visibility::ShadowRays;
+pub(crate) use visibility::ShadowRayBuffers;
 
 use nesting::Enclosed;
 use object::Placed;

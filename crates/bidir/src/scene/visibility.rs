@@ -11,7 +11,7 @@ use accel::Stop;
 
 /// Memory for shadow rays that are traced together.
 #[derive(Debug, Default)]
-pub(crate) struct ShadowRays {
+pub(crate) struct ShadowRayBuffers {
     rays: Vec<accel::Ray>,
     blocked: Vec<bool>,
     transmittances: Vec<f32>,
@@ -31,9 +31,9 @@ impl Scene {
         &self,
         ends: impl Iterator<Item = &'a [Locus; 2]>,
         stop: Stop<'_>,
-        memory: &'m mut ShadowRays,
+        memory: &'m mut ShadowRayBuffers,
     ) -> &'m [f32] {
-        let ShadowRays {
+        let ShadowRayBuffers {
             rays,
             blocked,
             transmittances,

@@ -152,7 +152,7 @@ fn terms(loaded: &LoadedScene<'_>, settings: &Settings, pass: u64) -> Vec<[f64; 
     for i in 0..film.crop.area() {
         let pixel = film.crop.pixel(i as usize);
         let camera = sampler.stream(Domain::Camera, i, pass);
-        let light = sampler.stream(Domain::Light, 0, pass * film.light_paths() + i);
+        let light = sampler.stream(Domain::Light, 0, pass * film.pixel_count() + i);
         batch.fill([Sample::new(pass, pixel, camera, light)]);
         method.run(&job, &mut batch);
         terms.extend(batch.candidates.offered.iter().map(|candidate| {

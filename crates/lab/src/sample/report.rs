@@ -135,7 +135,7 @@ impl SampleReport {
             candidates,
             zeros: replay.zeros.iter().map(ToString::to_string).collect(),
             light_image,
-            light_paths: session.view().film().light_paths(),
+            light_paths: session.view().film().pixel_count(),
             light_subpaths: session.light_subpaths(),
             rays: stats.rays.total(),
             dropped: stats.dropped,

@@ -73,7 +73,7 @@ impl Session<'_> {
 
     /// Returns the number of light subpaths in a pass.
     pub fn light_subpaths(&self) -> u64 {
-        let pixels = self.view.film().light_paths();
+        let pixels = self.view.film().pixel_count();
         pixels.div_ceil(self.samples_per_subpath())
     }
 

@@ -86,7 +86,7 @@ impl Survey {
             let norm = (means[block] * means[block] + DARK * mean * mean).sqrt();
             let value = f64::from(term.value) / norm;
             let in_pass = if term.is_light_image() {
-                film.light_paths() as f64
+                film.pixel_count() as f64
             } else {
                 1.0
             };

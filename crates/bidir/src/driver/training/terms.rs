@@ -60,7 +60,7 @@ impl SurveyTerm {
     /// shares a splat.
     pub(super) fn of_mean_pixel(&self, film: &FilmSettings) -> f64 {
         if self.is_light_image() {
-            f64::from(self.value) / film.light_paths() as f64
+            f64::from(self.value) / film.pixel_count() as f64
         } else {
             self.value.into()
         }

@@ -162,7 +162,7 @@ impl<'a> LightImage<'a> {
 
     /// Returns the term with contribution `c`, scaled to the number of light subpaths in a pass. None: it is zero.
     fn term(&self, job: &Job<'_>, c: Spectrum, weight: f32) -> Option<Term> {
-        let share = job.view.film().light_paths() as f64 / job.counts.light_subpaths;
+        let share = job.view.film().pixel_count() as f64 / job.counts.light_subpaths;
         let contribution = c * share as f32;
         (contribution != Spectrum::ZERO).then_some(Term {
             strategy: Strategy::new(self.light.len(), 1),

@@ -4,7 +4,7 @@ use super::super::{Candidates, Entry, Fate, Link, Walked, Worker};
 use super::media::trace_chosen_through_media;
 use crate::contribution::Contribution;
 use crate::path::Job;
-use crate::scene::ShadowRays;
+use crate::scene::ShadowRayBuffers;
 use crate::select::{Chosen, Draws, Selector};
 use crate::stats::{Stage, Stats};
 
@@ -72,7 +72,7 @@ pub(in super::super) fn shadow_rays(
 pub(super) fn trace(
     job: &Job<'_>,
     entries: &mut [Entry],
-    memory: &mut ShadowRays,
+    memory: &mut ShadowRayBuffers,
     stats: &mut Stats,
 ) {
     let ends = entries.iter().filter_map(Entry::shadow_ray);
