@@ -24,7 +24,7 @@ STAGES = {
     "walk": r"^bidir::integrator::stages::walk::(walk|sum)_(camera|light)$",
     "hits": r"^bidir::integrator::stages::hits::hits$",
     "light_image": r"^bidir::integrator::stages::light_image::light_image$",
-    "candidates": r"^bidir::integrator::stages::(next_event::next_events|connect::connect)$",
+    "candidates": r"^bidir::integrator::stages::(light_ends::(next_events|own_light)|connect::connect)$",
     "select": r"^<bidir::select::\w+::\w+ as bidir::select::Selector>::select$",
     "shadow": r"^bidir::integrator::stages::trace::shadow_rays$",
     "film": r"^bidir::(driver::deposit::Deposit::take|film::Film::add_pass"
