@@ -185,8 +185,7 @@ PATHS = [
         "            },\n",
         "                // Right in every grey image, wrong in colour.\n"
         "                contribution: {\n"
-        "                    let first = number.checked_sub(1).map_or(0, |i| candidates_end[i]);\n"
-        "                    let candidates = &candidates[first..candidates_end[number]];\n"
+        "                    let candidates = offered.get(number);\n"
         "                    let all: f32 = candidates.iter().map(|c| c.score).sum();\n"
         "                    let values = candidates.iter().map(|c| c.term.value());\n"
         "                    let sum = values.fold(crate::spectrum::Spectrum::ZERO, |sum, v| sum + v);\n"
