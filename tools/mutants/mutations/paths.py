@@ -236,8 +236,8 @@ PATHS = [
     (
         "weights that know the proposal the other way round",
         "crates/bidir/src/path/technique.rs",
-        "self.count_from(depth, self.guide.of_camera(y), z)",
-        "self.count_from(depth, self.guide.of_camera(z), y)",
+        "self.count_of(Technique::of(self.settings.light_point, s, t), cells)",
+        "self.count_of(Technique::of(self.settings.light_point, s, t), if s > t { [cells[1], cells[0]] } else { cells })",
         RUNNING,
     ),
     (
