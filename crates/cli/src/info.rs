@@ -73,9 +73,8 @@ fn contents(loaded: &Loaded) -> Value {
         "spp": loaded.settings.samples_per_pixel,
         "shapes": count(scene.shapes().iter().map(Shape::kind)),
         "triangles": triangles.sum::<usize>(),
-        // Those of shared objects count once,
+        // A shared object counts once here, and once per instance below.
         "primitives": scene.unique_primitives(),
-        // or once per instance.
         "placed_primitives": scene.placed_primitives(),
         "instances": loaded.summary.instances,
         "shared_instances": scene.instance_count(),

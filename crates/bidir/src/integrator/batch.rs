@@ -78,7 +78,7 @@ pub struct Candidates {
     pub offered: Lists<Candidate>,
     /// Connections that are not offered: their value is zero, or no film can sum it.
     pub(crate) unoffered: Vec<Candidate>,
-    /// Those that were chosen; the last of the entries are theirs.
+    /// The candidates that were chosen. The last entries of the batch are theirs, in this order.
     pub chosen: Vec<Chosen>,
 }
 
@@ -110,7 +110,7 @@ pub struct Batch {
     pub splats: Vec<Entry>,
     /// Memory of the driver: the luminance that each sample adds to its own pixel by a strategy.
     pub(crate) luminances: Vec<((u32, Strategy), f64)>,
-    /// What the thread that computes it brings.
+    /// The memory, counters and clock of the thread that computes the batch.
     pub worker: Worker,
 }
 

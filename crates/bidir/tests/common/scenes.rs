@@ -32,7 +32,7 @@ pub(crate) const METHODS: [IntegratorKind; 4] = [
     IntegratorKind::Light,
 ];
 
-/// Those of them that walk subpaths from the camera.
+/// The integrators that walk subpaths from the camera.
 pub(crate) const FROM_THE_CAMERA: [IntegratorKind; 3] = [METHODS[0], METHODS[1], METHODS[2]];
 
 pub(crate) fn with_threads(threads: usize) -> Resources {

@@ -16,9 +16,9 @@ pub(super) const LEAST_REFLECTANCE: f32 = 0.2;
 /// The fractions of the light along one direction that facets lose.
 #[derive(Clone, Copy)]
 struct Lost {
-    /// k of facets that mirror.
+    /// The fraction that mirroring facets lose.
     mirrors: f32,
-    /// k of the interface of a solid.
+    /// The fraction that the interface of a solid loses.
     through: f32,
 }
 

@@ -282,3 +282,22 @@ fn white_bases_under_clear_layers_vanish_in_a_furnace_but_for_light_between_face
     }
     check_furnace(&white(0.0, 0.0, metal(0.0)), 0.999);
 }
+
+/// Returns the part of even light that draws of `bsdf` scatter: ∫ 2μ albedo dμ.
+fn average(bsdf: &Bsdf) -> f64 {
+    let n = 64;
+    let cos = |i: u8| ((f32::from(i) + 0.5) / f32::from(n)).sqrt();
+    let albedos = (0..n).map(|i| f64::from(albedo_of_draws(bsdf, direction(cos(i), 0.3))));
+    albedos.sum::<f64>() / f64::from(n)
+}
+
+/// The figures of docs/reference/pbrt.md, over a coat that is clear and lets light through as if it were smooth.
+#[test]
+fn coats_are_as_dark_as_the_page_says() {
+    let reflectance =
+        |alpha, thickness| average(&Stack::varnish([1.5, alpha], 0.5, thickness).bsdf());
+    for (alpha, expected) in [(0.1, 0.92), (0.3, 0.79)] {
+        let ratio = reflectance(alpha, 0.01) / reflectance(0.0, 0.0);
+        assert!((ratio - expected).abs() < 0.01, "{alpha}: {ratio}");
+    }
+}

@@ -6,7 +6,7 @@
 pub(super) const MOST_SAMPLES: u64 = 1 << 14;
 /// The most samples for each pixel, unless that leaves less than [`ENOUGH_SAMPLES`] in all. Unit: samples.
 pub(super) const MOST_OF_PIXEL: u64 = 16;
-/// The least samples of a small film, if their work allows it. Unit: samples, a power of two.
+/// The number of samples that a small film gets at least, if time allows. Unit: samples, a power of two.
 pub(super) const ENOUGH_SAMPLES: u64 = 1 << 10;
 /// The least samples from which training learns about connections. Unit: samples, a power of two.
 pub(super) const LEARNING_SAMPLES: u64 = 1 << 6;

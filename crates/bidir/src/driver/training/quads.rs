@@ -18,7 +18,7 @@
 
 use super::counts::{Counts, STARTS};
 
-/// The number of depths that are told apart: the last stands for all deeper camera vertices.
+/// The number of classes of depth. The last one has all deeper camera vertices.
 const DEPTHS: usize = 8;
 
 /// A kind of term.

@@ -1,7 +1,8 @@
-//! Scattering whose light is known: once on the way of a ray, and many times under a surface.
+//! Scattering whose light is known: once on the way of a ray, many times under a surface, and around a point light.
 
 use super::VACUUM;
 use crate::common::prelude::*;
+use bidir::camera::{Camera, Spherical, SphericalMapping};
 use bidir::math::DVec3;
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -130,6 +131,70 @@ fn thick_matter_reflects_what_h_functions_say() {
     check_thick(IntegratorKind::Path, 2048);
 }
 
+// Fluence around a point light.
+
+/// Independent uniform numbers \[Steele14\].
+struct Numbers(u64);
+
+impl Numbers {
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mixed = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        let mixed_again = (mixed ^ (mixed >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        ((mixed_again ^ (mixed_again >> 31)) >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    /// Returns a direction whose cosine to `axis` is given.
+    fn around(&mut self, axis: DVec3, cos: f64) -> DVec3 {
+        // A second direction that is not along the axis makes the frame.
+        let other = if axis.x.abs() < 0.5 {
+            DVec3::X
+        } else {
+            DVec3::Y
+        };
+        let u = axis.cross(other).normalize();
+        let (angle, sin) = (2.0 * PI * self.next(), (1.0 - cos * cos).max(0.0).sqrt());
+        let across = u * libm::cos(angle) + axis.cross(u) * libm::sin(angle);
+        (axis * cos + across * sin).normalize()
+    }
+}
+
+/// Returns the fluence of scattered light at a free path from a point light of intensity 1, by photons that are absorbed
+/// or scattered, and nothing else: collisions in a shell, over its volume. `g` is not 0.
+fn fluence_by_photons(albedo: f64, g: f64, photons: u32) -> f64 {
+    const SHELL: [f64; 2] = [0.95, 1.05];
+    let (mut numbers, mut collisions) = (Numbers(7), 0u32);
+    for _ in 0..photons {
+        let (mut place, mut is_scattered) = (DVec3::ZERO, false);
+        let up = 2.0 * numbers.next() - 1.0;
+        let mut direction = numbers.around(DVec3::Z, up);
+        loop {
+            place += direction * -libm::log(1.0 - numbers.next());
+            let is_inside = (SHELL[0]..SHELL[1]).contains(&place.length());
+            collisions += u32::from(is_scattered && is_inside);
+            if numbers.next() >= albedo {
+                break;
+            }
+            is_scattered = true;
+            let part = (1.0 - g * g) / (1.0 - g + 2.0 * g * numbers.next());
+            direction = numbers.around(direction, (1.0 + g * g - part * part) / (2.0 * g));
+        }
+    }
+    let [inner, outer] = SHELL.map(|r| 4.0 / 3.0 * PI * r * r * r);
+    // Intensity 1 is a power of 4π.
+    4.0 * PI * f64::from(collisions) / f64::from(photons) / (outer - inner)
+}
+
+/// Returns all around a place at a free path from a point light.
+fn around_a_lamp(albedo: f32, g: f32) -> Shot {
+    let mapping = SphericalMapping::EqualArea;
+    let camera = Spherical::new(&Affine3A::IDENTITY, Vec2::splat(4.0), mapping);
+    let mut builder = ShotBuilder::new(Camera::Spherical(camera.expect("a camera")), 4);
+    builder.light(point_light(Vec3::new(0.36, 0.48, 0.8)));
+    builder.fill(medium([1.0 - albedo; 3], [albedo; 3], g));
+    builder.build()
+}
+
 /// Comparisons that need millions of samples.
 mod statistics {
     use super::*;
@@ -142,5 +207,17 @@ mod statistics {
         // Light tracing has no finite variance here, as vertices come as near to the lens as they like.
         let once = (IntegratorKind::Lvc, Some(1));
         check("once", &lamp_in_fog(), once, 8192, seen_of_lamp());
+    }
+
+    #[test]
+    #[ignore = "statistics: .ci/run statistics"]
+    fn light_around_a_lamp_is_that_of_photons_alone() {
+        const G: f32 = 0.3;
+        let fluence = fluence_by_photons(0.9, f64::from(G), 24_000_000);
+        let expected = [fluence / (4.0 * PI); 3];
+        for kind in [IntegratorKind::Bdpt, IntegratorKind::Lvc] {
+            let shot = around_a_lamp(0.9, G);
+            check("lamp", &shot, (kind, None), 12288, expected);
+        }
     }
 }
