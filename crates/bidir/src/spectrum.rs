@@ -3,12 +3,30 @@
 //! All light along a path is a [`Spectrum`]: four `f32` lanes, multiplied and added lane by lane. [`Lanes`] gives
 //! their meaning, which all samples of a group share. Only emission, texture look-up and film development convert.
 //! Other code asks only which lanes carry light: for means, and for the lane by which a walk draws its distance.
+//!
+//! A scene has colours in linear Rec. 709, and quantities that keep their [`Curve`]: [`Illuminant`], [`Metal`] and
+//! [`RefractiveIndex`].
 
+mod colorimetry;
+mod curve;
 mod four;
+mod named;
+mod quantity;
+mod table;
+#[cfg(test)]
+mod tests;
+
 #[cfg(test)]
 pub(crate) mod permuted;
 
+pub use colorimetry::{
+    LUMINANCE_OF_ONE, Primaries, adapted, black_body, daylight_white, planckian_white, reflectance,
+    rgb_from_rgb,
+};
+pub use curve::{Beyond, Curve, CurveError};
 pub(crate) use four::FourSpectra;
+pub use named::{named, names};
+pub use quantity::{Illuminant, Metal, RefractiveIndex};
 
 use glam::Vec4;
 use std::ops::{Add, AddAssign, Div, Index, Mul, MulAssign, Sub};
@@ -201,6 +219,36 @@ impl Lanes {
             Self::Rgb => Spectrum([r, g, b, 0.0]),
             #[cfg(test)]
             Self::Permuted(order) => order.of_rgb(Self::Rgb.illuminant([r, g, b])),
+        }
+    }
+
+    /// Returns the lanes of emitted light.
+    #[inline]
+    pub fn light(self, light: &Illuminant) -> Spectrum {
+        match self {
+            Self::Rgb => self.illuminant(light.color()),
+            #[cfg(test)]
+            Self::Permuted(order) => order.light(light),
+        }
+    }
+
+    /// Returns the lanes of η and k of a metal.
+    #[inline]
+    pub fn metal(self, metal: &Metal) -> [Spectrum; 2] {
+        match self {
+            Self::Rgb => metal.channels().map(|rgb| self.unbounded(rgb)),
+            #[cfg(test)]
+            Self::Permuted(order) => metal.curves().each_ref().map(|curve| order.curve(curve)),
+        }
+    }
+
+    /// Returns the index by which a dielectric refracts all lanes.
+    #[inline]
+    pub fn index(self, index: &RefractiveIndex) -> f32 {
+        match self {
+            Self::Rgb => index.at_d_line(),
+            #[cfg(test)]
+            Self::Permuted(order) => order.index(index),
         }
     }
 

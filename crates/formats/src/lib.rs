@@ -14,7 +14,6 @@ mod limits;
 mod nanovdb;
 mod repair;
 mod source;
-mod spectra;
 mod text;
 
 pub mod file;

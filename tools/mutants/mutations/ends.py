@@ -13,8 +13,8 @@ ENDS = [
     (
         "spot without its falloff in light subpaths",
         "crates/bidir/src/light/point.rs",
-        "emitted_cos: self.intensity(direction),",
-        "emitted_cos: self.intensity,",
+        "emitted_cos: self.intensity(direction, lanes),",
+        "emitted_cos: lanes.light(&self.intensity),",
         unit("light::tests"),
     ),
     (
@@ -34,8 +34,8 @@ ENDS = [
     (
         "a lamp's picture forgotten where rays leave",
         "crates/bidir/src/light/area.rs",
-        "                .radiance(context, &from.at)",
-        "                .radiance",
+        "emitted_cos: self.radiance(context, &from.at, lanes)",
+        "emitted_cos: lanes.light(&self.radiance)",
         unit("light::tests"),
     ),
     (

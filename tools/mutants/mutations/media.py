@@ -166,8 +166,8 @@ MEDIA = [
     (
         "light of all that a medium takes, scattered or absorbed",
         "crates/bidir/src/medium/glow.rs",
-        "(self.at(point).absorption(), glow.at(point))",
-        "(self.at(point).extinction, glow.at(point))",
+        "lanes.unbounded(self.at(point).absorption()) * glow",
+        "lanes.unbounded(self.at(point).extinction) * glow",
         EQUILIBRIUM,
     ),
     (

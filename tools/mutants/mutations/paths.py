@@ -363,8 +363,8 @@ PATHS = [
     (
         "a cut-out lamp that light subpaths take for whole",
         "crates/bidir/src/path/walk.rs",
-        "emitted * (emission.from.alpha / (start",
-        "emitted * (1.0 / (start",
+        "* (emission.from.alpha / (start",
+        "* (1.0 / (start",
         coverage("lamps_cut_out"),
     ),
     (

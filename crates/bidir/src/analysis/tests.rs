@@ -12,7 +12,7 @@ pub(super) fn shot(materials: &[Material], lights: Vec<Light>) -> Shot {
         builder.add(sphere(Vec3::ZERO, 1.0), material.clone());
     }
     // A material of no surface does not count.
-    builder.material(Material::ThinDielectric { eta: 1.5 });
+    builder.material(Material::ThinDielectric { eta: 1.5.into() });
     for light in lights {
         builder.light(light);
     }
@@ -66,7 +66,7 @@ fn lights_that_rays_hit_are_noisy_where_others_are_missing() {
 fn endless_glow() -> Shot {
     let mut builder = builder(1, 0.0);
     let gas = medium([0.1; 3], [0.1; 3], 0.0);
-    let gas = builder.fill(gas.glowing(Glow::Even([1.0; 3])).unwrap());
+    let gas = builder.fill(gas.glowing(Glow::Even([1.0; 3].into())).unwrap());
     builder.bound(sphere(Vec3::ZERO, 0.2), gas, MediumId::VACUUM);
     builder.build()
 }

@@ -6,7 +6,7 @@
 use super::{Cone, EmissionSample, EmitterBounds, LightContext, LightPoint, LightSample, Part};
 use crate::math::{Distribution1d, Frame, PI, Vec2, Vec3, warp};
 use crate::shape::{Normals, Shape, ShapeSample, SurfacePoint};
-use crate::spectrum::{Rgb, luminance};
+use crate::spectrum::{Illuminant, Lanes, Spectrum};
 use crate::texture::clamped_alpha;
 use crate::texture::{ColorTexture, FloatTexture, TexturePoint};
 
@@ -30,7 +30,7 @@ pub enum EmissionSides {
 pub struct AreaLight {
     /// The index of the shape.
     shape: usize,
-    radiance: Rgb,
+    radiance: Illuminant,
     /// The factor of the radiance at each point. None: the radiance is constant.
     pattern: Option<ColorTexture>,
     /// The mean radiance over the area, with the pattern. Unit: luminance.
@@ -48,7 +48,13 @@ pub struct AreaLight {
 
 impl AreaLight {
     /// Makes the light of `shape`, which has number `index` in the scene.
-    pub fn new(index: usize, shape: &Shape, radiance: Rgb, sides: EmissionSides) -> Self {
+    pub fn new(
+        index: usize,
+        shape: &Shape,
+        radiance: impl Into<Illuminant>,
+        sides: EmissionSides,
+    ) -> Self {
+        let radiance: Illuminant = radiance.into();
         let areas = (0..shape.primitive_count()).map(|i| shape.primitive_area(i));
         let primitives = Distribution1d::new(areas);
         let area = primitives.total();
@@ -56,9 +62,9 @@ impl AreaLight {
         Self {
             inverse_area,
             shape: index,
+            mean: radiance.luminance(),
             radiance,
             pattern: None,
-            mean: luminance(radiance),
             sides,
             primitives,
             alpha: None,
@@ -78,32 +84,35 @@ impl AreaLight {
             shape.sample(primitive, Vec2::new(rest, v)).surface
         });
         let sum: f32 = points
-            .map(|surface| luminance(self.radiance_at(&surface)))
+            .map(|surface| Lanes::Rgb.luminance(self.radiance_at(&surface, Lanes::Rgb)))
             .sum();
         // A light that may emit somewhere needs a probability above 0.
-        let least = 1e-3 * luminance(self.radiance);
+        let least = 1e-3 * self.radiance.luminance();
         self.mean = (sum / PATTERN_POINTS as f32).max(least);
     }
 
     /// Returns the radiance of a point of the surface.
     #[inline]
-    fn radiance_at(&self, surface: &SurfacePoint) -> Rgb {
-        let Some(pattern) = &self.pattern else {
-            return self.radiance;
-        };
-        let factor = pattern.eval(&TexturePoint::new(surface));
-        std::array::from_fn(|channel| self.radiance[channel] * factor[channel].max(0.0))
+    fn radiance_at(&self, surface: &SurfacePoint, lanes: Lanes) -> Spectrum {
+        let radiance = lanes.light(&self.radiance);
+        self.pattern.as_ref().map_or(radiance, |pattern| {
+            let factor = pattern.eval(&TexturePoint::new(surface));
+            radiance * lanes.albedo(factor.map(|channel| channel.max(0.0)))
+        })
     }
 
     /// Returns the radiance at a light point. It depends only on the point, not on the strategy that drew it.
     #[inline]
-    fn radiance(&self, context: &LightContext<'_>, at: &LightPoint) -> Rgb {
+    fn radiance(&self, context: &LightContext<'_>, at: &LightPoint, lanes: Lanes) -> Spectrum {
         if self.pattern.is_none() {
-            return self.radiance;
+            return lanes.light(&self.radiance);
         }
         let (shape, primitive) = (&context.shapes[self.shape], at.primitive as usize);
         let parameters = shape.parameters(primitive, at.locus.point);
-        self.radiance_at(&shape.surface_point(primitive, parameters, at.locus.point))
+        self.radiance_at(
+            &shape.surface_point(primitive, parameters, at.locus.point),
+            lanes,
+        )
     }
 
     /// Hides the surface from rays; it still emits.
@@ -184,11 +193,17 @@ impl AreaLight {
     }
 
     #[inline]
-    pub(super) fn emitted(&self, context: &LightContext<'_>, at: &LightPoint, w: Vec3) -> Rgb {
+    pub(super) fn emitted(
+        &self,
+        context: &LightContext<'_>,
+        at: &LightPoint,
+        w: Vec3,
+        lanes: Lanes,
+    ) -> Spectrum {
         if self.sides == EmissionSides::Both || at.locus.n_g.dot(w) > 0.0 {
-            self.radiance(context, at)
+            self.radiance(context, at, lanes)
         } else {
-            [0.0; 3]
+            Spectrum::ZERO
         }
     }
 
@@ -223,6 +238,7 @@ impl AreaLight {
         context: &LightContext<'_>,
         u_position: Vec2,
         u_direction: Vec2,
+        lanes: Lanes,
     ) -> Option<EmissionSample> {
         let shape = &context.shapes[self.shape];
         let from = self.sample_shape(u_position, |i, u| shape.sample(i, u));
@@ -240,9 +256,8 @@ impl AreaLight {
             origin: from.at.locus.point,
             direction,
             pdf_direction,
-            emitted_cos: self
-                .radiance(context, &from.at)
-                .map(|l| l * from.at.locus.n_g.dot(direction).abs()),
+            emitted_cos: self.radiance(context, &from.at, lanes)
+                * from.at.locus.n_g.dot(direction).abs(),
         })
     }
 

@@ -9,7 +9,7 @@ use crate::math::{
     Distribution2d, Frame, Mat3, PI, Vec2, Vec3, direction_to_square, sqr, square_to_direction,
     warp,
 };
-use crate::spectrum::{Rgb, luminance};
+use crate::spectrum::{Illuminant, Lanes, Spectrum, luminance};
 use crate::texture::Image;
 
 /// Returns the density of the point at which a ray from infinity crosses the disk around the scene, which is
@@ -24,7 +24,7 @@ pub(super) fn pdf_disk(context: &LightContext<'_>) -> f32 {
 fn ray_from_infinity(
     context: &LightContext<'_>,
     from: LightSample,
-    emitted: Rgb,
+    emitted: Spectrum,
     u: Vec2,
 ) -> EmissionSample {
     let to_light = from.at.locus.point;
@@ -40,17 +40,17 @@ fn ray_from_infinity(
 }
 
 /// Parallel rays from one direction.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct DistantLight {
     /// The unit direction towards the light.
     pub to_light: Vec3,
     /// Irradiance on a surface that faces it. Unit: W/m².
-    pub irradiance: Rgb,
+    pub irradiance: Illuminant,
 }
 
 impl DistantLight {
     pub(super) fn power(&self, context: &LightContext<'_>) -> f32 {
-        PI * sqr(context.radius) * luminance(self.irradiance)
+        PI * sqr(context.radius) * self.irradiance.luminance()
     }
 
     #[inline]
@@ -59,8 +59,13 @@ impl DistantLight {
     }
 
     #[inline]
-    pub(super) fn sample_emission(&self, context: &LightContext<'_>, u: Vec2) -> EmissionSample {
-        ray_from_infinity(context, self.at(), self.irradiance, u)
+    pub(super) fn sample_emission(
+        &self,
+        context: &LightContext<'_>,
+        u: Vec2,
+        lanes: Lanes,
+    ) -> EmissionSample {
+        ray_from_infinity(context, self.at(), lanes.light(&self.irradiance), u)
     }
 }
 
@@ -68,7 +73,7 @@ impl DistantLight {
 #[derive(Clone, Debug)]
 pub enum Radiance {
     /// The same radiance from all directions.
-    Constant(Rgb),
+    Constant(Illuminant),
     /// An equal-area octahedral image ([`square_to_direction`]), with z up in its own space; each
     /// texel is one value. `distribution` is over its texels' luminance.
     Image {
@@ -89,8 +94,8 @@ pub struct InfiniteLight {
 
 impl InfiniteLight {
     /// Makes a sky of constant radiance.
-    pub fn constant(radiance: Rgb) -> Self {
-        let radiance = Radiance::Constant(radiance);
+    pub fn constant(radiance: impl Into<Illuminant>) -> Self {
+        let radiance = Radiance::Constant(radiance.into());
         Self {
             radiance,
             scale: 1.0,
@@ -119,7 +124,7 @@ impl InfiniteLight {
 
     pub(super) fn power(&self, context: &LightContext<'_>) -> f32 {
         let mean = match &self.radiance {
-            Radiance::Constant(radiance) => luminance(*radiance),
+            Radiance::Constant(radiance) => radiance.luminance(),
             Radiance::Image { distribution, .. } => distribution.mean() as f32 * self.scale,
         };
         4.0 * PI * mean * PI * sqr(context.radius)
@@ -127,14 +132,14 @@ impl InfiniteLight {
 
     /// Returns the radiance from the unit direction `to_light`.
     #[inline]
-    pub(super) fn radiance(&self, to_light: Vec3) -> Rgb {
+    pub(super) fn radiance(&self, to_light: Vec3, lanes: Lanes) -> Spectrum {
         match &self.radiance {
-            Radiance::Constant(radiance) => *radiance,
+            Radiance::Constant(radiance) => lanes.light(radiance),
             Radiance::Image { image, .. } => {
                 let p = self.square(to_light);
                 let x = ((p.x * image.width() as f32) as usize).min(image.width() - 1);
                 let y = ((p.y * image.height() as f32) as usize).min(image.height() - 1);
-                image.texel(x, y).map(|channel| channel * self.scale)
+                lanes.illuminant(image.texel(x, y)) * self.scale
             }
         }
     }
@@ -176,9 +181,10 @@ impl InfiniteLight {
         context: &LightContext<'_>,
         u_position: Vec2,
         u_direction: Vec2,
+        lanes: Lanes,
     ) -> Option<EmissionSample> {
         let from = self.sample(u_position)?;
-        let emitted = self.radiance(from.at.locus.point);
+        let emitted = self.radiance(from.at.locus.point, lanes);
         Some(ray_from_infinity(context, from, emitted, u_direction))
     }
 }

@@ -39,7 +39,7 @@ use crate::locus::Locus;
 use crate::math::{Vec2, Vec3};
 use crate::medium::{Medium, MediumId};
 use crate::shape::{Shape, SurfacePoint};
-use crate::spectrum::Rgb;
+use crate::spectrum::{Lanes, Spectrum};
 use tree::{Cone, EmitterBounds};
 
 /// The start of a path.
@@ -120,7 +120,7 @@ pub struct EmissionSample {
     /// The density of `direction`, in the measure of the module's table.
     pub pdf_direction: f32,
     /// The emitted radiance or intensity, times the cosine at the light if it has a surface.
-    pub emitted_cos: Rgb,
+    pub emitted_cos: Spectrum,
 }
 
 /// The parts of the scene that lights need.
@@ -221,14 +221,20 @@ impl Light {
     /// Returns the radiance from `at` along the unit direction `w` away from the light; intensity for point
     /// and spot lights, irradiance on a facing surface for a distant light, σ_a L_e in a medium.
     #[inline]
-    pub fn emitted(&self, context: &LightContext<'_>, at: &LightPoint, w: Vec3) -> Rgb {
+    pub fn emitted(
+        &self,
+        context: &LightContext<'_>,
+        at: &LightPoint,
+        w: Vec3,
+        lanes: Lanes,
+    ) -> Spectrum {
         match self {
-            Self::Area(light) => light.emitted(context, at, w),
-            Self::Point(light) => light.intensity,
-            Self::Spot(light) => light.intensity(w),
-            Self::Distant(light) => light.irradiance,
-            Self::Infinite(light) => light.radiance(at.locus.point),
-            Self::Volume(light) => light.emitted(context, at),
+            Self::Area(light) => light.emitted(context, at, w, lanes),
+            Self::Point(light) => lanes.light(&light.intensity),
+            Self::Spot(light) => light.intensity(w, lanes),
+            Self::Distant(light) => lanes.light(&light.irradiance),
+            Self::Infinite(light) => light.radiance(at.locus.point, lanes),
+            Self::Volume(light) => light.emitted(context, at, lanes),
         }
     }
 
@@ -240,15 +246,16 @@ impl Light {
         u_position: Vec2,
         u_depth: impl FnOnce() -> f32,
         u_direction: Vec2,
+        lanes: Lanes,
     ) -> Option<EmissionSample> {
         match self {
-            Self::Area(light) => light.sample_emission(context, u_position, u_direction),
-            Self::Point(light) => Some(light.sample_emission(u_direction)),
-            Self::Spot(light) => Some(light.sample_emission(u_direction)),
-            Self::Distant(light) => Some(light.sample_emission(context, u_direction)),
-            Self::Infinite(light) => light.sample_emission(context, u_position, u_direction),
+            Self::Area(light) => light.sample_emission(context, u_position, u_direction, lanes),
+            Self::Point(light) => Some(light.sample_emission(u_direction, lanes)),
+            Self::Spot(light) => Some(light.sample_emission(u_direction, lanes)),
+            Self::Distant(light) => Some(light.sample_emission(context, u_direction, lanes)),
+            Self::Infinite(light) => light.sample_emission(context, u_position, u_direction, lanes),
             Self::Volume(light) => {
-                light.sample_emission(context, u_position.extend(u_depth()), u_direction)
+                light.sample_emission(context, u_position.extend(u_depth()), u_direction, lanes)
             }
         }
     }

@@ -4,16 +4,16 @@
 
 use super::{Cone, EmissionSample, EmitterBounds, LightPoint, LightSample};
 use crate::math::{Frame, PI, Vec2, Vec3, sqr, warp};
-use crate::spectrum::{Rgb, luminance};
+use crate::spectrum::{Illuminant, Lanes, Spectrum};
 use accel::Aabb;
 
 /// A point that emits the same intensity in all directions.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct PointLight {
     /// Its position.
     pub position: Vec3,
     /// Radiant intensity. Unit: W/sr.
-    pub intensity: Rgb,
+    pub intensity: Illuminant,
 }
 
 impl PointLight {
@@ -21,14 +21,14 @@ impl PointLight {
     pub(super) const PDF_DIRECTION: f32 = 1.0 / (4.0 * PI);
 
     pub(super) fn power(&self) -> f32 {
-        4.0 * PI * luminance(self.intensity)
+        4.0 * PI * self.intensity.luminance()
     }
 
     pub(super) fn bounds(&self) -> EmitterBounds {
         EmitterBounds {
             bounds: Aabb::around(&[self.position]),
             cone: Cone::EVERYWHERE,
-            intensity: luminance(self.intensity),
+            intensity: self.intensity.luminance(),
         }
     }
 
@@ -39,13 +39,13 @@ impl PointLight {
     }
 
     #[inline]
-    pub(super) fn sample_emission(&self, u: Vec2) -> EmissionSample {
+    pub(super) fn sample_emission(&self, u: Vec2, lanes: Lanes) -> EmissionSample {
         EmissionSample {
             from: self.at(),
             origin: self.position,
             direction: warp::uniform_sphere(u),
             pdf_direction: Self::PDF_DIRECTION,
-            emitted_cos: self.intensity,
+            emitted_cos: lanes.light(&self.intensity),
         }
     }
 }
@@ -53,12 +53,12 @@ impl PointLight {
 /// A point that emits into a cone, with a soft rim.
 ///
 /// Angles are stored as 1 - cosθ, which is precise for narrow cones.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct SpotLight {
     /// Its position.
     pub position: Vec3,
     axis: Frame,
-    intensity: Rgb,
+    intensity: Illuminant,
     full_height: f32,
     end_height: f32,
     rim: Rim,
@@ -95,12 +95,17 @@ impl Rim {
 impl SpotLight {
     /// Makes a spot along the unit vector `axis` with `intensity` (W/sr) within the half angle `full`,
     /// falling to nothing at the half angle `end`. Unit: radians.
-    pub fn new(position: Vec3, axis: Vec3, intensity: Rgb, [full, end]: [f32; 2]) -> Self {
+    pub fn new(
+        position: Vec3,
+        axis: Vec3,
+        intensity: impl Into<Illuminant>,
+        [full, end]: [f32; 2],
+    ) -> Self {
         let [full_height, end_height] = [full, end].map(|angle| 2.0 * sqr(libm::sinf(angle / 2.0)));
         Self {
             position,
             axis: Frame::from_z(axis),
-            intensity,
+            intensity: intensity.into(),
             full_height,
             end_height,
             rim: Rim::SmoothStep,
@@ -109,7 +114,12 @@ impl SpotLight {
 
     /// Makes a spot with the rim of glTF's spots, whose intensity is the square of a number that is linear in the
     /// cosine.
-    pub fn squared(position: Vec3, axis: Vec3, intensity: Rgb, angles: [f32; 2]) -> Self {
+    pub fn squared(
+        position: Vec3,
+        axis: Vec3,
+        intensity: impl Into<Illuminant>,
+        angles: [f32; 2],
+    ) -> Self {
         Self {
             rim: Rim::Squared,
             ..Self::new(position, axis, intensity, angles)
@@ -118,7 +128,7 @@ impl SpotLight {
 
     pub(super) fn power(&self) -> f32 {
         let rim = self.rim.mean() * (self.end_height - self.full_height);
-        2.0 * PI * (self.full_height + rim) * luminance(self.intensity)
+        2.0 * PI * (self.full_height + rim) * self.intensity.luminance()
     }
 
     /// Returns bounds with the intensity of the full cone up to the end of the rim.
@@ -133,7 +143,7 @@ impl SpotLight {
                 opening: (end - full).max(0.0),
                 is_mirrored: false,
             },
-            intensity: luminance(self.intensity),
+            intensity: self.intensity.luminance(),
         }
     }
 
@@ -145,7 +155,7 @@ impl SpotLight {
 
     /// Returns the intensity along the unit direction `w`.
     #[inline]
-    pub(super) fn intensity(&self, w: Vec3) -> Rgb {
+    pub(super) fn intensity(&self, w: Vec3, lanes: Lanes) -> Spectrum {
         let height = self.height(w);
         let falloff = if height <= self.full_height {
             1.0
@@ -155,7 +165,7 @@ impl SpotLight {
             let x = (self.end_height - height) / (self.end_height - self.full_height);
             self.rim.falloff(x)
         };
-        self.intensity.map(|i| i * falloff)
+        lanes.light(&self.intensity) * falloff
     }
 
     /// Returns the point itself.
@@ -165,14 +175,14 @@ impl SpotLight {
     }
 
     #[inline]
-    pub(super) fn sample_emission(&self, u: Vec2) -> EmissionSample {
+    pub(super) fn sample_emission(&self, u: Vec2, lanes: Lanes) -> EmissionSample {
         let direction = self.axis.to_world(warp::uniform_cone(u, self.end_height));
         EmissionSample {
             from: self.at(),
             origin: self.position,
             direction,
             pdf_direction: self.pdf_cone(),
-            emitted_cos: self.intensity(direction),
+            emitted_cos: self.intensity(direction, lanes),
         }
     }
 

@@ -14,7 +14,7 @@ use crate::math::{Frame, Mat3, PI};
 use crate::medium::{Glow, Grid, Medium, MediumId};
 use crate::sampler::SampleStream;
 use crate::shape::{Cylinder, Disk, Mesh, Orientation, Shape, Sphere};
-use crate::spectrum::Rgb;
+use crate::spectrum::{Lanes, Rgb};
 use crate::testing::{check_variants, prelude::*};
 use crate::texture::{Bilerp, Image, Mapping};
 use accel::Aabb;
@@ -41,7 +41,7 @@ impl Surroundings {
                 Shape::Disk(Disk::new(stretched, 0.1, [0.2, 1.0], 5.0, front)),
                 Shape::Cylinder(Cylinder::new(stretched, 0.4, limits, front)),
             ],
-            media: vec![fire(Glow::Even(COLOR)), gas()],
+            media: vec![fire(Glow::Even(COLOR.into())), gas()],
         }
     }
 
@@ -91,7 +91,7 @@ fn fire(glow: Glow) -> Medium {
 /// The same light all over.
 fn gas() -> Medium {
     let gas = medium([0.1; 3], [0.0; 3], 0.0);
-    gas.glowing(Glow::Even(COLOR)).unwrap()
+    gas.glowing(Glow::Even(COLOR.into())).unwrap()
 }
 
 /// Returns a dark environment with a bright texel, some even ones and some black.
@@ -139,7 +139,7 @@ fn examples(surroundings: &Surroundings) -> Vec<(&'static str, Light)> {
     let spot = |angles| Light::Spot(SpotLight::new(position, axis, COLOR, angles));
     let distant = DistantLight {
         to_light: -axis,
-        irradiance: COLOR,
+        irradiance: COLOR.into(),
     };
     let (front, both) = (EmissionSides::Front, EmissionSides::Both);
     vec![
@@ -186,7 +186,7 @@ fn emission_of(
     sample: &SampleStream,
 ) -> Option<EmissionSample> {
     let (u_position, u_depth, u_direction) = numbers(sample);
-    light.sample_emission(context, u_position, || u_depth, u_direction)
+    light.sample_emission(context, u_position, || u_depth, u_direction, Lanes::Rgb)
 }
 
 /// Returns the numbers of an emission.

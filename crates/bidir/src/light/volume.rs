@@ -9,7 +9,7 @@ use super::{
 };
 use crate::math::{Affine3A, Distribution3d, ONE_MINUS_EPSILON, PI, Vec2, Vec3, warp};
 use crate::medium::{GlowCells, Medium, MediumId};
-use crate::spectrum::Rgb;
+use crate::spectrum::{Lanes, Spectrum};
 use accel::Aabb;
 
 /// A medium that emits light.
@@ -87,9 +87,16 @@ impl VolumeLight {
     }
 
     #[inline]
-    pub(super) fn emitted(&self, context: &LightContext<'_>, at: &LightPoint) -> Rgb {
+    pub(super) fn emitted(
+        &self,
+        context: &LightContext<'_>,
+        at: &LightPoint,
+        lanes: Lanes,
+    ) -> Spectrum {
         let medium = self.medium.index().map(|index| &context.media[index]);
-        medium.map_or([0.0; 3], |medium| medium.emission(at.locus.point))
+        medium.map_or(Spectrum::ZERO, |medium| {
+            medium.emission(at.locus.point, lanes)
+        })
     }
 
     /// Draws a point of the medium's box. The medium may end before the point; the scene checks that.
@@ -116,6 +123,7 @@ impl VolumeLight {
         context: &LightContext<'_>,
         u_position: Vec3,
         u_direction: Vec2,
+        lanes: Lanes,
     ) -> Option<EmissionSample> {
         let from = self.sample(u_position)?;
         Some(EmissionSample {
@@ -123,7 +131,7 @@ impl VolumeLight {
             origin: from.at.locus.point,
             direction: warp::uniform_sphere(u_direction),
             pdf_direction: PointLight::PDF_DIRECTION,
-            emitted_cos: self.emitted(context, &from.at),
+            emitted_cos: self.emitted(context, &from.at, lanes),
         })
     }
 }

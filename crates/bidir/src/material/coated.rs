@@ -292,7 +292,7 @@ impl CoatedConductorMaterial {
     pub(super) fn bsdf(&self, at: &TexturePoint, lanes: Lanes) -> Bsdf {
         let (ggx, facets) = (self.coat.roughness.ggx(at), self.roughness.ggx(at));
         let medium = self.coat.medium(at, lanes);
-        let (eta, k) = self.index.eval(at, lanes);
+        let [eta, k] = self.index.eval(at, lanes);
         let metal = CoatedMetal {
             eta: eta / self.coat.eta,
             k: k / self.coat.eta,

@@ -20,7 +20,7 @@ use crate::bsdf::{
 };
 use crate::math::{ONE_MINUS_EPSILON, Vec3};
 use crate::shape::SurfacePoint;
-use crate::spectrum::{Lanes, Rgb, Spectrum};
+use crate::spectrum::{Lanes, Metal, RefractiveIndex, Rgb, Spectrum};
 use crate::texture::{ColorTexture, FloatTexture, RequiredInputs, TexturePoint};
 use std::sync::Arc;
 
@@ -72,7 +72,9 @@ impl Roughness {
 /// The index of refraction of a metal.
 #[derive(Clone, Debug)]
 pub enum ConductorIndex {
-    /// Measured: the real and the imaginary part.
+    /// That of a known metal.
+    Measured(Arc<Metal>),
+    /// The real and the imaginary part, for each channel of linear Rec. 709.
     Complex {
         /// Real part.
         eta: ColorTexture,
@@ -86,6 +88,7 @@ pub enum ConductorIndex {
 impl ConductorIndex {
     fn needs(&self) -> RequiredInputs {
         match self {
+            Self::Measured(_) => RequiredInputs::NOTHING,
             Self::Complex { eta, k } => eta.needs().and(k.needs()),
             Self::Reflectance(reflectance) => reflectance.needs(),
         }
@@ -93,14 +96,13 @@ impl ConductorIndex {
 
     /// Returns the real and the imaginary part.
     #[inline]
-    fn eval(&self, at: &TexturePoint, lanes: Lanes) -> (Spectrum, Spectrum) {
+    fn eval(&self, at: &TexturePoint, lanes: Lanes) -> [Spectrum; 2] {
         match self {
-            Self::Complex { eta, k } => {
-                (lanes.unbounded(eta.eval(at)), lanes.unbounded(k.eval(at)))
-            }
+            Self::Measured(metal) => lanes.metal(metal),
+            Self::Complex { eta, k } => [eta, k].map(|part| lanes.unbounded(part.eval(at))),
             Self::Reflectance(r) => {
                 let k = unit(r.eval(at)).map(absorption_of_reflectance);
-                (Spectrum::ONE, lanes.unbounded(k))
+                [Spectrum::ONE, lanes.unbounded(k)]
             }
         }
     }
@@ -135,7 +137,7 @@ pub enum Material {
     /// A transparent medium's surface.
     Dielectric {
         /// Index of refraction inside divided by that outside.
-        eta: f32,
+        eta: RefractiveIndex,
         /// Its roughness.
         roughness: Roughness,
         /// The number of facets that may scatter light.
@@ -144,7 +146,7 @@ pub enum Material {
     /// A pane.
     ThinDielectric {
         /// Index of refraction of the pane divided by that around it.
-        eta: f32,
+        eta: RefractiveIndex,
     },
     /// Lambertian reflection and transmission.
     DiffuseTransmission {
@@ -253,15 +255,21 @@ impl Material {
                 roughness,
                 scattering,
             } => {
-                let (eta, k) = index.eval(at, lanes);
+                let [eta, k] = index.eval(at, lanes);
                 Bsdf::Conductor(Conductor::new(eta, k, roughness.ggx(at), *scattering))
             }
             Self::Dielectric {
                 eta,
                 roughness,
                 scattering,
-            } => Bsdf::Dielectric(Dielectric::new(*eta, roughness.ggx(at), *scattering)),
-            Self::ThinDielectric { eta } => Bsdf::ThinDielectric(ThinDielectric { eta: *eta }),
+            } => Bsdf::Dielectric(Dielectric::new(
+                lanes.index(eta),
+                roughness.ggx(at),
+                *scattering,
+            )),
+            Self::ThinDielectric { eta } => Bsdf::ThinDielectric(ThinDielectric {
+                eta: lanes.index(eta),
+            }),
             Self::DiffuseTransmission {
                 reflectance,
                 transmittance,
@@ -311,4 +319,55 @@ fn unit(rgb: Rgb) -> Rgb {
 fn absorption_of_reflectance(r: f32) -> f32 {
     let r = r.min(0.9999);
     2.0 * r.sqrt() / (1.0 - r).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bsdf::TransportMode;
+    use crate::spectrum::permuted::Order as LaneOrder;
+    use crate::spectrum::{Beyond, Curve};
+    use crate::testing::prelude::*;
+
+    fn line(low: f64, high: f64) -> Curve {
+        Curve::from_pairs(&[300.0, low, 900.0, high], Beyond::Last).unwrap()
+    }
+
+    /// Returns the part of light that a smooth material reflects at normal incidence.
+    fn reflected(material: &Material, lanes: Lanes) -> Spectrum {
+        let bsdf = material.bsdf(&TexturePoint::of_parameters(Vec2::ZERO), lanes);
+        let drawn = bsdf.sample(Vec3::Z, TransportMode::Radiance, || 0.0, Vec2::ZERO);
+        let drawn = drawn.expect("a mirror reflects");
+        assert!(drawn.wi.z > 0.0);
+        // At this incidence the coefficient is the probability.
+        drawn.weight * drawn.pdf
+    }
+
+    /// Metals and glasses scatter by their curves where lanes are wavelengths.
+    #[test]
+    fn surfaces_scatter_by_their_spectra() {
+        let lanes = Lanes::Permuted(LaneOrder([2, 0, 3, 1]));
+        let (eta, k) = (line(0.2, 2.0), line(4.0, 1.0));
+        let metal = Material::Conductor {
+            index: ConductorIndex::Measured(Metal::new(eta.clone(), k.clone()).into()),
+            roughness: Roughness::SMOOTH,
+            scattering: FacetScattering::Single,
+        };
+        let found = reflected(&metal, lanes);
+        for (lane, nm) in [(0, 465.0), (1, 610.0), (3, 550.0)] {
+            let (eta, k2) = (eta.at(nm), k.at(nm) * k.at(nm));
+            let ratio = ((eta - 1.0) * (eta - 1.0) + k2) / ((eta + 1.0) * (eta + 1.0) + k2);
+            check_near(found[lane], ratio as f32, 1e-5, "metal");
+        }
+        let glass = line(1.9, 1.3);
+        let pane = Material::ThinDielectric {
+            eta: RefractiveIndex::of_curve(glass.clone()),
+        };
+        for (lanes, nm) in [(lanes, 465.0), (Lanes::Rgb, 587.56)] {
+            let eta = glass.at(nm);
+            let once = (eta - 1.0) * (eta - 1.0) / ((eta + 1.0) * (eta + 1.0));
+            let twice = 2.0 * once / (1.0 + once);
+            check_near(reflected(&pane, lanes)[0], twice as f32, 1e-5, "pane");
+        }
+    }
 }

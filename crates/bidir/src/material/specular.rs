@@ -18,7 +18,8 @@ impl Material {
             Self::Conductor { roughness, .. } => roughness.may_be_smooth(),
             Self::Dielectric { eta, roughness, .. } => {
                 let ggx = Ggx::new(1.0, 1.0);
-                let is_matched = Dielectric::new(*eta, ggx, FacetScattering::Single).is_smooth();
+                let is_matched =
+                    Dielectric::new(eta.at_d_line(), ggx, FacetScattering::Single).is_smooth();
                 is_matched || roughness.may_be_smooth()
             }
             Self::ThinDielectric { .. } => true,

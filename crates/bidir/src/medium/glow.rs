@@ -4,14 +4,14 @@
 
 use super::{Coefficients, Field, Grid, Medium, largest};
 use crate::math::{Affine3A, Vec3};
-use crate::spectrum::{Rgb, luminance};
+use crate::spectrum::{Illuminant, Lanes, Rgb, Spectrum, luminance};
 use accel::Aabb;
 
 /// L_e of a medium: the radiance within it if it were thick.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Glow {
     /// The same radiance everywhere.
-    Even(Rgb),
+    Even(Illuminant),
     /// The radiance in the cells of the medium's own grid.
     Grid(Grid<3>),
 }
@@ -29,16 +29,16 @@ pub(crate) struct GlowCells {
 impl Glow {
     fn most(&self) -> f32 {
         match self {
-            Self::Even(radiance) => largest(*radiance),
+            Self::Even(radiance) => largest(radiance.color()),
             Self::Grid(grid) => grid.most(),
         }
     }
 
     #[inline]
-    fn at(&self, point: Vec3) -> Rgb {
+    fn at(&self, point: Vec3, lanes: Lanes) -> Spectrum {
         match self {
-            Self::Even(radiance) => *radiance,
-            Self::Grid(grid) => grid.at(point),
+            Self::Even(radiance) => lanes.light(radiance),
+            Self::Grid(grid) => lanes.illuminant(grid.at(point)),
         }
     }
 
@@ -49,7 +49,7 @@ impl Glow {
         absorption: impl Fn(usize) -> Rgb,
     ) -> GlowCells {
         let radiance = |i: usize| match self {
-            Self::Even(radiance) => *radiance,
+            Self::Even(radiance) => radiance.color(),
             Self::Grid(grid) => grid.values()[i],
         };
         // The product of means is not the mean of the product, but it is positive if that is.
@@ -87,7 +87,10 @@ impl Medium {
             }
         };
         let is_light = match &glow {
-            Glow::Even(radiance) => radiance.iter().all(|l| (0.0..=f32::MAX).contains(l)),
+            Glow::Even(radiance) => radiance
+                .color()
+                .iter()
+                .all(|l| (0.0..=f32::MAX).contains(l)),
             // The values of grids are finite and not negative.
             Glow::Grid(_) => true,
         };
@@ -102,7 +105,7 @@ impl Medium {
     pub(crate) fn brightest(&self) -> f32 {
         match &self.glow {
             None => 0.0,
-            Some(Glow::Even(radiance)) => luminance(*radiance),
+            Some(Glow::Even(radiance)) => radiance.luminance(),
             Some(Glow::Grid(grid)) => {
                 let cells = grid.values().iter();
                 cells.map(|&rgb| luminance(rgb)).fold(0.0, f32::max)
@@ -118,12 +121,10 @@ impl Medium {
 
     /// Returns σ_a L_e at a point, which lies in the medium. Unit: W/(m³ sr).
     #[inline]
-    pub fn emission(&self, point: Vec3) -> Rgb {
-        let Some(glow) = &self.glow else {
-            return [0.0; 3];
-        };
-        let (absorption, radiance) = (self.at(point).absorption(), glow.at(point));
-        std::array::from_fn(|i| absorption[i] * radiance[i])
+    pub fn emission(&self, point: Vec3, lanes: Lanes) -> Spectrum {
+        self.glow.as_ref().map_or(Spectrum::ZERO, |glow| {
+            lanes.unbounded(self.at(point).absorption()) * glow.at(point, lanes)
+        })
     }
 
     /// Returns the cells of emission; the box of a homogeneous medium is `bounds`. None: the medium emits nothing, or
@@ -138,7 +139,7 @@ impl Medium {
                     world_from_cube: Affine3A::from_translation(bounds.min)
                         * Affine3A::from_scale(size),
                     size: [1; 3],
-                    emission: vec![luminance(self.emission(bounds.min))],
+                    emission: vec![Lanes::Rgb.luminance(self.emission(bounds.min, Lanes::Rgb))],
                 })
             }
             Field::Density(at, grid) => {

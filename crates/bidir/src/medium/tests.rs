@@ -199,7 +199,7 @@ fn light_that_is_none_or_too_much_is_refused() {
     let thick = coefficients([1e9; 3], [0.0; 3]);
     let phase = HenyeyGreenstein::new(0.0).unwrap();
     let medium = Medium::homogeneous(thick, phase);
-    let glowing = |radiance| medium.clone().glowing(Glow::Even(radiance));
+    let glowing = |radiance: Rgb| medium.clone().glowing(Glow::Even(radiance.into()));
     for radiance in [[f32::NAN, 1.0, 1.0], [-1.0, 1.0, 1.0], [1e10; 3]] {
         assert!(glowing(radiance).is_none(), "{radiance:?}");
     }

@@ -321,7 +321,7 @@ impl Job<'_> {
     #[inline]
     pub(crate) fn emitted(&self, light: u32, at: &LightPoint, w: Vec3) -> Spectrum {
         let scene = self.scene;
-        let emitted = scene.light(light).emitted(&scene.light_context(), at, w);
-        self.lanes.illuminant(emitted)
+        let light = scene.light(light);
+        light.emitted(&scene.light_context(), at, w, self.lanes)
     }
 }

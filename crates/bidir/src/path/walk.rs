@@ -74,7 +74,6 @@ pub fn light_subpath(
     let Some((start, emission)) = draw_emission(job, stream) else {
         return subpaths.end(None);
     };
-    let emitted = job.lanes.illuminant(emission.emitted_cos);
     let start_of_ray = Locus {
         point: emission.origin,
         ..start.locus
@@ -82,7 +81,8 @@ pub fn light_subpath(
     let step = Step {
         origin: start_of_ray.ray_origin(emission.direction),
         direction: emission.direction,
-        beta: emitted * (emission.from.alpha / (start.pdf_fwd * emission.pdf_direction)),
+        beta: emission.emitted_cos
+            * (emission.from.alpha / (start.pdf_fwd * emission.pdf_direction)),
         pdf_w: emission.pdf_direction,
     };
     let walker = Walker {
@@ -107,7 +107,8 @@ fn draw_emission(job: &Job<'_>, stream: &SampleStream) -> Option<(Vertex, Emissi
     let lights = scene.light_context();
     let of_light = &scene.lights()[light];
     let u_depth = || stream.get_1d(at(Purpose::LightDepth));
-    let emission = of_light.sample_emission(&lights, u_position, u_depth, u_direction)?;
+    let emission =
+        of_light.sample_emission(&lights, u_position, u_depth, u_direction, job.lanes)?;
     let from = &emission.from;
     if !scene.is_lit(of_light, &from.at) {
         return None;

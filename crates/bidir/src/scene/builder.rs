@@ -13,7 +13,7 @@ use crate::material::Material;
 use crate::math::{DAffine3, Vec3};
 use crate::medium::{Medium, MediumId, MediumSides};
 use crate::shape::{Shape, WorldFromObject};
-use crate::spectrum::Rgb;
+use crate::spectrum::Illuminant;
 use crate::texture::{ColorTexture, FloatTexture, clamped_alpha};
 
 /// A material added to a [`SceneBuilder`].
@@ -24,7 +24,7 @@ pub struct MaterialId(u32);
 #[derive(Clone, Debug)]
 pub struct Emission {
     /// Emitted radiance.
-    pub radiance: Rgb,
+    pub radiance: Illuminant,
     /// The factor of the radiance at each point. None: it is 1.
     pub pattern: Option<ColorTexture>,
     /// The sides that emit.

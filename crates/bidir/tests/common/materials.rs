@@ -45,7 +45,7 @@ pub(crate) fn metal(alpha: f32) -> Material {
 
 pub(crate) fn glass(alpha: f32) -> Material {
     Material::Dielectric {
-        eta: 1.5,
+        eta: 1.5.into(),
         roughness: roughness(alpha),
         scattering: FacetScattering::Multiple,
     }

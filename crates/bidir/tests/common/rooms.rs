@@ -63,7 +63,8 @@ pub(crate) fn room_with_ink(lens_radius: f32) -> Shot {
 /// The same with a ball of burning gas beside the glass.
 pub(crate) fn room_with_fire(lens_radius: f32) -> Shot {
     let (mut builder, _) = furnished(8, lens_radius);
-    let gas = medium([0.5, 0.2, 0.1], [0.4, 0.3, 0.1], 0.4).glowing(Glow::Even([6.0, 3.0, 1.0]));
+    let gas =
+        medium([0.5, 0.2, 0.1], [0.4, 0.3, 0.1], 0.4).glowing(Glow::Even([6.0, 3.0, 1.0].into()));
     let gas = builder.medium(gas.expect("light that can be computed with"));
     let ball = sphere(Vec3::new(0.2, 0.3, 0.3), 0.6);
     builder.bound(ball, MediumId::VACUUM, gas);

@@ -286,7 +286,7 @@ pub(crate) fn add_lit_walls(builder: &mut ShotBuilder, material: Material) -> Ma
 )]
 pub(crate) fn emission(radiance: Rgb) -> Option<Emission> {
     Some(Emission {
-        radiance,
+        radiance: radiance.into(),
         pattern: None,
         sides: EmissionSides::Front,
     })
@@ -302,7 +302,7 @@ pub(crate) fn point_light(position: Vec3) -> Light {
     let intensity = [1.0; 3];
     Light::Point(PointLight {
         position,
-        intensity,
+        intensity: intensity.into(),
     })
 }
 

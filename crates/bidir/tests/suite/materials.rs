@@ -87,7 +87,11 @@ fn a_smooth_lacquer_on_rough_metal() {
 
 #[test]
 fn sheets_panes_and_bubbles() {
-    check(GOOD, Material::ThinDielectric { eta: 1.5 }, Lobes::Dirac);
+    check(
+        GOOD,
+        Material::ThinDielectric { eta: 1.5.into() },
+        Lobes::Dirac,
+    );
     check(GOOD, paper(), Lobes::Finite);
 }
 

@@ -355,11 +355,11 @@ fn yard(unit: f32, camera: Camera) -> Shot {
     let intensity = [unit * unit; 3];
     builder.light(Light::Point(PointLight {
         position: Vec3::new(-1.0, 1.0, 0.0) * unit,
-        intensity,
+        intensity: intensity.into(),
     }));
     builder.light(Light::Distant(DistantLight {
         to_light: Vec3::new(0.3, 0.9, -0.3).normalize(),
-        irradiance: [0.5; 3],
+        irradiance: [0.5; 3].into(),
     }));
     builder.sky([0.3, 0.4, 0.5]);
     builder.build()

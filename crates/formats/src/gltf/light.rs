@@ -57,11 +57,11 @@ fn build(
     match described.kind.as_str() {
         "directional" => Ok(Light::Distant(DistantLight {
             to_light: -axis,
-            irradiance: power,
+            irradiance: power.into(),
         })),
         "point" => Ok(Light::Point(PointLight {
             position,
-            intensity,
+            intensity: intensity.into(),
         })),
         "spot" => spot(described, &place, (position, axis), intensity).map(Light::Spot),
         other => {

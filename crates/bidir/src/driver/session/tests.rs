@@ -63,7 +63,7 @@ fn materials() -> [Material; 8] {
         copper.with_relief(Relief::NormalMap(slant(0.4, -0.2))),
         glass(0.0),
         glass(0.3),
-        mix([paper(), Material::ThinDielectric { eta: 1.5 }], 0.4),
+        mix([paper(), Material::ThinDielectric { eta: 1.5.into() }], 0.4),
         Material::CoatedDiffuse(varnished),
         Material::CoatedConductor(lacquered),
         colourful(),
@@ -81,7 +81,7 @@ fn add_fog(builder: &mut ShotBuilder) {
         Grid::new([2; 3], (0..8).map(value).collect(), place).expect("a grid")
     };
     let dark = Medium::chromatic(grid(0.4), grid(0.2), phase(0.4)).expect("smoke");
-    let glowing = dark.glowing(Glow::Even([0.3, 0.1, 0.6]));
+    let glowing = dark.glowing(Glow::Even([0.3, 0.1, 0.6].into()));
     let smoke = builder.medium(glowing.expect("a glow"));
     builder.bound(sphere(Vec3::ZERO, 7.0), MediumId::VACUUM, fog);
     builder.bound(sphere(Vec3::new(0.0, 1.0, 2.2), 0.7), fog, smoke);

@@ -7,7 +7,7 @@ use crate::math::{Frame, PI, direction_to_square, sqr, square_to_direction, warp
 use crate::medium::{self, Glow, MediumId};
 use crate::sampler::SampleStream;
 use crate::shape::{Mesh, Shape};
-use crate::spectrum::luminance;
+use crate::spectrum::Lanes;
 use crate::testing::{Domain, Grid, prelude::*};
 
 const N: u64 = 1 << 20;
@@ -162,7 +162,9 @@ fn environments_are_drawn_by_luminance() {
     let cross_section = PI * sqr(context.radius);
     for sample in samples("luminance", 2000) {
         let at = LightPoint::at_infinity(warp::uniform_sphere(numbers(&sample).0));
-        let expected = luminance(light.emitted(&context, &at, -at.locus.point)) * cross_section;
+        let expected =
+            Lanes::Rgb.luminance(light.emitted(&context, &at, -at.locus.point, Lanes::Rgb))
+                * cross_section;
         let power = light.power(&context);
         let pdf = light.pdf_position(&context, &at);
         check_close(pdf, expected / power, 1e-4, "luminance");

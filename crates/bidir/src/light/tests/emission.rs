@@ -1,7 +1,14 @@
-use super::{emission_of, for_each_light, point_for, receivers};
-use crate::light::{EmissionSample, Light, LightContext, Part, SpotLight};
+use super::{Surroundings, emission_of, for_each_light, point_for, receivers};
+use crate::light::{
+    AreaLight, DistantLight, EmissionSample, EmissionSides, InfiniteLight, Light, LightContext,
+    Part, PointLight, SpotLight, VolumeLight,
+};
 use crate::math::sin_cos;
+use crate::medium::{Glow, MediumId};
+use crate::spectrum::permuted::Order as LaneOrder;
+use crate::spectrum::{Beyond, Curve, Illuminant, LUMINANCE_OF_ONE, Lanes};
 use crate::testing::prelude::*;
+use accel::Aabb;
 
 /// Checks that the densities and the value in a sample are those of the functions for it.
 #[track_caller]
@@ -22,8 +29,8 @@ fn check_emission(light: &Light, context: &LightContext<'_>, drawn: &EmissionSam
     } else {
         1.0
     };
-    let emitted = light.emitted(context, at, drawn.direction);
-    for (with_cos, emitted) in drawn.emitted_cos.into_iter().zip(emitted) {
+    let emitted = light.emitted(context, at, drawn.direction, Lanes::Rgb);
+    for (with_cos, emitted) in drawn.emitted_cos.0.into_iter().zip(emitted.0) {
         check_close(with_cos, emitted * cos, 1e-4, case);
     }
     let start = drawn.origin;
@@ -73,7 +80,7 @@ fn sides_that_do_not_emit_are_dark() {
         let at = &point_for(light, context, Vec3::ZERO, Vec2::splat(0.3))
             .unwrap()
             .at;
-        let bright = |w: Vec3| light.emitted(context, at, w)[1] > 0.0;
+        let bright = |w: Vec3| light.emitted(context, at, w, Lanes::Rgb)[1] > 0.0;
         let drawable = |w: Vec3| light.pdf_direction(context, at, w) > 0.0;
         let n = at.locus.n_g;
         assert!(bright(n) && drawable(n), "{name}");
@@ -90,7 +97,7 @@ fn a_spot_falls_off_smoothly_and_ends() {
         let (sin, cos) = sin_cos(angle);
         Vec3::new(sin, 0.0, cos)
     };
-    let intensity = |angle| spot.intensity(at(angle))[0];
+    let intensity = |angle| spot.intensity(at(angle), Lanes::Rgb)[0];
     let step = 1e-3;
     for i in 0..1000u16 {
         let angle = step * f32::from(i);
@@ -101,4 +108,57 @@ fn a_spot_falls_off_smoothly_and_ends() {
     }
     assert!((intensity(full - step) - 1.0).abs() < 1e-6 && intensity(end + step) <= 0.0);
     assert!(spot.pdf_direction(at(end + step)) <= 0.0);
+}
+
+/// Lights of a known spectrum emit its values where lanes are wavelengths.
+#[test]
+fn lights_emit_their_spectra() {
+    const LUMINANCE: f32 = 3.0;
+    let line = Curve::from_pairs(&[300.0, 1.0, 900.0, 7.0], Beyond::Zero).unwrap();
+    let light = Illuminant::of_curve(line.clone()).unwrap();
+    let light = light.map(|channel| channel * LUMINANCE);
+    // The line's value at the centroid of ȳ, times ∫ ȳ dλ.
+    let luminance = f64::from(LUMINANCE_OF_ONE) * line.at(559.9);
+    let value = |nm| LUMINANCE * (line.at(nm) / luminance) as f32;
+    let expected = [value(465.0), value(610.0), 0.0, value(550.0)];
+    let glow = medium([1.0; 3], [0.0; 3], 0.0).glowing(Glow::Even(light.clone()));
+    let surroundings = Surroundings {
+        media: vec![glow.unwrap()],
+        ..Surroundings::new()
+    };
+    let (context, front) = (surroundings.context(), EmissionSides::Front);
+    let area = AreaLight::new(0, &surroundings.shapes[0], light.clone(), front);
+    let gas = VolumeLight::new(
+        MediumId::new(0).unwrap(),
+        &surroundings.media[0],
+        Some(Aabb::around(&[Vec3::ZERO, Vec3::ONE])),
+    );
+    let distant = DistantLight {
+        to_light: Vec3::Z,
+        irradiance: light.clone(),
+    };
+    let point = PointLight {
+        position: Vec3::ONE,
+        intensity: light.clone(),
+    };
+    let spot = SpotLight::new(Vec3::ONE, Vec3::Z, light.clone(), [1.0, 1.0]);
+    for light in [
+        Light::Area(area),
+        Light::Point(point),
+        Light::Spot(spot),
+        Light::Distant(distant),
+        Light::Infinite(InfiniteLight::constant(light)),
+        Light::Volume(gas),
+    ] {
+        let name = light.kind();
+        let drawn = samples(name, 9).find_map(|it| emission_of(&light, &context, &it));
+        let EmissionSample {
+            from, direction, ..
+        } = drawn.expect("the light emits");
+        let lanes = Lanes::Permuted(LaneOrder([2, 0, 3, 1]));
+        let emitted = light.emitted(&context, &from.at, direction, lanes);
+        for (lane, expected) in emitted.0.into_iter().zip(expected) {
+            check_near(lane, expected, 1e-3 * f64::from(expected), name);
+        }
+    }
 }

@@ -1,6 +1,6 @@
 use super::{Surroundings, emission_of, examples, for_each_light};
 use crate::light::{Light, LightChoice, LightContext};
-use crate::spectrum::luminance;
+use crate::spectrum::Lanes;
 use crate::testing::prelude::*;
 
 /// The power by which a light is chosen is the mean of the flux that its rays carry.
@@ -10,7 +10,7 @@ fn power_is_the_flux_of_the_rays() {
     for_each_light(|name, light, context| {
         let flux = samples(name, 1 << 20).map(|sample| {
             emission_of(light, context, &sample).map_or(0.0, |drawn| {
-                let emitted = f64::from(luminance(drawn.emitted_cos));
+                let emitted = f64::from(Lanes::Rgb.luminance(drawn.emitted_cos));
                 emitted / f64::from(drawn.pdf_direction * drawn.from.pdf)
             })
         });

@@ -7,6 +7,7 @@ use crate::light::{
 };
 use crate::math::{PI, sin_cos, warp};
 use crate::shape::{Mesh, Shape};
+use crate::spectrum::Lanes;
 use crate::testing::prelude::*;
 
 /// Shapes, lights of all kinds and a tree over them.
@@ -158,8 +159,8 @@ fn whatever_lights_a_receiver_can_be_drawn() {
                     return false;
                 };
                 let w = drawn.at.locus.direction_from(point).normalize();
-                let emitted = light.emitted(&context, &drawn.at, -w);
-                n.dot(w) > 0.0 && emitted.iter().any(|&lane| lane > 0.0)
+                let emitted = light.emitted(&context, &drawn.at, -w, Lanes::Rgb);
+                n.dot(w) > 0.0 && !emitted.is_black()
             });
             assert!(prob > 0.0 || !shines, "{emitter:?} at {point}");
             lit += usize::from(shines);

@@ -44,7 +44,7 @@ fn mirror() -> Material {
 
 fn glass(eta: f32, roughness: Roughness) -> Material {
     Material::Dielectric {
-        eta,
+        eta: eta.into(),
         roughness,
         scattering: FacetScattering::Single,
     }
@@ -128,7 +128,7 @@ fn interfaces_are_specular_where_they_are_smooth() {
     finite([grey(), metal(evenly(0.1)), metal(away)]);
     finite([metal(rough(smooth, across)), glass(1.5, evenly(0.5))]);
     specular([glass(1.5, Roughness::SMOOTH), glass(1.0, evenly(0.5))]);
-    specular([Material::ThinDielectric { eta: 1.5 }]);
+    specular([Material::ThinDielectric { eta: 1.5.into() }]);
 }
 
 #[test]

@@ -15,7 +15,7 @@ fn glowing_puffs(absorption: Rgb, scattering: Rgb) -> Medium {
     let corners = [Vec3::splat(-1.0), Vec3::splat(1.0)];
     let density = grid(10, corners, puffs);
     let smoke = smoke(coefficients(absorption, scattering), density, 0.4);
-    glowing(smoke, Glow::Even([1.0; 3]))
+    glowing(smoke, Glow::Even([1.0; 3].into()))
 }
 
 /// Matter as bright as the sky around it: where L_e and the sky are 1, so is radiance everywhere.
@@ -31,7 +31,7 @@ fn ball_of_fog() -> Shot {
     let mut builder = builder(8, 0.0);
     builder.sky([1.0; 3]);
     let fog = medium([0.4, 0.2, 0.1], [0.3, 0.5, 1.0], 0.3);
-    let inside = builder.medium(glowing(fog, Glow::Even([1.0; 3])));
+    let inside = builder.medium(glowing(fog, Glow::Even([1.0; 3].into())));
     builder.bound(sphere(Vec3::Z * 2.5, 1.0), VACUUM, inside);
     builder.build()
 }
@@ -59,7 +59,10 @@ fn ball_ahead(inside: Medium) -> Shot {
 fn a_ball_that_only_absorbs_and_glows_has_the_radiance_of_its_diameter() {
     let absorption: Rgb = [0.1, 0.5, 2.0];
     let radiance: Rgb = [3.0, 1.0, 0.5];
-    let fire = glowing(medium(absorption, [0.0; 3], 0.0), Glow::Even(radiance));
+    let fire = glowing(
+        medium(absorption, [0.0; 3], 0.0),
+        Glow::Even(radiance.into()),
+    );
     let shot = ball_ahead(fire);
     let expected = std::array::from_fn(|i| {
         f64::from(radiance[i]) * -libm::expm1(-2.0 * f64::from(absorption[i]))

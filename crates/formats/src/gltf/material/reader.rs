@@ -273,7 +273,7 @@ impl Reader<'_, '_> {
             EmissionSides::Front
         };
         Ok(Some(Emission {
-            radiance,
+            radiance: radiance.into(),
             pattern,
             sides,
         }))

@@ -79,7 +79,8 @@ fn what_is_seen_of_a_tiny_or_huge_file_is_the_same() {
         let Light::Point(light) = scene.light(0) else {
             panic!("the light is a point");
         };
-        let irradiance = f64::from(light.intensity[0] / (light.position.y * light.position.y));
+        let irradiance =
+            f64::from(light.intensity.color()[0] / (light.position.y * light.position.y));
         assert!(
             (irradiance * scale * scale - 1.0).abs() < 1e-5,
             "{irradiance}"

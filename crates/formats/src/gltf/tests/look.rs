@@ -300,8 +300,14 @@ fn emission_is_of_the_front_unless_both_sides_are_asked_for() {
             primitive: 0,
         };
         let context = loaded.scene.light_context();
-        assert_eq!(light.emitted(&context, &at, Vec3::Z), [4.0, 8.0, 0.0]);
-        assert_eq!(light.emitted(&context, &at, -Vec3::Z)[1], behind);
+        assert_eq!(
+            light.emitted(&context, &at, Vec3::Z, Lanes::Rgb),
+            Lanes::Rgb.illuminant([4.0, 8.0, 0.0])
+        );
+        assert_eq!(
+            light.emitted(&context, &at, -Vec3::Z, Lanes::Rgb)[1],
+            behind
+        );
     }
 }
 
@@ -321,8 +327,11 @@ fn emissive_textures_are_pictures_that_shine() {
             primitive: 0,
         };
         let context = loaded.scene.light_context();
-        let found = loaded.scene.light(0).emitted(&context, &at, Vec3::Z);
-        assert_eq!(found, expected);
+        let found = loaded
+            .scene
+            .light(0)
+            .emitted(&context, &at, Vec3::Z, Lanes::Rgb);
+        assert_eq!(Lanes::Rgb.to_rgb(found), expected);
     }
     // A picture that is black all over is no lamp.
     let view = draft.view(&encode_png([1, 1], &[[0.0; 3]]).unwrap());
@@ -343,7 +352,7 @@ fn punctual_lights_shine_along_minus_z_of_their_node() {
     match lights(sun, &mut draft) {
         Light::Distant(light) => {
             assert!(light.to_light.distance(-Vec3::Z) < 1e-6, "{light:?}");
-            assert_eq!(light.irradiance, [3.0, 1.5, 0.0]);
+            assert_eq!(light.irradiance, [3.0, 1.5, 0.0].into());
         }
         other => panic!("{other:?}"),
     }
@@ -357,7 +366,7 @@ fn punctual_lights_shine_along_minus_z_of_their_node() {
         let [inner, outer] = [0.2f32, 0.8].map(libm::cosf);
         let linear = ((libm::cosf(angle) - outer) / (inner - outer)).clamp(0.0, 1.0);
         assert!(
-            (light.emitted(&context, &at, w)[0] - linear * linear).abs() < 1e-5,
+            (light.emitted(&context, &at, w, Lanes::Rgb)[0] - linear * linear).abs() < 1e-5,
             "{angle}"
         );
     }

@@ -5,6 +5,7 @@ use super::{Draft, F32, floats, warnings};
 use crate::import::Loaded;
 use bidir::light::LightPoint;
 use bidir::math::{Vec3, sin_cos};
+use bidir::spectrum::Lanes;
 use serde_json::{Value, json};
 
 /// The part of the film that the triangle covers, seen from where there is no camera.
@@ -44,8 +45,7 @@ fn surfaces_differ_from_the_background_whatever_their_colour() {
     let light = &scene.lights()[scene.environment()[0] as usize];
     let radiance = |direction: Vec3| {
         let at = LightPoint::at_infinity(direction);
-        let [red, ..] = light.emitted(&scene.light_context(), &at, -direction);
-        red
+        light.emitted(&scene.light_context(), &at, -direction, Lanes::Rgb)[0]
     };
     let background = radiance(Vec3::NEG_Z);
     assert!((background - 0.25).abs() < 1e-6, "{background}");

@@ -6,8 +6,7 @@ use crate::error::ErrorKind;
 use crate::pbrt::parameters::{Parameter, ParameterType};
 use crate::pbrt::scene::ColorSpace;
 use crate::source::{Fault, Span};
-use crate::spectra::{self, Primaries, Spectrum};
-use bidir::spectrum::Rgb;
+use bidir::spectrum::{Curve, Illuminant, Primaries, Rgb, reflectance, rgb_from_rgb};
 use glam::DVec3;
 
 /// The purpose of a colour, which determines its valid values.
@@ -31,7 +30,7 @@ impl Purpose {
     }
 }
 
-/// Reads a colour given as `rgb`, `spectrum` or `blackbody`. None: the file has none.
+/// Reads a reflectance or another factor given as `rgb`, `spectrum` or `blackbody`. None: the file has none.
 pub(super) fn read(
     reader: &mut Reader<'_, '_>,
     name: &'static str,
@@ -40,27 +39,51 @@ pub(super) fn read(
     if let Some(parameter) = reader.find(ParameterType::Rgb, name) {
         return rgb(parameter, purpose).map(Some);
     }
-    let Some((spectrum, parameter)) = spectral::read(reader, name)? else {
+    let Some((curve, parameter)) = read_positive(reader, name)? else {
         return Ok(None);
     };
-    of_spectrum(&spectrum, parameter, purpose).map(Some)
+    if purpose == Purpose::Albedo && curve.peak() > 1.0 {
+        return Err(above_one(parameter));
+    }
+    let color = reflectance(&curve);
+    Ok(Some(
+        color.map(|channel| channel.clamp(0.0, purpose.most())),
+    ))
 }
 
-/// Returns the colour of a spectrum. The colour of a light has luminance 1, as the format demands.
-fn of_spectrum(spectrum: &Spectrum, parameter: &Parameter, purpose: Purpose) -> Result<Rgb, Fault> {
-    if !spectrum.is_positive() {
+/// Reads the light that a source emits. That of a spectrum has luminance 1, as the format demands. None: the file has
+/// none.
+pub(super) fn read_light(
+    reader: &mut Reader<'_, '_>,
+    name: &'static str,
+) -> Result<Option<Illuminant>, Fault> {
+    if let Some(parameter) = reader.find(ParameterType::Rgb, name) {
+        let color = rgb(parameter, Purpose::Illuminant)?;
+        return Ok(Some(color.into()));
+    }
+    let Some((curve, parameter)) = read_positive(reader, name)? else {
+        return Ok(None);
+    };
+    let light = Illuminant::of_curve(curve).ok_or_else(|| {
+        let message = format!("the spectrum `{}` of a light is black", parameter.name);
+        Fault::scene(parameter.value_span, message)
+    })?;
+    Ok(Some(light.map(|channel| channel.min(f32::MAX))))
+}
+
+/// Reads a curve without negative values. None: the file has none.
+fn read_positive<'a>(
+    reader: &mut Reader<'a, '_>,
+    name: &'static str,
+) -> Result<Option<(Curve, &'a Parameter)>, Fault> {
+    let given = spectral::read(reader, name)?;
+    if let Some((curve, parameter)) = &given
+        && !curve.is_positive()
+    {
         let message = format!("the spectrum `{}` has negative values", parameter.name);
         return Err(Fault::scene(parameter.value_span, message));
     }
-    let value = match purpose {
-        Purpose::Illuminant => spectra::emission(spectrum).ok_or_else(|| {
-            let message = format!("the spectrum `{}` of a light is black", parameter.name);
-            Fault::scene(parameter.value_span, message)
-        })?,
-        Purpose::Albedo if spectrum.peak() > 1.0 => return Err(above_one(parameter)),
-        Purpose::Albedo | Purpose::Unbounded => spectra::reflectance(spectrum),
-    };
-    Ok(value.map(|channel| channel.clamp(0.0, purpose.most())))
+    Ok(given)
 }
 
 fn above_one(parameter: &Parameter) -> Fault {
@@ -78,6 +101,13 @@ pub(super) fn check_emission(span: Span, emission: Rgb) -> Result<Rgb, Fault> {
     }
     let message = format!("the light emits more than {BRIGHTEST:e}");
     Err(Fault::new(ErrorKind::Limit, span, message))
+}
+
+/// Returns `scale` times `light`. Errors: those of [`check_emission`].
+pub(super) fn scaled_light(span: Span, light: Illuminant, scale: f32) -> Result<Illuminant, Fault> {
+    let scaled = light.map(|channel| channel * scale);
+    check_emission(span, scaled.color())?;
+    Ok(scaled)
 }
 
 /// Returns the colour of an `rgb`.
@@ -117,7 +147,7 @@ pub(super) fn to_rec709(space: ColorSpace, color: Rgb, purpose: Purpose) -> Rgb 
         Purpose::Albedo | Purpose::Unbounded => rec709.white,
         Purpose::Illuminant => from.white,
     };
-    spectra::rgb_from_rgb(&from, white, color)
+    rgb_from_rgb(&from, white, color)
 }
 
 #[cfg(test)]

@@ -1,5 +1,6 @@
 //! The context of building: reads the files that parameters name.
 
+use super::spectral;
 use crate::error::Error;
 use crate::files::Files;
 use crate::image::{self, Encoding, ImageData};
@@ -9,7 +10,7 @@ use crate::pbrt::scene::SceneDescription;
 use crate::pbrt::transform::Transforms;
 use crate::ply::{self, PlyMesh};
 use crate::source::{Fault, SourceMap, Span};
-use crate::spectra::Spectrum;
+use bidir::spectrum::Curve;
 use glam::DAffine3;
 use std::path::{Path, PathBuf};
 
@@ -76,12 +77,12 @@ impl Context<'_> {
     }
 
     /// Reads a spectrum, which `span` names.
-    pub(super) fn read_spectrum(&mut self, path: &Path, span: Span) -> Result<Spectrum, Fault> {
+    pub(super) fn read_spectrum(&mut self, path: &Path, span: Span) -> Result<Curve, Fault> {
         let bytes = self.read(path, limits::LARGEST_SPECTRUM, Content::Spectrum, span)?;
         // Comments may be in any encoding.
         let text = String::from_utf8_lossy(&bytes);
         let refuse = |error| Fault::scene(span, format!("{}: {error}", path.display()));
-        Spectrum::parse(&text).map_err(refuse)
+        spectral::parse(&text).map_err(refuse)
     }
 
     /// Reads the bytes of a NanoVDB file, which `span` names.

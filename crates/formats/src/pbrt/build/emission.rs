@@ -1,6 +1,6 @@
 //! The emission of shapes.
 
-use super::color::{self, Purpose};
+use super::color;
 use super::context::Context;
 use super::group;
 use super::light;
@@ -13,7 +13,7 @@ use bidir::light::EmissionSides;
 use bidir::math::PI;
 use bidir::scene::Emission;
 use bidir::shape::{Mesh, Shape};
-use bidir::spectrum::luminance;
+use bidir::spectrum::{Illuminant, luminance};
 use bidir::texture::{Beyond, Change, ColorTexture, ImageFilter, ImageMap, Mapping, Wrap};
 use std::ops::Range;
 use std::sync::Arc;
@@ -25,7 +25,7 @@ const POWER_OF_EACH: &str = "`power` is that of each face of a mesh, as in pbrt-
 /// The emission of an area light.
 #[derive(Clone)]
 pub(super) struct AreaEmission {
-    radiance: [f32; 3],
+    radiance: Illuminant,
     /// A texture over the surface's parameters that scales the radiance, and the mean luminance of the texture.
     pattern: Option<(ColorTexture, f32)>,
     sides: EmissionSides,
@@ -39,7 +39,7 @@ pub(super) struct AreaEmission {
 impl AreaEmission {
     pub(super) fn read(context: &mut Context<'_>, entity: &Entity) -> Result<Self, Fault> {
         let mut reader = Reader::new(context, entity);
-        let radiance = color::read(&mut reader, "L", Purpose::Illuminant)?;
+        let radiance = color::read_light(&mut reader, "L")?;
         let scale = reader.float_within("scale", 1.0, [0.0, f32::MAX])?;
         let power = reader.optional_float("power")?.filter(|&power| power > 0.0);
         let place = reader.find(ParameterType::Float, "power");
@@ -55,11 +55,11 @@ impl AreaEmission {
         }
         let group = group::read(&mut reader)?;
         reader.finish()?;
-        let radiance = radiance.unwrap_or([1.0; 3]).map(|channel| channel * scale);
+        let radiance = radiance.unwrap_or([1.0; 3].into());
         // Power per area does not depend on the unit, nor does power per squared distance.
         let power = power.map(|power| (context.layout.space.intensity(power), place));
         Ok(Self {
-            radiance,
+            radiance: radiance.map(|channel| channel * scale),
             pattern,
             sides,
             power,
@@ -88,10 +88,8 @@ impl AreaEmission {
             }
             None => 1.0,
         };
-        let radiance = self.radiance.map(|channel| channel * factor);
-        let radiance = color::check_emission(self.span, radiance)?;
         Ok(Emission {
-            radiance,
+            radiance: color::scaled_light(self.span, self.radiance.clone(), factor)?,
             pattern: self.pattern.as_ref().map(|(pattern, _)| pattern.clone()),
             sides: self.sides,
         })

@@ -1,6 +1,6 @@
 //! Lights that are not shapes.
 
-use super::color::{self, Purpose};
+use super::color;
 use super::context::Context;
 use super::group;
 use super::reader::Reader;
@@ -10,7 +10,7 @@ use crate::pbrt::scene::LightDescription;
 use crate::source::{Fault, Span};
 use bidir::light::{DistantLight, InfiniteLight, Light, PointLight, SpotLight};
 use bidir::math::{Mat3, PI, Vec2, Vec3, square_to_direction};
-use bidir::spectrum::{Rgb, luminance};
+use bidir::spectrum::{Illuminant, Rgb, luminance};
 use bidir::texture::Image;
 use glam::{DAffine3, DMat3, DVec3};
 
@@ -42,16 +42,16 @@ pub(super) fn build(
     Ok(Some((built, group)))
 }
 
-/// Reads the colour `name` times `scale`, and times `power` / `per_unit` if the file gives power.
+/// Reads the light `name` times `scale`, and times `power` / `per_unit` if the file gives power.
 fn emission(
     reader: &mut Reader<'_, '_>,
     name: &'static str,
     power: &'static str,
     per_unit: f32,
-) -> Result<Rgb, Fault> {
-    let color = color::read(reader, name, Purpose::Illuminant)?.unwrap_or([1.0; 3]);
+) -> Result<Illuminant, Fault> {
+    let light = color::read_light(reader, name)?.unwrap_or([1.0; 3].into());
     let factor = factor(reader, power, per_unit)?;
-    color::check_emission(reader.span(), color.map(|channel| channel * factor))
+    color::scaled_light(reader.span(), light, factor)
 }
 
 fn factor(reader: &mut Reader<'_, '_>, power: &'static str, per_unit: f32) -> Result<f32, Fault> {
@@ -71,7 +71,7 @@ fn point(reader: &mut Reader<'_, '_>, world_from_light: &DAffine3) -> Result<Poi
 }
 
 /// Reads the intensity of a point light, whose power is spread over a solid angle.
-fn intensity(reader: &mut Reader<'_, '_>, solid_angle: f32) -> Result<Rgb, Fault> {
+fn intensity(reader: &mut Reader<'_, '_>, solid_angle: f32) -> Result<Illuminant, Fault> {
     let intensity = emission(reader, "I", "power", solid_angle)?;
     Ok(intensity.map(|channel| reader.context.layout.space.intensity(channel)))
 }
@@ -127,7 +127,7 @@ fn infinite(
         let radiance = emission(reader, "L", "illuminance", PI)?;
         return Ok(InfiniteLight::constant(radiance));
     };
-    if color::read(reader, "L", Purpose::Illuminant)?.is_some() {
+    if color::read_light(reader, "L")?.is_some() {
         return Err(reader.fault("an infinite light has `L` or `filename`, not both"));
     }
     let image = environment(reader.context, name, span)?;

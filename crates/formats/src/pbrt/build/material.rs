@@ -13,13 +13,13 @@ use crate::pbrt::lexer::shorten;
 use crate::pbrt::parameters::ParameterType;
 use crate::pbrt::scene::MaterialDescription;
 use crate::source::{Fault, Span};
-use crate::spectra;
 use bidir::bsdf::FacetScattering;
 use bidir::material::{
     Bitangent, CLEAR, CoatSettings, CoatedConductorMaterial, CoatedDiffuseMaterial, ConductorIndex,
     Material, Mixture, NormalMap, Relief, Roughness, RoughnessMapping,
 };
 use bidir::scene::RenderSpace;
+use bidir::spectrum::{Metal, RefractiveIndex};
 use bidir::texture::{ColorTexture, FloatTexture, Mix, Scale};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -105,8 +105,9 @@ impl<'a> Materials<'a> {
             "coatedconductor" => parameters.coated_conductor()?,
             "subsurface" => {
                 let eta = spectral::read_eta(&mut parameters.reader, "eta", WATER)?;
+                let constant = eta.at_d_line();
                 let surface = parameters.dielectric(eta)?;
-                content = Some(media::subsurface::read(&mut parameters.reader, eta)?);
+                content = Some(media::subsurface::read(&mut parameters.reader, constant)?);
                 surface
             }
             "mix" => {
@@ -123,7 +124,7 @@ impl<'a> Materials<'a> {
         let filling = match &material {
             Material::Dielectric { eta, .. } => {
                 let priority = parameters.reader.optional_integer("priority")?;
-                priority.map(|priority| (priority, *eta))
+                priority.map(|priority| (priority, eta.at_d_line()))
             }
             _ => None,
         };
@@ -401,13 +402,11 @@ impl Parameters<'_, '_, '_> {
             }
             return Ok(ConductorIndex::Reflectance(reflectance));
         }
-        if let Some((eta, k)) = spectral::read_metal(&mut self.reader, eta, k)? {
-            return Ok(ConductorIndex::Complex {
-                eta: ColorTexture::Constant(eta),
-                k: ColorTexture::Constant(k),
-            });
+        if let Some(metal) = spectral::read_metal(&mut self.reader, eta, k)? {
+            return Ok(ConductorIndex::Measured(metal.into()));
         }
-        let (of_copper, k_of_copper) = spectra::metal("Cu").unwrap_or(([1.0; 3], [0.0; 3]));
+        let copper = Metal::named("Cu").map(|copper| copper.channels());
+        let [of_copper, k_of_copper] = copper.unwrap_or([[1.0; 3], [0.0; 3]]);
         let mut part = |name, copper| -> Result<ColorTexture, Fault> {
             let reader = &mut self.reader;
             let given = self.textures.get(reader, name, Purpose::Unbounded)?;
@@ -420,7 +419,7 @@ impl Parameters<'_, '_, '_> {
     }
 
     /// Reads the surface of a dielectric with this index of refraction.
-    fn dielectric(&mut self, eta: f32) -> Result<Material, Fault> {
+    fn dielectric(&mut self, eta: RefractiveIndex) -> Result<Material, Fault> {
         Ok(Material::Dielectric {
             eta,
             roughness: self.roughness(&SURFACE)?,
@@ -455,7 +454,7 @@ impl Parameters<'_, '_, '_> {
         self.reader.ignore(ParameterType::Integer, "maxdepth");
         self.reader.ignore(ParameterType::Integer, "nsamples");
         Ok(CoatSettings {
-            eta: spectral::read_eta(&mut self.reader, eta, GLASS)?,
+            eta: spectral::read_eta(&mut self.reader, eta, GLASS)?.at_d_line(),
             roughness: self.roughness(roughness)?,
             thickness,
             albedo: albedo.unwrap_or(CLEAR),

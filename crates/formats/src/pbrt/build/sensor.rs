@@ -3,9 +3,9 @@
 use super::reader::Reader;
 use crate::pbrt::known::SENSORS;
 use crate::source::Fault;
-use crate::spectra;
 use crate::text::number;
 use bidir::film::Sensor;
+use bidir::spectrum;
 
 /// The range of temperatures of the white balance. Unit: K.
 const WHITES: [f32; 2] = [1000.0, 25000.0];
@@ -34,11 +34,11 @@ fn balance(reader: &mut Reader<'_, '_>) -> Result<Option<bidir::math::Mat3>, Fau
     }
     let kelvin = reader.float_within("whitebalance", 0.0, WHITES)?;
     let white = if kelvin < COOLEST_DAYLIGHT {
-        spectra::planckian_white(f64::from(kelvin))
+        spectrum::planckian_white(f64::from(kelvin))
     } else {
-        spectra::daylight_white(f64::from(kelvin))
+        spectrum::daylight_white(f64::from(kelvin))
     };
-    Ok(Some(spectra::adapted(white).as_mat3()))
+    Ok(Some(spectrum::adapted(white).as_mat3()))
 }
 
 /// Returns the largest value of a sample. None: there is no limit.

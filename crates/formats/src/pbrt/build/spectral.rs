@@ -6,9 +6,8 @@ use super::reader::{Reader, single};
 use crate::pbrt::lexer::shorten;
 use crate::pbrt::parameters::{Parameter, ParameterType, Values};
 use crate::source::{Fault, Span};
-use crate::spectra::{self, Beyond, Spectrum};
 use crate::text::number;
-use bidir::spectrum::{Rgb, luminance};
+use bidir::spectrum::{self, Beyond, Curve, Metal, RefractiveIndex, luminance};
 
 /// The range of temperatures, beyond which no light is visible. Unit: K.
 const TEMPERATURES: [f32; 2] = [100.0, 1e8];
@@ -17,7 +16,7 @@ const TEMPERATURES: [f32; 2] = [100.0, 1e8];
 pub(super) fn read<'a>(
     reader: &mut Reader<'a, '_>,
     name: &'static str,
-) -> Result<Option<(Spectrum, &'a Parameter)>, Fault> {
+) -> Result<Option<(Curve, &'a Parameter)>, Fault> {
     if let Some(parameter) = reader.find(ParameterType::Spectrum, name) {
         return Ok(Some((spectrum(reader.context, parameter)?, parameter)));
     }
@@ -32,10 +31,10 @@ pub(super) fn read<'a>(
             format!("a temperature must be between {low} and {high} kelvin, found {found}");
         return Err(Fault::scene(parameter.value_span, message));
     }
-    Ok(Some((Spectrum::blackbody(f64::from(kelvin)), parameter)))
+    Ok(Some((Curve::blackbody(f64::from(kelvin)), parameter)))
 }
 
-fn spectrum(context: &mut Context<'_>, parameter: &Parameter) -> Result<Spectrum, Fault> {
+fn spectrum(context: &mut Context<'_>, parameter: &Parameter) -> Result<Curve, Fault> {
     match &parameter.values {
         Values::Strings(names) => named(context, parameter, single(parameter, names)?),
         Values::Floats(values) => {
@@ -44,16 +43,32 @@ fn spectrum(context: &mut Context<'_>, parameter: &Parameter) -> Result<Spectrum
                 let message = "a spectrum of one sample is zero at all other wavelengths";
                 context.warn(parameter.value_span, message);
             }
-            Spectrum::from_pairs(&numbers, Beyond::Zero)
-                .map_err(|error| Fault::scene(parameter.value_span, error))
+            Curve::from_pairs(&numbers, Beyond::Zero)
+                .map_err(|error| Fault::scene(parameter.value_span, error.to_string()))
         }
         _ => Err(Fault::scene(parameter.value_span, "expected a spectrum")),
     }
 }
 
+/// Reads a text of pairs; `#` begins a comment. Errors: the reason why it is no spectrum.
+pub(super) fn parse(text: &str) -> Result<Curve, String> {
+    let mut numbers = Vec::new();
+    for (line, content) in (1..).zip(text.lines()) {
+        let content = content.split('#').next().unwrap_or_default();
+        let words = content.split(|c: char| c.is_whitespace() || c == ',');
+        for word in words.filter(|word| !word.is_empty()) {
+            let number = word.parse().ok().filter(|number: &f64| number.is_finite());
+            let wrong =
+                || format!("line {line} of the spectrum has something that is not a number");
+            numbers.push(number.ok_or_else(wrong)?);
+        }
+    }
+    Curve::from_pairs(&numbers, Beyond::Zero).map_err(|error| error.to_string())
+}
+
 /// Returns the format's spectrum of this name, or else reads the file of this name.
-fn named(context: &mut Context<'_>, parameter: &Parameter, name: &str) -> Result<Spectrum, Fault> {
-    if let Some(spectrum) = spectra::named(name) {
+fn named(context: &mut Context<'_>, parameter: &Parameter, name: &str) -> Result<Curve, Fault> {
+    if let Some(spectrum) = spectrum::named(name) {
         return Ok(spectrum);
     }
     let span = parameter.value_span;
@@ -61,7 +76,7 @@ fn named(context: &mut Context<'_>, parameter: &Parameter, name: &str) -> Result
     if path.is_file() {
         return context.read_spectrum(&path, span);
     }
-    let known: Vec<String> = spectra::names().collect();
+    let known: Vec<String> = spectrum::names().collect();
     let message = format!(
         "`{}` is neither a spectrum's name nor a file",
         shorten(name)
@@ -79,70 +94,85 @@ pub(super) fn read_metal(
     reader: &mut Reader<'_, '_>,
     eta: &'static str,
     k: &'static str,
-) -> Result<Option<(Rgb, Rgb)>, Fault> {
-    let mut part = |name, copper| -> Result<Option<Spectrum>, Fault> {
+) -> Result<Option<Metal>, Fault> {
+    let mut part = |name, copper| -> Result<Option<Curve>, Fault> {
         let is_color = reader.find(ParameterType::Rgb, name).is_some();
         if is_color || reader.find(ParameterType::Texture, name).is_some() {
             return Ok(None);
         }
         let given = read(reader, name)?;
-        Ok(given.map_or_else(|| spectra::named(copper), |(given, _)| Some(given)))
+        Ok(given.map_or_else(|| spectrum::named(copper), |(given, _)| Some(given)))
     };
-    let parts = (part(eta, "metal-Cu-eta")?, part(k, "metal-Cu-k")?);
-    Ok(match parts {
-        (Some(eta), Some(k)) => Some(spectra::conductor(&eta, &k)),
-        _ => None,
-    })
+    let (eta, k) = (part(eta, "metal-Cu-eta")?, part(k, "metal-Cu-k")?);
+    Ok(eta.zip(k).map(|(eta, k)| Metal::new(eta, k)))
 }
 
-/// Reads the index of refraction `name` of a dielectric: a number, the luminance of a colour, or the value of
-/// a spectrum at the d line.
+/// Reads the index of refraction `name` of a dielectric: a number, the luminance of a colour, or a spectrum.
 pub(super) fn read_eta(
     reader: &mut Reader<'_, '_>,
     name: &'static str,
     default: f32,
-) -> Result<f32, Fault> {
+) -> Result<RefractiveIndex, Fault> {
     let number = reader.optional_float(name)?;
-    let Some((eta, span)) = spectral_eta(reader, name)? else {
-        return positive(reader, name, number.unwrap_or(default));
-    };
-    if number.is_some() {
+    let given = spectral_eta(reader, name)?;
+    if let (Some(_), Some((_, span))) = (number, &given) {
         let message = format!("`float {name}` has no effect beside the spectrum `{name}`");
-        reader.context.warn(span, message);
+        reader.context.warn(*span, message);
     }
-    positive(reader, name, eta)
+    let constant = || number.unwrap_or(default).into();
+    let eta = given.map_or_else(constant, |(eta, _)| eta);
+    if eta.at_d_line() > 0.0 {
+        return Ok(eta);
+    }
+    let message = format!("the index of refraction `{name}` is not positive");
+    Err(reader.fault(message))
 }
 
-/// Reads an index of refraction that depends on the wavelength, and replaces it by a constant one. None: the file
-/// has none.
+/// Reads an index of refraction that depends on the wavelength, and its place. None: the file has none.
 fn spectral_eta(
     reader: &mut Reader<'_, '_>,
     name: &'static str,
-) -> Result<Option<(f32, Span)>, Fault> {
+) -> Result<Option<(RefractiveIndex, Span)>, Fault> {
     let (eta, span, is_constant) = if let Some(parameter) = reader.find(ParameterType::Rgb, name) {
         let rgb = color::rgb(parameter, Purpose::Unbounded)?;
         let bits = rgb.map(f32::to_bits);
         let is_grey = bits == [bits[0]; 3];
         let eta = if is_grey { rgb[0] } else { luminance(rgb) };
-        (eta, parameter.value_span, is_grey)
-    } else if let Some((spectrum, parameter)) = read(reader, name)? {
-        (spectrum.index(), parameter.value_span, false)
+        (eta.into(), parameter.value_span, is_grey)
+    } else if let Some((curve, parameter)) = read(reader, name)? {
+        let eta = RefractiveIndex::of_curve(curve);
+        (eta, parameter.value_span, false)
     } else {
         return Ok(None);
     };
     if !is_constant {
-        let message =
-            format!("`{name}` has no dispersion here: the index is {eta:.4} at every wavelength");
+        let constant = eta.at_d_line();
+        let message = format!(
+            "`{name}` has no dispersion here: the index is {constant:.4} at every wavelength"
+        );
         reader.context.warn(span, message);
     }
     Ok(Some((eta, span)))
 }
 
-fn positive(reader: &Reader<'_, '_>, name: &str, eta: f32) -> Result<f32, Fault> {
-    if eta > 0.0 {
-        Ok(eta)
-    } else {
-        let message = format!("the index of refraction `{name}` is not positive");
-        Err(reader.fault(message))
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn texts_are_pairs_with_comments() {
+        let spectrum = parse("# a lamp\n400 1\n 500, 3 # peak\n\n600\t0").unwrap();
+        assert!((spectrum.at(450.0) - 2.0).abs() < 1e-12);
+        for (text, words) in [
+            ("", "at least one pair"),
+            ("400 1 500", "has no value"),
+            ("400 1\n500 x", "line 2"),
+            ("400 1\n500 nan", "line 2"),
+            ("500 1 400 2", "must increase"),
+            ("500 1 500 2", "must increase"),
+        ] {
+            let reason = parse(text).unwrap_err();
+            assert!(reason.contains(words), "{text:?}: {reason}");
+        }
     }
 }

@@ -1,13 +1,12 @@
 //! Emission of media, L_e: a colour, a colour for each cell, or a temperature for each cell.
 
-use super::super::color::{self, Purpose, check_emission, to_rec709};
+use super::super::color::{self, Purpose, check_emission, scaled_light, to_rec709};
 use super::super::reader::Reader;
 use super::grid::{Cells, build, numbers, signed_numbers};
 use crate::pbrt::parameters::ParameterType;
 use crate::source::{Fault, Span};
-use crate::spectra;
 use bidir::medium::{Glow, Medium};
-use bidir::spectrum::Rgb;
+use bidir::spectrum::{self, Rgb};
 use std::sync::LazyLock;
 
 /// Temperature up to which L_e is 0. Unit: K.
@@ -25,15 +24,15 @@ pub(super) fn add(span: Span, medium: Medium, glow: Option<Glow>) -> Result<Medi
 
 /// Reads L_e of a homogeneous medium. None: it does not emit.
 pub(super) fn even(reader: &mut Reader<'_, '_>) -> Result<Option<Glow>, Fault> {
-    let radiance = color::read(reader, "Le", Purpose::Illuminant)?;
+    let radiance = color::read_light(reader, "Le")?;
     let scale = reader.float_within("Lescale", 1.0, [0.0, f32::MAX])?;
-    let glow = |radiance| bright(reader, scaled(radiance, scale)).map(Glow::Even);
+    let glow = |radiance| scaled_light(reader.span(), radiance, scale).map(Glow::Even);
     radiance.map(glow).transpose()
 }
 
 /// Reads L_e of a `uniformgrid`: a colour or temperatures, times a factor for each cell. None: it does not emit.
 pub(super) fn of_cells(reader: &mut Reader<'_, '_>, cells: Cells) -> Result<Option<Glow>, Fault> {
-    let radiance = color::read(reader, "Le", Purpose::Illuminant)?;
+    let radiance = color::read_light(reader, "Le")?;
     let factors = reader.find(ParameterType::Float, "Lescale");
     let temperatures = temperatures(reader, cells)?;
     let factor = match factors {
@@ -47,9 +46,10 @@ pub(super) fn of_cells(reader: &mut Reader<'_, '_>, cells: Cells) -> Result<Opti
             return Err(reader.fault("the medium has both `Le` and `temperature`"));
         }
         (Some(radiance), None) if factors.is_none() => {
-            return bright(reader, radiance).map(|radiance| Some(Glow::Even(radiance)));
+            let radiance = scaled_light(reader.span(), radiance, 1.0)?;
+            return Ok(Some(Glow::Even(radiance)));
         }
-        (Some(radiance), None) => vec![radiance; cells.count()],
+        (Some(radiance), None) => vec![radiance.color(); cells.count()],
         (None, Some(radiance)) => radiance,
     };
     let values = radiance.iter().enumerate();
@@ -60,7 +60,7 @@ pub(super) fn of_cells(reader: &mut Reader<'_, '_>, cells: Cells) -> Result<Opti
 /// Reads L_e of an `rgbgrid`, which the format does not normalise: white has the luminance of a spectrum that is 1
 /// everywhere. None: it does not emit.
 pub(super) fn of_colors(reader: &mut Reader<'_, '_>, cells: Cells) -> Result<Option<Glow>, Fault> {
-    let scale = reader.float_within("Lescale", 1.0, [0.0, f32::MAX])? * spectra::LUMINANCE_OF_ONE;
+    let scale = reader.float_within("Lescale", 1.0, [0.0, f32::MAX])? * spectrum::LUMINANCE_OF_ONE;
     let Some(parameter) = reader.find(ParameterType::Rgb, "Le") else {
         return Ok(None);
     };
@@ -142,7 +142,7 @@ fn black_body(kelvin: f32) -> Rgb {
     static TABLE: LazyLock<Vec<Rgb>> = LazyLock::new(|| {
         let inverse = |i: usize| i as f64 / STEPS as f64 / f64::from(COLD);
         let kelvins = (0..=STEPS).map(|i| 1.0 / inverse(i).max(1.0 / f64::from(HOTTEST)));
-        kelvins.map(spectra::black_body).collect()
+        kelvins.map(spectrum::black_body).collect()
     });
     if kelvin <= COLD {
         return [0.0; 3];

@@ -221,7 +221,7 @@ fn an_index_of_refraction_is_a_number_or_any_spectrum() {
         let Some(Material::Dielectric { eta, .. }) = scene.materials().last() else {
             panic!("it is glass");
         };
-        *eta
+        eta.at_d_line()
     };
     let check = |parameter: &str, expected: f32| {
         let eta = eta(parameter);

@@ -89,7 +89,7 @@ fn lengths_and_intensities_follow_the_unit() {
             panic!("the light is a point");
         };
         let distance2 = f64::from(light.position.y * light.position.y);
-        let irradiance = f64::from(light.intensity[0]) / distance2;
+        let irradiance = f64::from(light.intensity.color()[0]) / distance2;
         let expected = 3.0 / (16.0 * by * by);
         assert!((irradiance / expected - 1.0).abs() < 1e-5, "{irradiance}");
         let Some(Relief::Displacement(height)) = scene.materials()[1].relief() else {

@@ -2,6 +2,7 @@ use super::world;
 use bidir::math::{Vec2, Vec3};
 use bidir::scene::Scene;
 use bidir::shape::Shape;
+use bidir::spectrum::Lanes;
 
 /// Returns the normal at the first corner of the only mesh.
 #[track_caller]
@@ -84,14 +85,20 @@ fn corners(scene: &Scene) -> Vec<Vec3> {
 fn emits_to_the_front(world_text: &str) -> bool {
     let scene = world(&format!("AreaLightSource \"diffuse\" {world_text}"));
     let (light, lights) = (&scene.lights()[0], scene.light_context());
-    let sample = light.sample_emission(&lights, Vec2::new(0.3, 0.4), || 0.5, Vec2::new(0.2, 0.1));
+    let sample = light.sample_emission(
+        &lights,
+        Vec2::new(0.3, 0.4),
+        || 0.5,
+        Vec2::new(0.2, 0.1),
+        Lanes::Rgb,
+    );
     let sample = sample.expect("it emits");
     let at = sample.from.at;
     // The normal at a hit agrees with that of the sampled point.
     let shape = &scene.shapes()[0];
     let surface = shape.surface_point(0, Vec2::splat(0.3), at.locus.point);
     assert!(surface.n_g.dot(at.locus.n_g) > 0.0);
-    let radiance = |w: Vec3| light.emitted(&lights, &at, w)[0] > 0.0;
+    let radiance = |w: Vec3| light.emitted(&lights, &at, w, Lanes::Rgb)[0] > 0.0;
     assert!(radiance(sample.direction) && !radiance(-sample.direction));
     match shape {
         Shape::Sphere(_) => sample.direction.dot(at.locus.point) > 0.0,

@@ -107,17 +107,20 @@ fn spectra_become_colours() {
     let intensity = |text: &str| {
         let scene = world(&format!("LightSource \"point\" {text}"));
         match scene.lights() {
-            [bidir::light::Light::Point(light)] => light.intensity,
+            [bidir::light::Light::Point(light)] => light.intensity.clone(),
             _ => panic!("the scene has a point light"),
         }
     };
-    let [r, g, b] = intensity("\"blackbody I\" 2856 \"float scale\" 2");
+    let lamp = intensity("\"blackbody I\" 2856 \"float scale\" 2");
+    let [r, g, b] = lamp.color();
     // The hue of incandescent lamps, 1 : 0.45 : 0.13.
     assert!((g / r - 0.448).abs() < 0.01 && (b / r - 0.127).abs() < 0.01);
-    assert!((bidir::spectrum::luminance([r, g, b]) - 2.0).abs() < 1e-2);
+    assert!((lamp.luminance() - 2.0).abs() < 1e-2);
+    // Wien's law, which is nearly right here: S ∝ exp(-c2 / λT) / λ⁵.
+    let hue = lamp.hue().expect("lamps keep their spectra");
+    let wien = libm::exp(-1.438_776_877e-2 / 2856.0 * (1.0 / 450e-9 - 1.0 / 650e-9));
+    let expected = wien * libm::pow(650.0 / 450.0, 5.0);
+    assert!((hue.at(450.0) / hue.at(650.0) / expected - 1.0).abs() < 1e-3);
     let even = intensity("\"spectrum I\" [300 7 900 7]");
-    assert!(
-        (bidir::spectrum::luminance(even) - 1.0).abs() < 1e-3,
-        "{even:?}"
-    );
+    assert!((even.luminance() - 1.0).abs() < 1e-3, "{even:?}");
 }

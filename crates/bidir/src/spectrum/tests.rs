@@ -1,14 +1,15 @@
 //! Compares spectra with the tables of standards.
 
+use super::colorimetry::{conductor, emission};
 use super::*;
 use glam::DVec3;
 
 #[track_caller]
 fn check_at(nm: f64, expected: f64) {
     let samples = vec![[400.0, 1.0], [500.0, 3.0], [600.0, 0.0]];
-    let zero = Spectrum::new(samples.clone(), Beyond::Zero).unwrap();
+    let zero = Curve::new(samples.clone(), Beyond::Zero).unwrap();
     assert!((zero.at(nm) - expected).abs() < 1e-12, "at {nm}");
-    let last = Spectrum::new(samples, Beyond::Last).unwrap();
+    let last = Curve::new(samples, Beyond::Last).unwrap();
     let clamped = nm.clamp(400.0, 600.0);
     assert!((last.at(nm) - zero.at(clamped)).abs() < 1e-12, "at {nm}");
 }
@@ -28,23 +29,6 @@ fn samples_are_joined_by_lines() {
     }
 }
 
-#[test]
-fn texts_are_pairs_with_comments() {
-    let spectrum = Spectrum::parse("# a lamp\n400 1\n 500, 3 # peak\n\n600\t0").unwrap();
-    assert!((spectrum.at(450.0) - 2.0).abs() < 1e-12);
-    for (text, words) in [
-        ("", "at least one pair"),
-        ("400 1 500", "has no value"),
-        ("400 1\n500 x", "line 2"),
-        ("400 1\n500 nan", "line 2"),
-        ("500 1 400 2", "must increase"),
-        ("500 1 500 2", "must increase"),
-    ] {
-        let reason = Spectrum::parse(text).unwrap_err();
-        assert!(reason.contains(words), "{text:?}: {reason}");
-    }
-}
-
 #[track_caller]
 fn check_color(color: [f32; 3], expected: [f32; 3], tolerance: f32) {
     let close = color
@@ -56,14 +40,14 @@ fn check_color(color: [f32; 3], expected: [f32; 3], tolerance: f32) {
 
 #[test]
 fn white_reflects_everything_under_daylight() {
-    let white = Spectrum::new(vec![[360.0, 1.0], [830.0, 1.0]], Beyond::Last).unwrap();
+    let white = Curve::new(vec![[360.0, 1.0], [830.0, 1.0]], Beyond::Last).unwrap();
     check_color(reflectance(&white), [1.0; 3], 1e-6);
     let d65 = named("stdillum-D65").unwrap();
     check_color(emission(&d65).unwrap(), [1.0; 3], 1e-6);
 }
 
 /// Returns the chromaticity of a light whose colour lies within Rec. 709.
-fn chromaticity(light: &Spectrum) -> [f64; 2] {
+fn chromaticity(light: &Curve) -> [f64; 2] {
     let rgb = DVec3::from(emission(light).unwrap().map(f64::from));
     // The matrix of IEC 61966-2-1 from linear sRGB to XYZ.
     let xyz = DVec3::new(
@@ -76,7 +60,7 @@ fn chromaticity(light: &Spectrum) -> [f64; 2] {
 }
 
 #[track_caller]
-fn check_chromaticity(light: &Spectrum, expected: [f64; 2], tolerance: f64) {
+fn check_chromaticity(light: &Curve, expected: [f64; 2], tolerance: f64) {
     let actual = chromaticity(light);
     let distance = libm::hypot(actual[0] - expected[0], actual[1] - expected[1]);
     assert!(distance < tolerance, "{actual:?} instead of {expected:?}");
@@ -96,17 +80,17 @@ fn lights_have_the_chromaticities_of_the_standard() {
     ] {
         check_chromaticity(&named(name).unwrap(), expected, 6e-4);
     }
-    check_chromaticity(&Spectrum::blackbody(6500.0), [0.31352, 0.32363], 6e-4);
-    check_chromaticity(&Spectrum::blackbody(2856.0), [0.44757, 0.40745], 6e-4);
+    check_chromaticity(&Curve::blackbody(6500.0), [0.31352, 0.32363], 6e-4);
+    check_chromaticity(&Curve::blackbody(2856.0), [0.44757, 0.40745], 6e-4);
 }
 
 #[test]
 fn hues_outside_the_gamut_keep_their_luminance() {
-    let red = Spectrum::new(vec![[640.0, 0.0], [650.0, 1.0], [660.0, 0.0]], Beyond::Zero).unwrap();
+    let red = Curve::new(vec![[640.0, 0.0], [650.0, 1.0], [660.0, 0.0]], Beyond::Zero).unwrap();
     let [r, g, b] = emission(&red).unwrap();
     assert!(r > 4.0 && g == 0.0 && b == 0.0, "{r} {g} {b}");
-    assert!((bidir::spectrum::luminance([r, g, b]) - 1.0).abs() < 1e-3);
-    let infrared = Spectrum::new(vec![[900.0, 1.0]], Beyond::Zero).unwrap();
+    assert!((luminance([r, g, b]) - 1.0).abs() < 1e-3);
+    let infrared = Curve::new(vec![[900.0, 1.0]], Beyond::Zero).unwrap();
     assert_eq!(emission(&infrared), None);
 }
 
@@ -122,7 +106,7 @@ fn metals_reflect_as_measured() {
         ("TiO2", [0.232, 0.245, 0.273]),
     ] {
         let part = |part: &str| named(&format!("metal-{metal}-{part}")).unwrap();
-        let (eta, k) = conductor(&part("eta"), &part("k"));
+        let [eta, k] = conductor(&part("eta"), &part("k"));
         let reflected = std::array::from_fn(|i| {
             let (eta, k) = (eta[i], k[i]);
             ((eta - 1.0) * (eta - 1.0) + k * k) / ((eta + 1.0) * (eta + 1.0) + k * k)

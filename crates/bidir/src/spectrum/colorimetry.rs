@@ -1,24 +1,23 @@
 //! Colours of spectra: XYZ = ∫ S(λ) (x̄, ȳ, z̄)(λ) dλ as sums over whole nanometres from 360 to 830, and
 //! its linear RGB.
 
-use super::Spectrum;
 use super::named::daylight;
 use super::table::OBSERVER;
-use bidir::spectrum::Rgb;
+use super::{Curve, Rgb};
 use glam::{DMat3, DVec3};
 use std::sync::LazyLock;
 
 /// The primaries and the white of a colour space.
-pub(crate) struct Primaries {
+pub struct Primaries {
     /// The chromaticities of the three primaries.
-    pub(crate) xy: [[f64; 2]; 3],
+    pub xy: [[f64; 2]; 3],
     /// XYZ of white at luminance 1.
-    pub(crate) white: DVec3,
+    pub white: DVec3,
 }
 
 impl Primaries {
     /// Returns Rec. 709, whose primaries sRGB shares, with D65 as in the tables.
-    pub(crate) fn rec709() -> Self {
+    pub fn rec709() -> Self {
         Self {
             xy: [[0.64, 0.33], [0.30, 0.60], [0.15, 0.06]],
             white: OBSERVED.white,
@@ -82,15 +81,25 @@ fn under_daylight(value: impl Fn(f64) -> f64) -> Rgb {
 }
 
 /// Returns the colour of a reflectance, or another factor, under daylight in linear Rec. 709. Not clamped.
-pub(crate) fn reflectance(spectrum: &Spectrum) -> Rgb {
+pub fn reflectance(spectrum: &Curve) -> Rgb {
     under_daylight(|nm| spectrum.at(nm))
+}
+
+/// Returns XYZ of light, not normalised: Y is ∫ S ȳ dλ.
+fn xyz_of(light: &Curve) -> DVec3 {
+    let steps = OBSERVED.steps.iter();
+    steps.map(|(nm, bars, _)| bars * light.at(*nm)).sum()
+}
+
+/// Returns the luminance ∫ S ȳ dλ of light.
+pub(super) fn luminance_of(light: &Curve) -> f64 {
+    xyz_of(light).y
 }
 
 /// Returns the colour of a light at luminance 1; channels outside of Rec. 709 are clamped. None: the light
 /// has no luminance.
-pub(crate) fn emission(spectrum: &Spectrum) -> Option<Rgb> {
-    let steps = OBSERVED.steps.iter();
-    let xyz: DVec3 = steps.map(|(nm, bars, _)| bars * spectrum.at(*nm)).sum();
+pub(super) fn emission(light: &Curve) -> Option<Rgb> {
+    let xyz = xyz_of(light);
     if !(xyz.y > 0.0 && xyz.is_finite()) {
         return None;
     }
@@ -101,21 +110,20 @@ pub(crate) fn emission(spectrum: &Spectrum) -> Option<Rgb> {
 }
 
 /// The luminance of a spectrum that is 1 everywhere: ∫ ȳ dλ. Unit: nm.
-pub(crate) const LUMINANCE_OF_ONE: f32 = 106.856_895;
+pub const LUMINANCE_OF_ONE: f32 = 106.856_895;
 
 /// Returns the colour of Planck's law relative to its peak, not normalised to luminance 1.
-pub(crate) fn black_body(kelvin: f64) -> Rgb {
-    let spectrum = Spectrum::blackbody(kelvin);
-    let steps = OBSERVED.steps.iter();
-    let luminance: f64 = steps.map(|(nm, bars, _)| bars.y * spectrum.at(*nm)).sum();
+pub fn black_body(kelvin: f64) -> Rgb {
+    let spectrum = Curve::blackbody(kelvin);
+    let luminance = luminance_of(&spectrum);
     let of_one = emission(&spectrum).unwrap_or_default();
     of_one.map(|channel| channel * luminance as f32)
 }
 
-/// Returns η and k of a metal for each channel, so that its reflectance R at normal incidence, under daylight,
+/// Returns [η, k] of a metal for each channel, so that its reflectance R at normal incidence, under daylight,
 /// equals the reflectance by the spectral index: η is the mean over the channel, and k follows from
 /// R = ((η - 1)² + k²) / ((η + 1)² + k²).
-pub(crate) fn conductor(eta: &Spectrum, k: &Spectrum) -> (Rgb, Rgb) {
+pub(super) fn conductor(eta: &Curve, k: &Curve) -> [Rgb; 2] {
     let sqr = |x: f64| x * x;
     let normal = |nm: f64| {
         let (eta, k2) = (eta.at(nm), sqr(k.at(nm)));
@@ -128,17 +136,17 @@ pub(crate) fn conductor(eta: &Spectrum, k: &Spectrum) -> (Rgb, Rgb) {
         let k2 = (r * sqr(eta + 1.0) - sqr(eta - 1.0)) / (1.0 - r);
         libm::sqrt(k2.max(0.0)) as f32
     });
-    (seen, k)
+    [seen, k]
 }
 
 /// Converts a colour from the primaries `from` to linear Rec. 709. Maps the white of `from` to `white`.
-pub(crate) fn rgb_from_rgb(from: &Primaries, white: DVec3, color: Rgb) -> Rgb {
+pub fn rgb_from_rgb(from: &Primaries, white: DVec3, color: Rgb) -> Rgb {
     let xyz = from.xyz_from_rgb() * DVec3::from(color.map(f64::from));
     rgb(bradford(from.white, white) * xyz)
 }
 
 /// Returns the matrix on linear Rec. 709 that adapts a scene lit by `white` to D65.
-pub(crate) fn adapted(white: DVec3) -> DMat3 {
+pub fn adapted(white: DVec3) -> DMat3 {
     let primaries = Primaries::rec709();
     let xyz_from_rgb = primaries.xyz_from_rgb();
     xyz_from_rgb.inverse() * bradford(white, primaries.white) * xyz_from_rgb
@@ -157,7 +165,7 @@ fn bradford(from: DVec3, to: DVec3) -> DMat3 {
 }
 
 /// Returns XYZ of a CIE daylight at luminance 1, for `kelvin` from 4000 to 25000 (CIE 15).
-pub(crate) fn daylight_white(kelvin: f64) -> DVec3 {
+pub fn daylight_white(kelvin: f64) -> DVec3 {
     let t = 1e3 / kelvin;
     let x = if kelvin <= 7000.0 {
         ((-4.6070 * t + 2.9678) * t + 0.09911) * t + 0.244063
@@ -168,16 +176,14 @@ pub(crate) fn daylight_white(kelvin: f64) -> DVec3 {
 }
 
 /// Returns XYZ of a blackbody at luminance 1.
-pub(crate) fn planckian_white(kelvin: f64) -> DVec3 {
-    let spectrum = Spectrum::blackbody(kelvin);
-    let steps = OBSERVED.steps.iter();
-    let xyz: DVec3 = steps.map(|(nm, bars, _)| bars * spectrum.at(*nm)).sum();
+pub fn planckian_white(kelvin: f64) -> DVec3 {
+    let xyz = xyz_of(&Curve::blackbody(kelvin));
     xyz / xyz.y
 }
 
 impl Primaries {
     /// Returns primaries with a white of this chromaticity.
-    pub(crate) fn new(xy: [[f64; 2]; 3], white: [f64; 2]) -> Self {
+    pub fn new(xy: [[f64; 2]; 3], white: [f64; 2]) -> Self {
         Self {
             xy,
             white: xyz(white),

@@ -1,6 +1,6 @@
-//! The tables under `data/spectra`: columns of numbers over wavelength, read once.
+//! The tables of the crate's `data/spectra`: columns of numbers over wavelength, read once.
 
-use super::{Beyond, Spectrum};
+use super::{Beyond, Curve};
 use std::sync::LazyLock;
 
 /// Columns of numbers over wavelength.
@@ -43,9 +43,9 @@ impl Table {
     }
 
     /// Returns the column of this name; beyond its ends, the spectrum has the value at the end.
-    pub(super) fn column(&self, name: &str) -> Option<Spectrum> {
+    pub(super) fn column(&self, name: &str) -> Option<Curve> {
         let index = self.names.iter().position(|known| *known == name)?;
-        Spectrum::new(self.columns[index].clone(), Beyond::Last).ok()
+        Curve::new(self.columns[index].clone(), Beyond::Last).ok()
     }
 }
 
