@@ -78,7 +78,7 @@ impl Status {
         }
     }
 
-    /// Returns the status before it begins of a render that takes commands.
+    /// Returns the status of an interactive render that has not begun.
     pub fn interactive(name: &str, film: &FilmSettings) -> Self {
         Self {
             controls: true,

@@ -10,7 +10,7 @@ use crate::spectrum::{Illuminant, Lanes, Spectrum};
 use crate::texture::clamped_alpha;
 use crate::texture::{ColorTexture, FloatTexture, TexturePoint};
 
-/// The most primitives of a mesh that is one emitter for a tree of lights: a quadrilateral has two.
+/// The largest number of primitives of a mesh that a tree of lights takes for one emitter: a quadrilateral has two.
 const UNDIVIDED: usize = 2;
 /// The number of points that estimate a pattern's mean, by which lights are chosen.
 const PATTERN_POINTS: usize = 4096;

@@ -11,7 +11,7 @@ use crate::integrator::Method;
 pub(super) enum Order {
     /// Row order of the crop.
     Rows,
-    /// The index of each place's pixel in row order.
+    /// The pixel at each place of the order, by its index in row order.
     Spread(Vec<u32>),
 }
 

@@ -71,7 +71,7 @@ pub(super) const fn lvc_of(candidates: u16, light_points: u16, rays: u32) -> Pla
     }
 }
 
-/// Returns `settings` with a typical plan of `lvc`: the others learn much the same.
+/// Returns `settings` with a typical plan of `lvc`; training with any other would learn much the same.
 pub(super) fn typical(settings: &Settings) -> Settings {
     lvc_of(24, 2, 6).keeping(settings).apply(settings)
 }
