@@ -20,19 +20,17 @@ struct Details {
     kind: ErrorKind,
     message: String,
     hint: Option<String>,
-    file: Option<PathBuf>,
-    place: Option<Place>,
-    /// The path of the invalid value in a JSON file, such as `meshes[3]`.
-    value: Option<String>,
+    at: FilePlace,
     /// True if the message contains the file's name, so that the text does not begin with it.
     names_file: bool,
 }
 
 /// A place in a file, for errors that are found after it was read.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct FilePlace {
     file: Option<PathBuf>,
     place: Option<Place>,
+    /// The path of a value in a JSON file, such as `meshes[3]`.
     value: Option<String>,
 }
 
@@ -40,9 +38,7 @@ impl FilePlace {
     /// Returns an error about this place.
     pub fn error(&self, kind: ErrorKind, message: impl Into<String>) -> Error {
         let mut error = Error::new(kind, message);
-        error.0.file.clone_from(&self.file);
-        error.0.place.clone_from(&self.place);
-        error.0.value.clone_from(&self.value);
+        error.0.at.clone_from(self);
         error
     }
 }
@@ -88,9 +84,7 @@ impl Error {
             kind,
             message,
             hint: None,
-            file: None,
-            place: None,
-            value: None,
+            at: FilePlace::default(),
             names_file: false,
         }))
     }
@@ -119,17 +113,17 @@ impl Error {
     }
 
     pub(crate) fn in_file(mut self, file: &Path) -> Self {
-        self.0.file = Some(file.to_owned());
+        self.0.at.file = Some(file.to_owned());
         self
     }
 
     pub(crate) fn at(mut self, place: Place) -> Self {
-        self.0.place = Some(place);
+        self.0.at.place = Some(place);
         self
     }
 
     pub(crate) fn at_value(mut self, value: String) -> Self {
-        self.0.value = Some(value);
+        self.0.at.value = Some(value);
         self
     }
 
@@ -140,12 +134,15 @@ impl Error {
         self
     }
 
+    /// Adds the kind and number of the part of the file that the error is about to the message.
+    pub(crate) fn of(mut self, part: &str, index: usize) -> Self {
+        self.0.message = format!("{part} {index}: {}", self.0.message);
+        self
+    }
+
     /// Returns the place of the error.
     pub(crate) fn into_place(self) -> FilePlace {
-        let Details {
-            file, place, value, ..
-        } = *self.0;
-        FilePlace { file, place, value }
+        self.0.at
     }
 
     /// Returns the kind of the error.
@@ -165,37 +162,29 @@ impl Error {
 
     /// Returns the file that the error is about.
     pub fn file(&self) -> Option<&Path> {
-        self.0.file.as_deref()
+        self.0.at.file.as_deref()
     }
 
     /// True where the error is at a place within its file, not about the file as a whole.
     pub fn has_place(&self) -> bool {
-        self.0.place.is_some() || self.0.value.is_some()
+        self.0.at.place.is_some() || self.0.at.value.is_some()
     }
 
     /// Returns the line, counted from 1. None: the file is binary, or the error is about the whole file.
     pub fn line(&self) -> Option<usize> {
-        self.0.place.as_ref().map(|place| place.line)
+        self.0.at.place.as_ref().map(|place| place.line)
     }
 
     /// Returns the column in characters, counted from 1. None: as for [`line`](Self::line).
     pub fn column(&self) -> Option<usize> {
-        self.0.place.as_ref().map(|place| place.column)
+        self.0.at.place.as_ref().map(|place| place.column)
     }
 }
 
 impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Details {
-            message,
-            hint,
-            file,
-            place,
-            value,
-            names_file,
-            ..
-        } = &*self.0;
-        if let Some(file) = file.as_ref().filter(|_| !names_file) {
+        let FilePlace { file, place, value } = &self.0.at;
+        if let Some(file) = file.as_ref().filter(|_| !self.0.names_file) {
             write!(f, "{}:", printable(&file.to_string_lossy()))?;
             if let Some(place) = place {
                 write!(f, "{}:{}:", place.line, place.column)?;
@@ -205,8 +194,8 @@ impl fmt::Display for Error {
         if let Some(value) = value {
             write!(f, "{}: ", printable(value))?;
         }
-        f.write_str(&printable(message))?;
-        match hint {
+        f.write_str(&printable(self.message()))?;
+        match self.hint() {
             Some(hint) => write!(f, "; {}", printable(hint)),
             None => Ok(()),
         }
@@ -228,8 +217,8 @@ pub fn cannot(action: &str, file: &Path, error: &std::io::Error) -> String {
         FileTooLarge => "it would be larger than the system allows".to_owned(),
         _ => {
             let text = error.to_string();
-            let text = text.split(" (os error").next().unwrap_or_default();
-            text.to_owned()
+            let reason = text.split(" (os error").next();
+            reason.unwrap_or_default().to_owned()
         }
     };
     format!("cannot {action} `{}`: {reason}", file.display())
@@ -237,12 +226,12 @@ pub fn cannot(action: &str, file: &Path, error: &std::io::Error) -> String {
 
 impl miette::Diagnostic for Error {
     fn source_code(&self) -> Option<&dyn miette::SourceCode> {
-        let excerpt = self.0.place.as_ref()?.excerpt.as_ref()?;
+        let excerpt = self.0.at.place.as_ref()?.excerpt.as_ref()?;
         Some(excerpt)
     }
 
     fn labels(&self) -> Option<Box<dyn Iterator<Item = miette::LabeledSpan> + '_>> {
-        let excerpt = self.0.place.as_ref()?.excerpt.as_ref()?;
+        let excerpt = self.0.at.place.as_ref()?.excerpt.as_ref()?;
         // The mark has no label, and `help` is not used: the message contains everything.
         let label = miette::LabeledSpan::new_with_span(None, excerpt.marked());
         Some(Box::new(std::iter::once(label)))

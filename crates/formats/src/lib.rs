@@ -13,6 +13,7 @@ mod import;
 mod limits;
 mod nanovdb;
 mod repair;
+mod scalar;
 mod source;
 mod text;
 

@@ -5,65 +5,33 @@ use super::json::Accessor;
 use super::place::{GltfFault, Place};
 use crate::error::ErrorKind;
 use crate::limits::MOST_ZEROS;
+use crate::scalar::Scalar;
 use std::ops::Range;
 
-/// A type of component.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Component {
-    I8,
-    U8,
-    I16,
-    U16,
-    U32,
-    F32,
+/// Returns the type of component of a code.
+fn component(code: u32, place: &Place) -> Result<Scalar, GltfFault> {
+    Ok(match code {
+        5120 => Scalar::I8,
+        5121 => Scalar::U8,
+        5122 => Scalar::I16,
+        5123 => Scalar::U16,
+        5125 => Scalar::U32,
+        5126 => Scalar::F32,
+        _ => {
+            let place = place.key("componentType");
+            return Err(place.scene(format!("{code} is not a component type")));
+        }
+    })
 }
 
-impl Component {
-    fn of(code: u32, place: &Place) -> Result<Self, GltfFault> {
-        Ok(match code {
-            5120 => Self::I8,
-            5121 => Self::U8,
-            5122 => Self::I16,
-            5123 => Self::U16,
-            5125 => Self::U32,
-            5126 => Self::F32,
-            _ => {
-                let place = place.key("componentType");
-                return Err(place.scene(format!("{code} is not a component type")));
-            }
-        })
-    }
-
-    const fn size(self) -> usize {
-        match self {
-            Self::I8 | Self::U8 => 1,
-            Self::I16 | Self::U16 => 2,
-            Self::U32 | Self::F32 => 4,
-        }
-    }
-
-    /// Reads the number at the beginning of `bytes`. The result is exact.
-    fn read(self, bytes: &[u8]) -> f64 {
-        match (self, bytes) {
-            (Self::I8, &[a, ..]) => f64::from(a as i8),
-            (Self::U8, &[a, ..]) => f64::from(a),
-            (Self::I16, &[a, b, ..]) => f64::from(i16::from_le_bytes([a, b])),
-            (Self::U16, &[a, b, ..]) => f64::from(u16::from_le_bytes([a, b])),
-            (Self::U32, &[a, b, c, d, ..]) => f64::from(u32::from_le_bytes([a, b, c, d])),
-            (Self::F32, &[a, b, c, d, ..]) => f64::from(f32::from_le_bytes([a, b, c, d])),
-            _ => 0.0,
-        }
-    }
-
-    /// Maps a normalised integer to `[0, 1]` or `[-1, 1]`.
-    fn normalise(self, value: f64) -> f64 {
-        match self {
-            Self::I8 => (value / 127.0).max(-1.0),
-            Self::U8 => value / 255.0,
-            Self::I16 => (value / 32767.0).max(-1.0),
-            Self::U16 => value / 65535.0,
-            Self::U32 | Self::F32 => value,
-        }
+/// Maps a normalised integer to `[0, 1]` or `[-1, 1]`.
+fn normalise(component: Scalar, value: f64) -> f64 {
+    match component {
+        Scalar::I8 => (value / 127.0).max(-1.0),
+        Scalar::U8 => value / 255.0,
+        Scalar::I16 => (value / 32767.0).max(-1.0),
+        Scalar::U16 => value / 65535.0,
+        _ => value,
     }
 }
 
@@ -81,7 +49,7 @@ const KINDS: [(&str, usize); 7] = [
 /// An accessor that is checked against its buffers.
 struct Layout<'a> {
     accessor: &'a Accessor,
-    component: Component,
+    component: Scalar,
     components: usize,
     place: Place,
 }
@@ -96,7 +64,7 @@ impl<'a> Layout<'a> {
             let fault = place.scene(format!("`{kind}` is not an accessor type"));
             return Err(fault.with_nearest(kind, KINDS.map(|(name, _)| name)));
         };
-        let component = Component::of(accessor.component_type, &place)?;
+        let component = component(accessor.component_type, &place)?;
         Ok(Self {
             accessor,
             component,
@@ -141,7 +109,7 @@ impl<'a> Layout<'a> {
         self.read_sparse(document, &mut values)?;
         if self.accessor.normalized {
             for value in &mut values {
-                *value = self.component.normalise(*value);
+                *value = normalise(self.component, *value);
             }
         }
         Ok(values)
@@ -168,7 +136,8 @@ impl<'a> Layout<'a> {
 
     /// Returns the components of one value.
     fn numbers(&self, value: &[u8]) -> impl Iterator<Item = f64> {
-        (0..self.components).map(|i| self.component.read(&value[self.offset_of(i)..]))
+        let components = (0..self.components).map(|i| &value[self.offset_of(i)..]);
+        components.map(|component| self.component.read(component).unwrap_or_default())
     }
 
     fn read_sparse(&self, document: &Document, values: &mut [f64]) -> Result<(), GltfFault> {
@@ -178,7 +147,7 @@ impl<'a> Layout<'a> {
         let place = self.place.key("sparse");
         let indices_place = place.key("indices");
         let (indices, values_view) = (&sparse.indices, &sparse.values);
-        let component = Component::of(indices.component_type, &indices_place)?;
+        let component = component(indices.component_type, &indices_place)?;
         let (index_bytes, _) = document.view(indices.buffer_view, &indices_place)?;
         let (value_bytes, _) = document.view(values_view.buffer_view, &place.key("values"))?;
         let of_indices = Elements::packed(indices.byte_offset, component.size(), sparse.count);
@@ -189,7 +158,7 @@ impl<'a> Layout<'a> {
             .chunks_exact(component.size())
             .zip(value_bytes.chunks_exact(self.value_size()));
         for (index, value) in replaced {
-            let index = component.read(index) as usize;
+            let index = component.read(index).unwrap_or_default() as usize;
             if index >= self.accessor.count {
                 let count = self.accessor.count;
                 let message = format!("index {index} is not below the count of {count}");
@@ -299,10 +268,7 @@ impl Document {
     /// Reads an accessor of whole numbers.
     pub(super) fn indices(&self, index: usize, user: &Place) -> Result<Vec<u32>, GltfFault> {
         let layout = Layout::new(self, index, user)?;
-        let whole = matches!(
-            layout.component,
-            Component::U8 | Component::U16 | Component::U32
-        );
+        let whole = matches!(layout.component, Scalar::U8 | Scalar::U16 | Scalar::U32);
         if layout.components != 1 || !whole {
             let message = format!("accessor {index} has no indices, which are unsigned scalars");
             return Err(user.scene(message));

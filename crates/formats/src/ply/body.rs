@@ -1,45 +1,43 @@
 //! Reads the numbers of a PLY file in sequence.
 
-use super::Broken;
-use super::header::{Element, Format, PropertyKind, Scalar};
+use super::header::{Element, Format, PropertyKind};
+use super::{broken, place};
+use crate::error::{Error, Result};
+use crate::scalar::Scalar;
 
 /// The unread rest of the body.
 pub(super) struct Body<'b> {
     format: Format,
+    /// The whole file.
+    file: &'b [u8],
     rest: &'b [u8],
-    /// The line of the last word in an ASCII body, counted from 1.
-    line: usize,
-    /// The column of that word, counted from 1.
-    column: usize,
-    /// The column at which `rest` begins.
-    next_column: usize,
+    /// The offset of the last word of an ASCII body in the file. Unit: bytes.
+    word: usize,
 }
 
 impl<'b> Body<'b> {
-    /// Returns the body after a header of `lines` lines.
-    pub(super) fn new(format: Format, rest: &'b [u8], lines: usize) -> Self {
+    /// Returns the body `rest` of a file.
+    pub(super) fn new(format: Format, file: &'b [u8], rest: &'b [u8]) -> Self {
+        let word = file.len() - rest.len();
         Self {
             format,
+            file,
             rest,
-            line: lines + 1,
-            column: 1,
-            next_column: 1,
+            word,
         }
     }
 
     /// Returns an error at the current place.
-    pub(super) fn broken(&self, message: impl Into<String>) -> Broken {
-        let is_text = self.format == Format::Ascii;
-        Broken {
-            place: is_text.then_some((self.line, self.column)),
-            ..Broken::new(message)
+    pub(super) fn broken(&self, message: impl Into<String>) -> Error {
+        match self.format {
+            Format::Ascii => broken(message).at(place(&self.file[..self.word])),
+            Format::LittleEndian | Format::BigEndian => broken(message),
         }
     }
 
     /// Refuses an element with more rows than the body has bytes for, before memory is reserved.
-    pub(super) fn check_room(&self, element: &Element) -> Result<(), Broken> {
+    pub(super) fn check_room(&self, element: &Element) -> Result<()> {
         let smallest = |scalar: Scalar| match self.format {
-            // A digit and a separator.
             Format::Ascii => 2,
             _ => scalar.size(),
         };
@@ -53,20 +51,17 @@ impl<'b> Body<'b> {
             .sum();
         let (name, count) = (&element.name, element.count);
         if row == 0 && count > 0 {
-            return Err(Broken::new(format!(
-                "the element `{name}` has no properties"
-            )));
+            return Err(broken(format!("the element `{name}` has no properties")));
         }
-        // The last word needs no separator.
         if row > 0 && count > (self.rest.len() + 1) / row {
             let message = format!("the file is too short for {count} of the element `{name}`");
-            return Err(Broken::new(message));
+            return Err(broken(message));
         }
         Ok(())
     }
 
     /// Reads the length of a list.
-    pub(super) fn list_length(&mut self, kind: PropertyKind) -> Result<usize, Broken> {
+    pub(super) fn list_length(&mut self, kind: PropertyKind) -> Result<usize> {
         let PropertyKind::List { count, .. } = kind else {
             return Ok(1);
         };
@@ -79,18 +74,9 @@ impl<'b> Body<'b> {
     }
 
     /// Skips a property.
-    pub(super) fn skip(&mut self, kind: PropertyKind) -> Result<(), Broken> {
-        match kind {
-            PropertyKind::Scalar(scalar) => self.skip_scalars(scalar, 1),
-            PropertyKind::List { item, .. } => {
-                let length = self.list_length(kind)?;
-                self.skip_scalars(item, length)
-            }
-        }
-    }
-
-    /// Skips `count` numbers.
-    pub(super) fn skip_scalars(&mut self, scalar: Scalar, count: usize) -> Result<(), Broken> {
+    pub(super) fn skip(&mut self, kind: PropertyKind) -> Result<()> {
+        let count = self.list_length(kind)?;
+        let (PropertyKind::Scalar(scalar) | PropertyKind::List { item: scalar, .. }) = kind;
         for _ in 0..count {
             self.scalar(scalar)?;
         }
@@ -99,67 +85,36 @@ impl<'b> Body<'b> {
 
     /// Reads a number.
     #[inline]
-    pub(super) fn scalar(&mut self, scalar: Scalar) -> Result<f64, Broken> {
+    pub(super) fn scalar(&mut self, scalar: Scalar) -> Result<f64> {
         if self.format == Format::Ascii {
             return self.word();
         }
-        Ok(match scalar {
-            Scalar::I8 => f64::from(i8::from_le_bytes(self.take()?)),
-            Scalar::U8 => f64::from(u8::from_le_bytes(self.take()?)),
-            Scalar::I16 => f64::from(i16::from_le_bytes(self.take()?)),
-            Scalar::U16 => f64::from(u16::from_le_bytes(self.take()?)),
-            Scalar::I32 => f64::from(i32::from_le_bytes(self.take()?)),
-            Scalar::U32 => f64::from(u32::from_le_bytes(self.take()?)),
-            Scalar::F32 => f64::from(f32::from_le_bytes(self.take()?)),
-            Scalar::F64 => f64::from_le_bytes(self.take()?),
-        })
-    }
-
-    /// Takes the next `N` bytes of a binary body, and returns them in little-endian order.
-    #[inline]
-    fn take<const N: usize>(&mut self) -> Result<[u8; N], Broken> {
-        let Some((bytes, rest)) = self.rest.split_first_chunk::<N>() else {
-            return Err(Broken::new("the file ends too early"));
-        };
+        let ends = || broken("the file ends too early");
+        let (bytes, rest) = self.rest.split_at_checked(scalar.size()).ok_or_else(ends)?;
         self.rest = rest;
-        let mut bytes = *bytes;
-        if self.format == Format::BigEndian {
-            bytes.reverse();
-        }
-        Ok(bytes)
+        let number = if self.format == Format::BigEndian {
+            let mut little = [0; 8];
+            for (to, from) in little.iter_mut().zip(bytes.iter().rev()) {
+                *to = *from;
+            }
+            scalar.read(&little)
+        } else {
+            scalar.read(bytes)
+        };
+        number.ok_or_else(ends)
     }
 
-    fn word(&mut self) -> Result<f64, Broken> {
-        let mut rest = self.rest;
-        while let [space, after @ ..] = rest
-            && space.is_ascii_whitespace()
-        {
-            self.next_column += 1;
-            if *space == b'\n' {
-                self.line += 1;
-                self.next_column = 1;
-            }
-            rest = after;
-        }
-        self.column = self.next_column;
-        let end = rest
-            .iter()
-            .position(u8::is_ascii_whitespace)
-            .unwrap_or(rest.len());
-        let (word, after) = rest.split_at(end);
-        self.next_column += end;
+    fn word(&mut self) -> Result<f64> {
+        let rest = self.rest.trim_ascii_start();
+        self.word = self.file.len() - rest.len();
+        let end = rest.iter().position(u8::is_ascii_whitespace);
+        let (word, after) = rest.split_at(end.unwrap_or(rest.len()));
         self.rest = after;
         if word.is_empty() {
             return Err(self.broken("the file ends too early"));
         }
-        let number = std::str::from_utf8(word)
-            .ok()
-            .and_then(|word| word.parse().ok());
-        number.ok_or_else(|| {
-            self.broken(format!(
-                "`{}` is not a number",
-                String::from_utf8_lossy(word)
-            ))
-        })
+        let text = String::from_utf8_lossy(word);
+        let number = text.parse();
+        number.map_err(|_| self.broken(format!("`{text}` is not a number")))
     }
 }

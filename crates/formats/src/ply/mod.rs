@@ -17,7 +17,7 @@ use crate::error::{Error, ErrorKind, Place, Result};
 use crate::repair::{self, Repairs};
 use crate::{bytes, limits};
 use body::Body;
-use header::{Element, Header, PropertyKind};
+use header::{Element, Header, Property, PropertyKind};
 use polygon::Splitter;
 use std::ops::Range;
 use std::path::Path;
@@ -90,29 +90,18 @@ impl PlyMesh {
     }
 }
 
-/// An error in a file, without its name, which the caller adds.
-struct Broken {
-    kind: ErrorKind,
-    message: String,
-    /// Line and column, both counted from 1. None: the file is binary.
-    place: Option<(usize, usize)>,
+/// Returns an error of a file without its name, which the caller adds.
+fn broken(message: impl Into<String>) -> Error {
+    Error::new(ErrorKind::Data, message)
 }
 
-impl Broken {
-    fn new(message: impl Into<String>) -> Self {
-        Self {
-            kind: ErrorKind::Data,
-            message: message.into(),
-            place: None,
-        }
-    }
-
-    /// Adds the name and number of the element to the message.
-    fn of(self, element: &str, index: usize) -> Self {
-        Self {
-            message: format!("{element} {index}: {}", self.message),
-            ..self
-        }
+/// Returns the place in a text after the bytes `before`.
+fn place(before: &[u8]) -> Place {
+    let lines = before.rsplit(|&byte| byte == b'\n');
+    Place {
+        line: lines.clone().count(),
+        column: 1 + lines.take(1).map(<[u8]>::len).sum::<usize>(),
+        excerpt: None,
     }
 }
 
@@ -124,20 +113,6 @@ pub fn read(path: &Path) -> Result<PlyMesh> {
 
 /// Reads the mesh in `bytes`, which are not packed.
 pub fn parse(bytes: &[u8]) -> Result<PlyMesh> {
-    parse_mesh(bytes).map_err(|broken| {
-        let error = Error::new(broken.kind, broken.message);
-        match broken.place {
-            Some((line, column)) => error.at(Place {
-                line,
-                column,
-                excerpt: None,
-            }),
-            None => error,
-        }
-    })
-}
-
-fn parse_mesh(bytes: &[u8]) -> Result<PlyMesh, Broken> {
     let (header, rest) = Header::parse(bytes)?;
     let count_of = |name| {
         header
@@ -147,15 +122,15 @@ fn parse_mesh(bytes: &[u8]) -> Result<PlyMesh, Broken> {
             .map(|e| e.count)
     };
     let Some(vertices @ 1..) = count_of("vertex") else {
-        return Err(Broken::new("no vertices"));
+        return Err(broken("no vertices"));
     };
     let Some(1..) = count_of("face") else {
-        return Err(Broken::new("no faces"));
+        return Err(broken("no faces"));
     };
     if u32::try_from(vertices).is_err() {
-        return Err(Broken::new("more vertices than 32-bit indices can address"));
+        return Err(broken("more vertices than 32-bit indices can address"));
     }
-    let mut body = Body::new(header.format, rest, header.lines);
+    let mut body = Body::new(header.format, bytes, rest);
     let mut mesh = PlyMesh::default();
     let mut polygons = Vec::new();
     for element in &header.elements {
@@ -192,7 +167,7 @@ struct Columns {
 }
 
 impl Columns {
-    fn find(vertex: &Element) -> Result<Self, Broken> {
+    fn find(vertex: &Element) -> Result<Self> {
         let mut slots = vec![None; vertex.properties.len()];
         let mut assign = |names: &[&str], first_slot: usize| {
             let column = |name: &&str| vertex.properties.iter().position(|p| p.name == **name);
@@ -203,7 +178,7 @@ impl Columns {
             columns.is_some()
         };
         if !assign(&["x", "y", "z"], 0) {
-            return Err(Broken::new("the vertices have no `x`, `y` and `z`"));
+            return Err(broken("the vertices have no `x`, `y` and `z`"));
         }
         let has_normal = assign(&["nx", "ny", "nz"], 3);
         let pairs = [
@@ -221,7 +196,7 @@ impl Columns {
     }
 }
 
-fn read_vertices(body: &mut Body<'_>, vertex: &Element, mesh: &mut PlyMesh) -> Result<(), Broken> {
+fn read_vertices(body: &mut Body<'_>, vertex: &Element, mesh: &mut PlyMesh) -> Result<()> {
     let columns = Columns::find(vertex)?;
     mesh.positions.reserve_exact(vertex.count);
     mesh.normals
@@ -229,9 +204,8 @@ fn read_vertices(body: &mut Body<'_>, vertex: &Element, mesh: &mut PlyMesh) -> R
     mesh.uvs
         .reserve_exact(if columns.has_uv { vertex.count } else { 0 });
     for index in 0..vertex.count {
-        let row =
-            read_vertex(body, vertex, &columns).map_err(|broken| broken.of("vertex", index))?;
-        let [x, y, z, nx, ny, nz, u, v] = row;
+        let row = read_vertex(body, vertex, &columns);
+        let [x, y, z, nx, ny, nz, u, v] = row.map_err(|error| error.of("vertex", index))?;
         mesh.positions.push([x, y, z]);
         if columns.has_normal {
             mesh.normals.push([nx, ny, nz]);
@@ -243,11 +217,7 @@ fn read_vertices(body: &mut Body<'_>, vertex: &Element, mesh: &mut PlyMesh) -> R
     Ok(())
 }
 
-fn read_vertex(
-    body: &mut Body<'_>,
-    vertex: &Element,
-    columns: &Columns,
-) -> Result<VertexRow, Broken> {
+fn read_vertex(body: &mut Body<'_>, vertex: &Element, columns: &Columns) -> Result<VertexRow> {
     let mut row = VertexRow::default();
     for (property, slot) in vertex.properties.iter().zip(&columns.slots) {
         let (PropertyKind::Scalar(scalar), &Some(slot)) = (property.kind, slot) else {
@@ -272,12 +242,12 @@ fn read_faces(
     face: &Element,
     vertices: usize,
     mesh: &mut PlyMesh,
-) -> Result<Vec<Range<usize>>, Broken> {
-    let list = face.properties.iter().position(|property| {
+) -> Result<Vec<Range<usize>>> {
+    let is_corners = |property: &Property| {
         let is_list = matches!(property.kind, PropertyKind::List { .. });
         is_list && CORNERS.contains(&property.name.as_str())
-    });
-    let Some(list) = list else {
+    };
+    let Some(list) = face.properties.iter().position(is_corners) else {
         return Err(no_corners(face));
     };
     mesh.triangles.reserve(face.count);
@@ -289,7 +259,7 @@ fn read_faces(
             } else {
                 body.skip(property.kind).map(|()| 0..0)
             };
-            let fan = read.map_err(|broken| broken.of("face", index))?;
+            let fan = read.map_err(|error| error.of("face", index))?;
             mesh.end_face(fan.start);
             if fan.len() > 1 {
                 polygons.push(fan);
@@ -300,13 +270,13 @@ fn read_faces(
 }
 
 /// Returns the error of faces without a list of corners, which names the properties that they have.
-fn no_corners(face: &Element) -> Broken {
-    let found = face.properties.iter().map(|p| format!("`{}`", p.name));
-    let found = match found.collect::<Vec<_>>().join(", ") {
+fn no_corners(face: &Element) -> Error {
+    let names = face.properties.iter().map(|p| format!("`{}`", p.name));
+    let found = match names.collect::<Vec<_>>().join(", ") {
         nothing if nothing.is_empty() => "nothing".into(),
         found => found,
     };
-    Broken::new(format!(
+    broken(format!(
         "the faces have no list `vertex_indices` or `vertex_index`, but {found}"
     ))
 }
@@ -317,13 +287,13 @@ fn read_corners(
     kind: PropertyKind,
     vertices: usize,
     mesh: &mut PlyMesh,
-) -> Result<Range<usize>, Broken> {
+) -> Result<Range<usize>> {
     let begin = mesh.triangles.len();
     let PropertyKind::List { item, .. } = kind else {
         return Ok(begin..begin);
     };
     let count = body.list_length(kind)?;
-    let mut corner = || -> Result<u32, Broken> {
+    let mut corner = || -> Result<u32> {
         let value = body.scalar(item)?;
         if value >= 0.0 && value < vertices as f64 && value.fract() == 0.0 {
             return Ok(value as u32);
@@ -347,11 +317,11 @@ fn read_corners(
     Ok(begin..mesh.triangles.len())
 }
 
-fn skip(body: &mut Body<'_>, element: &Element) -> Result<(), Broken> {
+fn skip(body: &mut Body<'_>, element: &Element) -> Result<()> {
     for index in 0..element.count {
         for property in &element.properties {
             body.skip(property.kind)
-                .map_err(|broken| broken.of(&element.name, index))?;
+                .map_err(|error| error.of(&element.name, index))?;
         }
     }
     Ok(())

@@ -5,8 +5,7 @@
 //! has two ears. All tests are in the axis plane in which the polygon's projection is largest: a projection along
 //! an axis keeps convexity, and rounds nothing.
 
-use super::Broken;
-use crate::error::ErrorKind;
+use crate::error::{Error, ErrorKind, Result};
 use crate::repair;
 use glam::{DVec2, DVec3};
 
@@ -40,15 +39,15 @@ impl<'m> Splitter<'m> {
     }
 
     /// Replaces the fan of a polygon by triangles inside the polygon. Errors: that takes too many tests.
-    pub(super) fn split(&mut self, fan: &mut [[u32; 3]]) -> Result<(), Broken> {
+    pub(super) fn split(&mut self, fan: &mut [[u32; 3]]) -> Result<()> {
         let Some(&[first, second, _]) = fan.first() else {
             return Ok(());
         };
         let last = fan.iter().map(|triangle| triangle[2]);
         let names: Vec<u32> = [first, second].into_iter().chain(last).collect();
         let vertex = |&name: &u32| DVec3::from(self.positions[name as usize].map(f64::from));
-        let corners: Vec<DVec3> = names.iter().map(vertex).collect();
-        let Some(corners) = flattened(&corners) else {
+        let in_space: Vec<DVec3> = names.iter().map(vertex).collect();
+        let Some(corners) = flattened(&in_space) else {
             let cover = |triangle: &[u32; 3]| repair::area(self.positions, *triangle);
             self.crossing += usize::from(fan.iter().any(|t| cover(t) != DVec3::ZERO));
             return Ok(());
@@ -73,7 +72,7 @@ impl<'m> Splitter<'m> {
     }
 
     /// Finds the next ear at or after corner `start`; any corner if there is none.
-    fn ear(&mut self, rest: &mut Rest, start: usize) -> Result<usize, Broken> {
+    fn ear(&mut self, rest: &mut Rest, start: usize) -> Result<usize> {
         let mut corner = start;
         loop {
             if self.is_ear(rest, corner)? {
@@ -95,7 +94,7 @@ impl<'m> Splitter<'m> {
         Ok(start)
     }
 
-    fn is_ear(&mut self, rest: &Rest, corner: usize) -> Result<bool, Broken> {
+    fn is_ear(&mut self, rest: &Rest, corner: usize) -> Result<bool> {
         let [before, after] = rest.neighbours[corner];
         let [a, b, c] = [before, corner, after].map(|i| rest.corners[i]);
         self.spend(1)?;
@@ -116,12 +115,10 @@ impl<'m> Splitter<'m> {
         Ok(found.is_none())
     }
 
-    fn spend(&mut self, tests: u64) -> Result<(), Broken> {
+    fn spend(&mut self, tests: u64) -> Result<()> {
         let rest = self.tests.checked_sub(tests);
-        self.tests = rest.ok_or_else(|| Broken {
-            kind: ErrorKind::Limit,
-            ..Broken::new("its concave polygons have too many corners")
-        })?;
+        let message = "its concave polygons have too many corners";
+        self.tests = rest.ok_or_else(|| Error::new(ErrorKind::Limit, message))?;
         Ok(())
     }
 }
@@ -200,7 +197,7 @@ mod tests {
 
     /// Splits a polygon in the plane z = x. Returns the areas of its triangles in the plane z = 0, and the
     /// number of polygons that cross themselves.
-    fn split(corners: &[[f32; 2]], tests: u64) -> Result<(Vec<f64>, usize), Broken> {
+    fn split(corners: &[[f32; 2]], tests: u64) -> Result<(Vec<f64>, usize)> {
         let positions: Vec<[f32; 3]> = corners.iter().map(|&[x, y]| [x, y, x]).collect();
         let mut fan: Vec<[u32; 3]> = (1..corners.len() as u32 - 1)
             .map(|i| [0, i, i + 1])
@@ -275,7 +272,7 @@ mod tests {
         let reversed: Vec<_> = corners.iter().rev().copied().collect();
         for polygon in [corners, reversed] {
             let refusal = split(&polygon, 1000).err();
-            assert!(refusal.is_some_and(|broken| broken.message.contains("too many corners")));
+            assert!(refusal.is_some_and(|broken| broken.message().contains("too many corners")));
         }
     }
 }
