@@ -1,13 +1,13 @@
 //! Builds textures for their first use, once for each [`Purpose`].
 //!
-//! The code is generic over [`Element`], a number or a colour. The parameters of every texture become a
-//! [`Source`]; only the sources of used textures become textures, which reads their images.
+//! The code is generic over [`Element`], a number or a colour. Unused textures are checked: that reads their
+//! parameters, but no images.
 
 use super::color::{self, Purpose};
 use super::context::Context;
 use super::imagemap::{self, ImageSettings, Key};
 use super::reader::Reader;
-use super::texture_class::Source;
+use super::texture_class;
 use crate::error::ErrorKind;
 use crate::image::ImageData;
 use crate::import::Images;
@@ -34,6 +34,8 @@ pub(super) struct Textures<'a> {
     floats: Built<f32>,
     /// The depth of nested textures that are being built.
     depth: usize,
+    /// True while unused textures are checked: then constants stand for images and parts.
+    is_checking: bool,
     images: Images<Key, 3>,
     images_of_numbers: Images<Key, 1>,
 }
@@ -120,15 +122,6 @@ impl Element for Rgb {
     }
 }
 
-/// The value of a parameter that may be a texture.
-#[derive(Clone, Copy)]
-pub(super) enum Operand<T> {
-    /// A constant.
-    Value(T),
-    /// The texture with this number.
-    Texture(usize),
-}
-
 impl<'a> Textures<'a> {
     /// Returns the textures of a description, none of which is built yet.
     pub(super) fn new(description: &'a SceneDescription) -> Self {
@@ -141,6 +134,7 @@ impl<'a> Textures<'a> {
             colors: BTreeMap::new(),
             floats: BTreeMap::new(),
             depth: 0,
+            is_checking: false,
             images: Images::default(),
             images_of_numbers: Images::default(),
         }
@@ -175,25 +169,15 @@ impl<'a> Textures<'a> {
         name: &'static str,
         purpose: Purpose,
     ) -> Result<Option<Texture<T>>, Fault> {
-        let operand = self.operand(reader, name, purpose)?;
-        let build = |operand| self.resolve(reader.context, operand, purpose);
-        operand.map(build).transpose()
+        let Some((texture, span)) = reader.texture(name)? else {
+            return Ok(T::read(reader, name, purpose)?.map(Texture::Constant));
+        };
+        let number = self.find(T::KIND, texture, span)?;
+        self.texture(reader.context, number, purpose).map(Some)
     }
 
-    /// Reads a value or the name of a texture. None: the file has none.
-    pub(super) fn operand<T: Element>(
-        &self,
-        reader: &mut Reader<'_, '_>,
-        name: &'static str,
-        purpose: Purpose,
-    ) -> Result<Option<Operand<T>>, Fault> {
-        match reader.texture(name)? {
-            Some((name, span)) => Ok(Some(Operand::Texture(self.find(T::KIND, name, span)?))),
-            None => Ok(T::read(reader, name, purpose)?.map(Operand::Value)),
-        }
-    }
-
-    fn find(&self, kind: TextureKind, name: &str, span: Span) -> Result<usize, Fault> {
+    /// Returns the number of the texture of this name; `span` is its place.
+    pub(super) fn find(&self, kind: TextureKind, name: &str, span: Span) -> Result<usize, Fault> {
         let normalized = known::normalized(name);
         if let Some(&number) = self.names.get(&(kind, &*normalized)) {
             return Ok(number);
@@ -218,26 +202,29 @@ impl<'a> Textures<'a> {
         Err(Fault::scene(span, message).with_hint(hint))
     }
 
-    /// Builds the value of a parameter.
-    pub(super) fn resolve<T: Element>(
+    /// Returns texture number `number`, and builds it for its first use. All numbers have one purpose.
+    pub(super) fn texture<T: Element>(
         &mut self,
         context: &mut Context<'_>,
-        operand: Operand<T>,
+        number: usize,
         purpose: Purpose,
     ) -> Result<Texture<T>, Fault> {
-        let number = match operand {
-            Operand::Value(value) => return Ok(Texture::Constant(value)),
-            Operand::Texture(number) => number,
+        if self.is_checking {
+            return Ok(Texture::Constant(T::splat(0.0)));
+        }
+        let key = match T::KIND {
+            TextureKind::Float => (number, Purpose::Unbounded),
+            TextureKind::Spectrum => (number, purpose),
         };
-        if let Some(built) = T::built(self).get(&(number, purpose)) {
-            return Ok(built.clone());
+        if let Some(known) = T::built(self).get(&key) {
+            return Ok(known.clone());
         }
         self.used.insert(number);
         self.depth += 1;
-        let built = self.build::<T>(context, number, purpose);
+        let result = self.build::<T>(context, number, key.1);
         self.depth -= 1;
-        let built = built?;
-        T::built(self).insert((number, purpose), built.clone());
+        let built = result?;
+        T::built(self).insert(key, built.clone());
         Ok(built)
     }
 
@@ -252,8 +239,7 @@ impl<'a> Textures<'a> {
         if self.depth > DEEPEST_TEXTURE {
             return too(format!("textures are nested deeper than {DEEPEST_TEXTURE}"));
         }
-        let source = Source::read(self, context, number, purpose)?;
-        let built = source.build(self, context, purpose)?;
+        let built = texture_class::build(self, context, number, purpose)?;
         if built.size() > MOST_TEXTURES {
             return too(format!("the texture is made of more than {MOST_TEXTURES}"));
         }
@@ -265,20 +251,24 @@ impl<'a> Textures<'a> {
         context: &mut Context<'_>,
         settings: &ImageSettings,
     ) -> Result<Texture<T>, Fault> {
+        if self.is_checking {
+            return Ok(Texture::Constant(T::splat(0.0)));
+        }
         let map = T::image(self, context, settings)?;
         Ok(Texture::Image(Arc::new(map)))
     }
 
     /// Checks the parameters of unused textures. Reads no images.
-    pub(super) fn check_unused(&self, context: &mut Context<'_>) -> Result<(), Fault> {
+    pub(super) fn check_unused(&mut self, context: &mut Context<'_>) -> Result<(), Fault> {
+        self.is_checking = true;
         for (number, texture) in self.described.iter().enumerate() {
             if self.used.contains(&number) {
                 continue;
             }
             let any = Purpose::Unbounded;
             context.unused(|context| match texture.kind {
-                TextureKind::Float => Source::<f32>::read(self, context, number, any).map(drop),
-                TextureKind::Spectrum => Source::<Rgb>::read(self, context, number, any).map(drop),
+                TextureKind::Float => self.build::<f32>(context, number, any).map(drop),
+                TextureKind::Spectrum => self.build::<Rgb>(context, number, any).map(drop),
             })?;
         }
         Ok(())

@@ -5,8 +5,7 @@ use super::context::Context;
 use super::imagemap::ImageSettings;
 use super::mapping;
 use super::reader::Reader;
-use super::texture::{Element, Operand, Textures};
-use crate::pbrt::parameters::ParameterType;
+use super::texture::{Element, Textures};
 use crate::pbrt::scene::{TextureDescription, TextureKind};
 use crate::source::Fault;
 use bidir::math::Vec3;
@@ -15,95 +14,34 @@ use bidir::texture::{
 };
 use std::sync::Arc;
 
-/// The parameters of a texture, before its images are read and its parts are built.
-pub(super) enum Source<T: Element> {
-    /// A texture without parts.
-    Whole(Texture<T>),
-    Image(ImageSettings),
-    Scale(Operand<T>, Operand<f32>),
-    Mix([Operand<T>; 2], Operand<f32>),
-    DirectionMix([Operand<T>; 2], Vec3),
-    Checkerboard([Operand<T>; 2], Cells),
-    Dots([Operand<T>; 2], bidir::texture::Mapping),
-}
-
 /// Maximum number of octaves of noise; further ones are not visible.
 const MOST_OCTAVES: u32 = 64;
 
-impl<T: Element> Source<T> {
-    /// Reads the parameters of texture number `number`.
-    pub(super) fn read(
-        textures: &Textures<'_>,
-        context: &mut Context<'_>,
-        number: usize,
-        purpose: Purpose,
-    ) -> Result<Self, Fault> {
-        let texture = &textures.described[number];
-        let mut class = Class {
-            textures,
-            number,
-            texture,
-            reader: Reader::new(context, &texture.entity),
-            purpose,
-        };
-        let source = class.source()?;
-        match source {
-            Some(source) => {
-                class.reader.finish()?;
-                Ok(source)
-            }
-            // The parameters of an unsupported class are not checked.
-            None => Ok(Self::Whole(Texture::Constant(T::splat(0.5)))),
-        }
-    }
-
-    /// Builds the texture, its parts first.
-    pub(super) fn build(
-        self,
-        textures: &mut Textures<'_>,
-        context: &mut Context<'_>,
-        purpose: Purpose,
-    ) -> Result<Texture<T>, Fault> {
-        Ok(match self {
-            Self::Whole(texture) => texture,
-            Self::Image(settings) => textures.image(context, &settings)?,
-            Self::DirectionMix(parts, direction) => Texture::DirectionMix(Arc::new(DirectionMix {
-                textures: pair(textures, context, parts, purpose)?,
-                direction,
-            })),
-            Self::Checkerboard(parts, cells) => Texture::Checkerboard(Arc::new(Checkerboard {
-                textures: pair(textures, context, parts, purpose)?,
-                cells,
-            })),
-            Self::Dots(parts, mapping) => Texture::Dots(Arc::new(Dots {
-                textures: pair(textures, context, parts, purpose)?,
-                mapping,
-            })),
-            Self::Mix(parts, amount) => Texture::Mix(Arc::new(Mix {
-                textures: pair(textures, context, parts, purpose)?,
-                amount: textures.resolve(context, amount, Purpose::Unbounded)?,
-            })),
-            Self::Scale(part, factor) => Texture::Scale(Arc::new(Scale {
-                texture: textures.resolve(context, part, purpose)?,
-                factor: textures.resolve(context, factor, Purpose::Unbounded)?,
-            })),
-        })
-    }
-}
-
-fn pair<T: Element>(
+/// Reads the parameters of texture number `number`, and builds it, its parts first.
+pub(super) fn build<T: Element>(
     textures: &mut Textures<'_>,
     context: &mut Context<'_>,
-    [first, second]: [Operand<T>; 2],
+    number: usize,
     purpose: Purpose,
-) -> Result<[Texture<T>; 2], Fault> {
-    let first = textures.resolve(context, first, purpose)?;
-    Ok([first, textures.resolve(context, second, purpose)?])
+) -> Result<Texture<T>, Fault> {
+    let texture = &textures.described[number];
+    let mut class = Class {
+        textures,
+        number,
+        texture,
+        reader: Reader::new(context, &texture.entity),
+        purpose,
+    };
+    let Some(built) = class.texture()? else {
+        return Ok(Texture::Constant(T::splat(0.5)));
+    };
+    class.reader.finish()?;
+    Ok(built)
 }
 
 /// A texture whose parameters are being read.
 struct Class<'t, 'a, 'c> {
-    textures: &'t Textures<'a>,
+    textures: &'t mut Textures<'a>,
     number: usize,
     texture: &'a TextureDescription,
     reader: Reader<'t, 'c>,
@@ -111,31 +49,43 @@ struct Class<'t, 'a, 'c> {
 }
 
 impl Class<'_, '_, '_> {
-    /// Reads the parameters of the class. None: the class is not supported and replaced.
-    fn source<T: Element>(&mut self) -> Result<Option<Source<T>>, Fault> {
+    /// Builds a texture of the class. None: the class is not supported and replaced.
+    fn texture<T: Element>(&mut self) -> Result<Option<Texture<T>>, Fault> {
         let class = self.texture.entity.kind.as_str();
         Ok(Some(match class {
-            "constant" => Source::Whole(Texture::Constant(self.value("value", 1.0)?)),
-            "imagemap" => Source::Image(ImageSettings::read(self.texture, &mut self.reader)?),
-            "scale" => Source::Scale(self.part("tex", 1.0)?, self.part("scale", 1.0)?),
-            "mix" => Source::Mix(self.two()?, self.part("amount", 0.5)?),
+            "constant" => Texture::Constant(self.value("value", 1.0)?),
+            "imagemap" => {
+                let settings = ImageSettings::read(self.texture, &mut self.reader)?;
+                self.textures.image(self.reader.context, &settings)?
+            }
+            "scale" => Texture::Scale(Arc::new(Scale {
+                texture: self.part("tex", 1.0)?,
+                factor: self.part("scale", 1.0)?,
+            })),
+            "mix" => Texture::Mix(Arc::new(Mix {
+                textures: self.two()?,
+                amount: self.part("amount", 0.5)?,
+            })),
             "directionmix" => {
                 let reader = &mut self.reader;
                 let direction = mapping::direction(self.texture, reader, "dir", Vec3::Y)?;
-                Source::DirectionMix(self.two()?, direction)
+                let textures = self.two()?;
+                Texture::DirectionMix(Arc::new(DirectionMix {
+                    textures,
+                    direction,
+                }))
             }
-            "bilerp" => Source::Whole(self.bilerp()?),
-            "checkerboard" => {
-                let parts = [self.part("tex1", 1.0)?, self.part("tex2", 0.0)?];
-                Source::Checkerboard(parts, self.cells()?)
-            }
-            "dots" => {
-                let parts = [self.part("outside", 0.0)?, self.part("inside", 1.0)?];
-                let mapping = mapping::read(self.texture, &mut self.reader)?;
-                Source::Dots(parts, mapping)
-            }
-            "fbm" | "wrinkled" | "windy" => Source::Whole(self.noise::<T>(class)?),
-            "marble" => Source::Whole(self.marble::<T>()?),
+            "bilerp" => self.bilerp()?,
+            "checkerboard" => Texture::Checkerboard(Arc::new(Checkerboard {
+                textures: [self.part("tex1", 1.0)?, self.part("tex2", 0.0)?],
+                cells: self.cells()?,
+            })),
+            "dots" => Texture::Dots(Arc::new(Dots {
+                textures: [self.part("outside", 0.0)?, self.part("inside", 1.0)?],
+                mapping: mapping::read(self.texture, &mut self.reader)?,
+            })),
+            "fbm" | "wrinkled" | "windy" => self.noise::<T>(class)?,
+            "marble" => self.marble::<T>()?,
             class => {
                 let what = format!("the texture class `{class}`");
                 let span = self.texture.entity.span;
@@ -150,20 +100,18 @@ impl Class<'_, '_, '_> {
         Ok(value.unwrap_or(T::splat(default)))
     }
 
-    fn part<T: Element>(&mut self, name: &'static str, default: f32) -> Result<Operand<T>, Fault> {
-        let operand = self
-            .textures
-            .operand(&mut self.reader, name, self.purpose)?;
-        if let Some(Operand::<T>::Texture(part)) = operand {
-            let parameters = &self.texture.entity.parameters;
-            let parameter = parameters.get(ParameterType::Texture, name);
-            let span = parameter.map_or(self.texture.entity.span, |named| named.value_span);
-            self.textures.check_order(part, self.number, span)?;
-        }
-        Ok(operand.unwrap_or(Operand::Value(T::splat(default))))
+    /// Reads a value or the name of a texture, which stands before this one.
+    fn part<T: Element>(&mut self, name: &'static str, default: f32) -> Result<Texture<T>, Fault> {
+        let Some((texture, span)) = self.reader.texture(name)? else {
+            return self.value(name, default).map(Texture::Constant);
+        };
+        let part = self.textures.find(T::KIND, texture, span)?;
+        self.textures.check_order(part, self.number, span)?;
+        self.textures
+            .texture(self.reader.context, part, self.purpose)
     }
 
-    fn two<T: Element>(&mut self) -> Result<[Operand<T>; 2], Fault> {
+    fn two<T: Element>(&mut self) -> Result<[Texture<T>; 2], Fault> {
         Ok([self.part("tex1", 0.0)?, self.part("tex2", 1.0)?])
     }
 
