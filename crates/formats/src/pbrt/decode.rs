@@ -1,5 +1,6 @@
 //! Decodes the bytes of a scene file to text.
 
+use super::lexer::spans;
 use crate::error::{Error, ErrorKind, Place, Result};
 use crate::source::line_and_column;
 use std::path::Path;
@@ -16,20 +17,27 @@ pub(super) fn decode(path: &Path, bytes: Vec<u8>) -> Result<String> {
 
 fn decode_comments(path: &Path, bytes: &[u8]) -> Result<String> {
     let mut text = String::with_capacity(bytes.len() + bytes.len() / 8);
-    let mut state = State::Between;
+    let mut invalid = Vec::new();
     for chunk in bytes.utf8_chunks() {
-        // A byte-order mark is no word.
-        let mark = if text.is_empty() { "\u{feff}" } else { "" };
-        let words = chunk.valid().trim_start_matches(mark);
-        state = words.bytes().fold(state, State::after);
         text.push_str(chunk.valid());
-        let invalid = chunk.invalid();
-        if !invalid.is_empty() && state != State::Comment {
-            return Err(not_text(path, &text));
+        for &byte in chunk.invalid() {
+            invalid.push(text.len());
+            text.push(char::from(byte));
         }
-        text.extend(invalid.iter().map(|&byte| char::from(byte)));
     }
-    Ok(text)
+    match first_in_token(&text, invalid) {
+        Some(at) => Err(not_text(path, &text[..at])),
+        None => Ok(text),
+    }
+}
+
+/// Returns the first of these increasing offsets that is within a token, and not in a comment.
+fn first_in_token(text: &str, offsets: Vec<usize>) -> Option<usize> {
+    let mut tokens = spans(text).peekable();
+    offsets.into_iter().find(|&at| {
+        while tokens.next_if(|token| token.end <= at).is_some() {}
+        tokens.peek().is_some_and(|token| token.start <= at)
+    })
 }
 
 /// Returns the error of a text whose byte after `before` is not UTF-8.
@@ -42,34 +50,6 @@ fn not_text(path: &Path, before: &str) -> Error {
         excerpt: None,
     };
     error.at(place).with_hint("save it as UTF-8")
-}
-
-/// The kind of token that a byte is part of, as the lexer splits the text.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum State {
-    Between,
-    Word,
-    Quoted,
-    /// After a backslash in quotes.
-    Escaped,
-    Comment,
-}
-
-impl State {
-    #[expect(clippy::match_same_arms, reason = "each state has its arms together")]
-    fn after(self, byte: u8) -> Self {
-        match (self, byte) {
-            (Self::Comment, b'\r' | b'\n') => Self::Between,
-            (Self::Comment, _) => Self::Comment,
-            (Self::Quoted | Self::Escaped, b'\n') | (Self::Quoted, b'"') => Self::Between,
-            (Self::Quoted, b'\\') => Self::Escaped,
-            (Self::Quoted | Self::Escaped, _) => Self::Quoted,
-            (_, b'"') => Self::Quoted,
-            (_, b' ' | b'\t' | b'\r' | b'\n' | b'[' | b']') => Self::Between,
-            (Self::Between, b'#') => Self::Comment,
-            (Self::Between | Self::Word, _) => Self::Word,
-        }
-    }
 }
 
 #[cfg(test)]

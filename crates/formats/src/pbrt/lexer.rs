@@ -3,6 +3,7 @@
 use crate::source::{Fault, FileId, Span};
 use logos::{Lexer, Logos};
 use std::borrow::Cow;
+use std::ops::Range;
 
 #[derive(Clone, Copy, Debug, Logos, PartialEq)]
 #[logos(skip(r"[ \t\r\n]+"))]
@@ -19,6 +20,19 @@ enum Raw {
     Unterminated,
     #[regex(r##"[^ \t\r\n"\[\]#][^ \t\r\n"\[\]]*"##)]
     Word,
+}
+
+/// Returns the range of bytes of each token, which comments and white space separate.
+pub(super) fn spans(text: &str) -> impl Iterator<Item = Range<usize>> {
+    lexer(text).spanned().map(|(_, span)| span)
+}
+
+/// Returns the lexer of a text, after its byte order mark.
+fn lexer(text: &str) -> Lexer<'_, Raw> {
+    let content = text.strip_prefix('\u{feff}').unwrap_or(text);
+    let mut lexer = Raw::lexer(text);
+    lexer.bump(text.len() - content.len());
+    lexer
 }
 
 /// The kind of a token.
@@ -73,18 +87,13 @@ pub(super) struct Tokens<'t> {
 impl<'t> Tokens<'t> {
     pub(super) fn new(text: &'t str, file: FileId) -> Self {
         // A byte-order mark would become a part of the first word.
-        let mark = if text.starts_with('\u{feff}') {
-            '\u{feff}'.len_utf8()
-        } else {
-            0
-        };
-        let mut lexer = Raw::lexer(text);
-        lexer.bump(mark);
+        let lexer = lexer(text);
+        let begin = lexer.span().end;
         Self {
             lexer,
             file,
             ahead: None,
-            last: Span::new(file, mark..mark),
+            last: Span::new(file, begin..begin),
         }
     }
 
