@@ -1,6 +1,6 @@
 //! A developed film as an image file.
 
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::Result;
 use crate::image::{self, ExrImage, ExrLayer, Format, MetadataValue};
 use bidir::film::{Film, FilmSettings, LayerImage, Picture};
 use std::path::Path;
@@ -35,11 +35,7 @@ impl Developed {
         match Format::of(path) {
             Some(Format::Exr) => self.write_exr(path, film, metadata),
             Some(Format::Png) => self.write_png(path),
-            _ => {
-                let name = path.display();
-                let message = format!("cannot write `{name}`: output images are .exr or .png");
-                Err(Error::new(ErrorKind::Options, message))
-            }
+            _ => Err(image::no_output(path)),
         }
     }
 

@@ -1,6 +1,7 @@
 //! The formats of images, recognised by the first bytes of a file or the ending of its name.
 
 use crate::error::{Error, ErrorKind, Result};
+use image::ImageFormat;
 use std::path::Path;
 
 /// A readable format.
@@ -30,21 +31,28 @@ pub enum Format {
     WebP,
 }
 
-/// The marks of readable formats at the beginning of a file. Targa has none.
-const MARKS: [(&[u8], Format); 13] = [
-    (b"\x89PNG", Format::Png),
-    (b"\xff\xd8\xff", Format::Jpeg),
-    (b"\x76\x2f\x31\x01", Format::Exr),
-    (b"#?", Format::Hdr),
-    (b"PF\n", Format::Pfm),
-    (b"Pf\n", Format::Pfm),
-    (b"PF ", Format::Pfm),
-    (b"Pf ", Format::Pfm),
-    (b"GIF8", Format::Gif),
-    (b"qoif", Format::Qoi),
-    (b"II*\0", Format::Tiff),
-    (b"MM\0*", Format::Tiff),
-    (b"BM", Format::Bmp),
+/// A readable format, its name in the `image` crate, the endings of its files, and the marks at their beginning.
+type Known = (
+    Format,
+    ImageFormat,
+    &'static [&'static str],
+    &'static [&'static [u8]],
+);
+
+/// All readable formats. Targa has no mark, and that of WebP is not at the beginning.
+#[rustfmt::skip]
+const ALL: [Known; 11] = [
+    (Format::Bmp, ImageFormat::Bmp, &["bmp"], &[b"BM"]),
+    (Format::Exr, ImageFormat::OpenExr, &["exr"], &[b"\x76\x2f\x31\x01"]),
+    (Format::Gif, ImageFormat::Gif, &["gif"], &[b"GIF8"]),
+    (Format::Hdr, ImageFormat::Hdr, &["hdr", "pic"], &[b"#?"]),
+    (Format::Jpeg, ImageFormat::Jpeg, &["jpg", "jpeg"], &[b"\xff\xd8\xff"]),
+    (Format::Pfm, ImageFormat::Pnm, &["pfm"], &[b"PF\n", b"Pf\n", b"PF ", b"Pf "]),
+    (Format::Png, ImageFormat::Png, &["png"], &[b"\x89PNG"]),
+    (Format::Qoi, ImageFormat::Qoi, &["qoi"], &[b"qoif"]),
+    (Format::Tga, ImageFormat::Tga, &["tga"], &[]),
+    (Format::Tiff, ImageFormat::Tiff, &["tif", "tiff"], &[b"II*\0", b"MM\0*"]),
+    (Format::WebP, ImageFormat::WebP, &["webp"], &[]),
 ];
 
 /// The marks of formats that cannot be read, each after its offset in bytes.
@@ -65,20 +73,14 @@ impl Format {
     /// Returns the format by the ending of a file's name. None: the ending is unknown.
     pub fn of(path: &Path) -> Option<Self> {
         let extension = path.extension()?.to_str()?.to_ascii_lowercase();
-        Some(match extension.as_str() {
-            "bmp" => Self::Bmp,
-            "exr" => Self::Exr,
-            "gif" => Self::Gif,
-            "hdr" | "pic" => Self::Hdr,
-            "jpg" | "jpeg" => Self::Jpeg,
-            "pfm" => Self::Pfm,
-            "png" => Self::Png,
-            "qoi" => Self::Qoi,
-            "tga" => Self::Tga,
-            "tif" | "tiff" => Self::Tiff,
-            "webp" => Self::WebP,
-            _ => return None,
-        })
+        let mut all = ALL.iter();
+        let known = all.find(|(_, _, endings, _)| endings.contains(&&*extension));
+        known.map(|&(format, ..)| format)
+    }
+
+    /// Returns the name of the format in the `image` crate.
+    pub(super) fn decoder(self) -> ImageFormat {
+        ALL[self as usize].1
     }
 
     /// Returns the format by the first bytes of a file. None: they are not a known mark.
@@ -86,8 +88,9 @@ impl Format {
         if bytes.starts_with(b"RIFF") && bytes.get(8..12) == Some(b"WEBP") {
             return Some(Self::WebP);
         }
-        let known = MARKS.iter().find(|(mark, _)| bytes.starts_with(mark));
-        known.map(|&(_, format)| format)
+        let has = |marks: &[&[u8]]| marks.iter().any(|mark| bytes.starts_with(mark));
+        let known = ALL.iter().find(|(.., marks)| has(marks));
+        known.map(|&(format, ..)| format)
     }
 
     /// Returns the format of a file: by its bytes, else by its name, as Targa files have no mark.
@@ -112,6 +115,13 @@ pub(crate) fn other_format(bytes: &[u8]) -> Option<&'static str> {
     let has = |at: usize, mark: &[u8]| bytes.get(at..).is_some_and(|rest| rest.starts_with(mark));
     let known = OTHER_MARKS.iter().find(|(at, mark, _)| has(*at, mark));
     known.map(|&(.., name)| name)
+}
+
+/// Returns the error of an output whose name has another ending than those of output images.
+pub fn no_output(path: &Path) -> Error {
+    let name = path.display();
+    let message = format!("cannot write `{name}`: output images are .exr or .png");
+    Error::new(ErrorKind::Options, message)
 }
 
 /// Returns true for a QOI file whose numbers are linear: the last byte of its header says so.

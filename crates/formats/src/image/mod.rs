@@ -18,8 +18,8 @@ mod raster;
 mod transfer;
 
 pub use exr::{ExrImage, ExrLayer, MetadataValue, encode_exr, write_exr};
-pub use format::Format;
 pub(crate) use format::other_format;
+pub use format::{Format, no_output};
 pub use layers::{Layers, decode_layers, read_layers, write_layers};
 pub use png::{encode_png, write_png};
 pub use transfer::Encoding;

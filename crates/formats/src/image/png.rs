@@ -1,7 +1,8 @@
 //! Writes PNG images for the screen.
 
+use super::exr::not_written;
 use super::transfer::srgb_byte;
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::Result;
 use crate::file;
 use image::codecs::png::PngEncoder;
 use image::{ExtendedColorType, ImageEncoder};
@@ -18,11 +19,8 @@ pub fn write_png(path: &Path, size: [usize; 2], pixels: &[[f32; 3]]) -> Result<(
 ///
 /// Shape: `size[0] · size[1]` pixels, row by row from the top left.
 pub fn encode_png(size: [u32; 2], pixels: &[[f32; 3]]) -> Result<Vec<u8>> {
-    let failed = |message: String| Error::new(ErrorKind::Data, message);
     if pixels.len() as u64 != u64::from(size[0]) * u64::from(size[1]) {
-        return Err(failed(
-            "cannot write: the number of pixels does not match the size".into(),
-        ));
+        return Err(not_written("the number of pixels does not match the size"));
     }
     let stored: Vec<u8> = pixels
         .iter()
@@ -32,6 +30,6 @@ pub fn encode_png(size: [u32; 2], pixels: &[[f32; 3]]) -> Result<Vec<u8>> {
     let mut encoded = Vec::new();
     PngEncoder::new(&mut encoded)
         .write_image(&stored, size[0], size[1], ExtendedColorType::Rgb8)
-        .map_err(|error| failed(format!("cannot write: {error}")))?;
+        .map_err(not_written)?;
     Ok(encoded)
 }

@@ -3,22 +3,11 @@
 use super::{Encoding, Format, ImageData, broken, check_size};
 use crate::error::Result;
 use crate::limits;
-use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, Limits};
+use image::{DynamicImage, ImageDecoder, ImageReader, Limits};
 use std::io::Cursor;
 
 pub(super) fn decode(format: Format, bytes: &[u8], encoding: Encoding) -> Result<ImageData> {
-    let known = match format {
-        Format::Bmp => ImageFormat::Bmp,
-        Format::Gif => ImageFormat::Gif,
-        Format::Hdr => ImageFormat::Hdr,
-        Format::Png => ImageFormat::Png,
-        Format::Qoi => ImageFormat::Qoi,
-        Format::Tga => ImageFormat::Tga,
-        Format::Tiff => ImageFormat::Tiff,
-        Format::WebP => ImageFormat::WebP,
-        _ => ImageFormat::Jpeg,
-    };
-    let mut reader = ImageReader::with_format(Cursor::new(bytes), known);
+    let mut reader = ImageReader::with_format(Cursor::new(bytes), format.decoder());
     let mut own = Limits::default();
     // This bounds packed chunks beside the pixels, such as colour profiles.
     own.max_alloc = Some(limits::UNPACKED.of(bytes.len() as u64));
