@@ -31,49 +31,38 @@ fn warn_of_repairs(reader: &mut Reader<'_, '_>, span: Span, mesh: &PlyMesh) {
     }
 }
 
-/// The attributes of vertices. Each list is empty or has one value per position.
-struct Vertices {
-    positions: Vec<[f32; 3]>,
-    normals: Vec<[f32; 3]>,
-    uvs: Vec<[f32; 2]>,
+/// Reads the vertices of a mesh without faces.
+fn vertices(reader: &mut Reader<'_, '_>) -> Result<PlyMesh, Fault> {
+    let positions = positions(reader)?;
+    Ok(PlyMesh {
+        normals: attribute(reader, ParameterType::Normal, "N", positions.len()),
+        uvs: attribute(reader, ParameterType::Point2, "uv", positions.len()),
+        positions,
+        ..PlyMesh::default()
+    })
 }
 
-impl Vertices {
-    fn read(reader: &mut Reader<'_, '_>) -> Result<Self, Fault> {
-        let positions = positions(reader)?;
-        let mut normals = triples(reader.floats(ParameterType::Normal, "N"));
-        let uvs = reader
-            .floats(ParameterType::Point2, "uv")
-            .unwrap_or_default();
-        let mut uvs = uvs.as_chunks::<2>().0.to_vec();
-        drop_unless_per_vertex(reader, ("N", &mut normals), positions.len());
-        drop_unless_per_vertex(reader, ("uv", &mut uvs), positions.len());
-        Ok(Self {
-            positions,
-            normals,
-            uvs,
-        })
-    }
-}
-
-/// Drops the values of an attribute unless there is one per vertex, as pbrt-v4 does.
-fn drop_unless_per_vertex<T>(
+/// Reads an attribute of `vertices` vertices. If it does not have one value for each, it has no effect, as in pbrt-v4.
+fn attribute<const N: usize>(
     reader: &mut Reader<'_, '_>,
-    (name, values): (&str, &mut Vec<T>),
+    kind: ParameterType,
+    name: &'static str,
     vertices: usize,
-) {
+) -> Vec<[f32; N]> {
+    let values = vectors(reader.floats(kind, name));
     let count = values.len();
-    if count != 0 && count != vertices {
-        let message = format!(
-            "the mesh has {vertices} points, but {count} values of `{name}`, which have no effect"
-        );
-        reader.context.warn(reader.span(), message);
-        values.clear();
+    if count == 0 || count == vertices {
+        return values;
     }
+    let message = format!(
+        "the mesh has {vertices} points, but {count} values of `{name}`, which have no effect"
+    );
+    reader.context.warn(reader.span(), message);
+    Vec::new()
 }
 
 fn positions(reader: &mut Reader<'_, '_>) -> Result<Vec<[f32; 3]>, Fault> {
-    let positions = triples(reader.floats(ParameterType::Point3, "P"));
+    let positions = vectors(reader.floats(ParameterType::Point3, "P"));
     if positions.is_empty() {
         return Err(reader.fault("the parameter `point3 P` is missing or empty"));
     }
@@ -81,35 +70,24 @@ fn positions(reader: &mut Reader<'_, '_>) -> Result<Vec<[f32; 3]>, Fault> {
 }
 
 pub(super) fn triangle_mesh(reader: &mut Reader<'_, '_>) -> Result<PlyMesh, Fault> {
-    let vertices = Vertices::read(reader)?;
-    let triangles = faces(reader, vertices.positions.len())?;
+    let mut mesh = vertices(reader)?;
+    mesh.triangles = faces(reader, mesh.positions.len())?;
     reader.ignore(ParameterType::Vector3, "S");
     reader.ignore(ParameterType::Integer, "faceIndices");
-    let mut mesh = PlyMesh {
-        positions: vertices.positions,
-        normals: vertices.normals,
-        uvs: vertices.uvs,
-        triangles,
-        ..PlyMesh::default()
-    };
     mesh.repair();
     warn_of_repairs(reader, reader.span(), &mesh);
     Ok(mesh)
 }
 
 pub(super) fn patch_mesh(reader: &mut Reader<'_, '_>) -> Result<PlyMesh, Fault> {
-    let vertices = Vertices::read(reader)?;
+    let vertices = vertices(reader)?;
     let patches = faces(reader, vertices.positions.len())?;
     reader.ignore(ParameterType::Integer, "faceIndices");
     // It guides sampling in the reference program, and does not change the emission.
     reader.ignore(ParameterType::String, "emissionfilename");
-    let mesh = PatchMesh {
-        positions: vertices.positions,
-        normals: vertices.normals,
-        uvs: vertices.uvs,
-        patches,
-    };
-    reader.context.check_size(mesh.vertices(), &reader.span())?;
+    let mesh = PatchMesh { vertices, patches };
+    let count = mesh.vertex_count();
+    reader.context.check_size(count, &reader.span())?;
     Ok(mesh.triangulated())
 }
 
@@ -140,8 +118,8 @@ pub(super) fn subdivided_mesh(reader: &mut Reader<'_, '_>) -> Result<PlyMesh, Fa
     })
 }
 
-fn triples(values: Option<&[f32]>) -> Vec<[f32; 3]> {
-    values.unwrap_or_default().as_chunks::<3>().0.to_vec()
+fn vectors<const N: usize>(values: Option<&[f32]>) -> Vec<[f32; N]> {
+    values.unwrap_or_default().as_chunks::<N>().0.to_vec()
 }
 
 /// Reads faces of `N` corners. Without a list of indices, the `N` vertices are one face.

@@ -13,18 +13,15 @@ const CELLS: usize = 16;
 
 /// Patches that share vertices.
 pub(super) struct PatchMesh {
-    pub(super) positions: Vec<[f32; 3]>,
-    /// The normals: none, or one per position.
-    pub(super) normals: Vec<[f32; 3]>,
-    /// The texture coordinates: one per position, or none. Then they are the (u, v) of each patch.
-    pub(super) uvs: Vec<[f32; 2]>,
+    /// The vertices. Without texture coordinates, they get the (u, v) of each patch.
+    pub(super) vertices: PlyMesh,
     /// The corners 00, 10, 01 and 11 of each patch.
     pub(super) patches: Vec<[u32; 4]>,
 }
 
 impl PatchMesh {
     /// Returns the number of vertices that [`triangulated`](Self::triangulated) makes.
-    pub(super) fn vertices(&self) -> u64 {
+    pub(super) fn vertex_count(&self) -> u64 {
         let row = self.cells() as u64 + 1;
         self.patches.len() as u64 * row * row
     }
@@ -56,7 +53,7 @@ impl PatchMesh {
     }
 
     fn position(&self, corner: u32) -> DVec3 {
-        vector(self.positions[corner as usize])
+        vector(self.vertices.positions[corner as usize])
     }
 
     fn add(&self, patch: &[u32; 4], cells: usize, mesh: &mut PlyMesh) {
@@ -77,10 +74,11 @@ impl PatchMesh {
     }
 
     fn uv(&self, patch: &[u32; 4], [u, v]: [f64; 2]) -> [f32; 2] {
-        if self.uvs.is_empty() {
+        let uvs = &self.vertices.uvs;
+        if uvs.is_empty() {
             return [u as f32, v as f32];
         }
-        blend(patch.map(|corner| self.uvs[corner as usize]), [u, v])
+        blend(patch.map(|corner| uvs[corner as usize]), [u, v])
     }
 
     /// Returns the corner `[i, j]` of the grid. Interpolates an edge from its end with the lower index to the
@@ -105,11 +103,9 @@ impl PatchMesh {
     /// Returns the interpolated normal of the corners, or else the geometric normal of a curved patch. None: the
     /// patch is flat, and the triangle's geometric normal is right.
     fn normal(&self, patch: &[u32; 4], [u, v]: [f64; 2], cells: usize) -> Option<[f32; 3]> {
-        if !self.normals.is_empty() {
-            return Some(blend(
-                patch.map(|corner| self.normals[corner as usize]),
-                [u, v],
-            ));
+        let normals = &self.vertices.normals;
+        if !normals.is_empty() {
+            return Some(blend(patch.map(|corner| normals[corner as usize]), [u, v]));
         }
         if cells == 1 {
             return None;
@@ -136,29 +132,32 @@ mod tests {
     use super::*;
 
     fn saddle() -> PatchMesh {
+        let positions = [
+            [0.0, 0.0, 0.0],
+            [1.0, 0.0, 0.3],
+            [0.0, 1.0, 0.1],
+            [1.0, 1.2, -0.2],
+            [2.1, 0.1, 0.4],
+            [1.9, 1.0, 0.7],
+        ];
+        // The second patch is rotated: its left edge is the right edge of the first, reversed.
+        patches(&positions, &[[0, 1, 2, 3], [5, 3, 4, 1]])
+    }
+
+    fn patches(positions: &[[f32; 3]], patches: &[[u32; 4]]) -> PatchMesh {
         PatchMesh {
-            positions: vec![
-                [0.0, 0.0, 0.0],
-                [1.0, 0.0, 0.3],
-                [0.0, 1.0, 0.1],
-                [1.0, 1.2, -0.2],
-                [2.1, 0.1, 0.4],
-                [1.9, 1.0, 0.7],
-            ],
-            normals: Vec::new(),
-            uvs: Vec::new(),
-            // The second patch is rotated: its left edge is the right edge of the first, reversed.
-            patches: vec![[0, 1, 2, 3], [5, 3, 4, 1]],
+            vertices: PlyMesh {
+                positions: positions.to_vec(),
+                ..PlyMesh::default()
+            },
+            patches: patches.to_vec(),
         }
     }
 
     #[test]
     fn a_parallelogram_is_two_triangles() {
-        let mesh = PatchMesh {
-            positions: vec![[0.0; 3], [2.0, 0.0, 0.0], [0.5, 1.0, 0.0], [2.5, 1.0, 0.0]],
-            patches: vec![[0, 1, 2, 3]],
-            ..saddle()
-        };
+        let positions = [[0.0; 3], [2.0, 0.0, 0.0], [0.5, 1.0, 0.0], [2.5, 1.0, 0.0]];
+        let mesh = patches(&positions, &[[0, 1, 2, 3]]);
         let triangles = mesh.triangulated();
         assert_eq!(triangles.triangles, [[0, 1, 3], [0, 3, 2]]);
         assert!(triangles.normals.is_empty());
