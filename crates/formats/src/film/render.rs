@@ -23,10 +23,10 @@ use bidir::driver::{
     Budget, Effort, Progress, Resources, Session, SessionError, Settings, Spent, Stop, Stopping,
 };
 use bidir::film::{FilmError, MergeError, PassSet};
-use std::fmt;
 use std::ops::Range;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
+use thiserror::Error;
 
 /// A session, and the header of its film with the time and counts of all runs.
 pub struct Render {
@@ -97,32 +97,21 @@ impl TrainingLimits {
 }
 
 /// The reason why a render cannot begin or continue a film.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, Error, PartialEq, Eq)]
 pub enum OpenError {
     /// The film belongs to another render, with this difference.
+    #[error("the film of another render: {0}")]
     OtherRender(String),
     /// The film has these passes, which the budget does not have.
+    #[error("it has the passes {0}, which are not asked for")]
     Beyond(PassSet),
     /// The sums of the film cannot be added.
+    #[error("{0}")]
     Merge(MergeError),
     /// The session cannot begin.
+    #[error("{0}")]
     Session(SessionError),
 }
-
-impl fmt::Display for OpenError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::OtherRender(difference) => write!(f, "the film of another render: {difference}"),
-            Self::Beyond(passes) => {
-                write!(f, "it has the passes {passes}, which are not asked for")
-            }
-            Self::Merge(error) => error.fmt(f),
-            Self::Session(error) => error.fmt(f),
-        }
-    }
-}
-
-impl std::error::Error for OpenError {}
 
 impl Subject {
     /// Begins a render: trains its session.
@@ -298,8 +287,8 @@ impl Render {
 
     /// Returns the header with the time and counts of only this run.
     fn of_run(&self) -> FilmHeader {
-        let training = self.session.training();
-        let training = training.filter(|_| !self.is_training_counted);
+        let trained = self.session.training();
+        let training = trained.filter(|_| !self.is_training_counted);
         FilmHeader {
             seconds: self.spent.total.as_secs_f64(),
             counts: counts(self.session.stats(), training),
