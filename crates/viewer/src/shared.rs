@@ -71,8 +71,7 @@ impl SentFrame {
         let values = self.frame.pixels.as_flattened();
         let mut message = Vec::with_capacity(4 + 4 * (head.len() + values.len()));
         message.extend_from_slice(b"BDF1");
-        let head = head.into_iter().flat_map(u32::to_le_bytes);
-        message.extend(head);
+        message.extend(head.into_iter().flat_map(u32::to_le_bytes));
         for value in values {
             message.extend_from_slice(&value.to_le_bytes());
         }

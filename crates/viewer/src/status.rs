@@ -3,9 +3,9 @@
 use bidir::film::FilmSettings;
 use bidir::integrator::IntegratorKind;
 use bidir::select::ShadowRays;
+use formats::film::scene_name;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-use std::path::Path;
 
 /// One of the renders that are shown side by side.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -86,15 +86,6 @@ impl Status {
             ..Self::preparing(name, film)
         }
     }
-}
-
-/// Returns the name of a scene file without its folders.
-pub(crate) fn scene_name(name: &str) -> String {
-    let file = Path::new(name).file_name();
-    file.map_or_else(
-        || name.to_owned(),
-        |file| file.to_string_lossy().into_owned(),
-    )
 }
 
 /// The names that commands accept.

@@ -5,8 +5,8 @@
 //! for at most two seconds.
 
 use crate::frame::Frame;
-use crate::status::scene_name;
 use bidir::film::Film;
+use formats::film::scene_name;
 use std::fmt;
 use std::io;
 use std::net::{Ipv6Addr, TcpStream, ToSocketAddrs};

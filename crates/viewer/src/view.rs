@@ -151,8 +151,8 @@ impl RenderView {
         let seconds = render.spent.rendering.as_secs_f64();
         // Passes of an earlier run took none of these seconds.
         let area = session.film().settings().crop.area();
-        let eta = self.course.target.filter(|_| stats.samples > 0);
-        let eta = eta.map(|target| {
+        let target = self.course.target.filter(|_| stats.samples > 0);
+        let eta = target.map(|target| {
             let left = target.saturating_sub(passes) * area;
             left as f64 * seconds / stats.samples as f64
         });

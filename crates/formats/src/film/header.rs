@@ -52,8 +52,8 @@ impl FilmHeader {
             hash.update((text.len() as u64).to_le_bytes());
             hash.update(text);
         }
-        let hash = hash.finalize();
-        let identity = hash.iter().map(|byte| format!("{byte:02x}"));
+        let digest = hash.finalize();
+        let identity = digest.iter().map(|byte| format!("{byte:02x}"));
         Self {
             program: program.to_owned(),
             scene,
@@ -72,11 +72,7 @@ impl FilmHeader {
 
     /// Returns the name of the scene file without its folders.
     pub fn scene_name(&self) -> String {
-        let name = Path::new(&self.scene).file_name();
-        name.map_or_else(
-            || self.scene.clone(),
-            |name| name.to_string_lossy().into_owned(),
-        )
+        scene_name(&self.scene)
     }
 
     /// Returns the header of the sum of two films: time and counts are added.
@@ -172,6 +168,12 @@ impl FilmHeader {
         }
         Some("their identities differ".to_owned())
     }
+}
+
+/// Returns the name of a scene file without its folders.
+pub fn scene_name(name: &str) -> String {
+    let file = Path::new(name).file_name();
+    file.unwrap_or(name.as_ref()).to_string_lossy().into_owned()
 }
 
 /// Adds numbers, and objects key by key. Of two other values, returns `a`.

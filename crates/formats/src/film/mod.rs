@@ -39,7 +39,7 @@ mod tests;
 
 pub use bidir::driver::Stopping;
 pub use developed::Developed;
-pub use header::FilmHeader;
+pub use header::{FilmHeader, scene_name};
 pub use identity::{Subject, counts_by_name, metadata, program};
 pub use layers::LayerNames;
 pub use render::{OpenError, Render, TrainingLimits, Watch};
@@ -134,8 +134,8 @@ pub fn encode(header: &FilmHeader, film: &Film) -> Result<Vec<u8>> {
     let checksum = block::checksum(&bytes);
     bytes.extend_from_slice(&checksum.to_le_bytes());
     for sums in film.sums().chunks(block::PIXELS * numbers * AT_ONCE) {
-        let blocks = sums.par_chunks(block::PIXELS * numbers);
-        let blocks: Vec<_> = blocks.map(|sums| block::write(sums, numbers)).collect();
+        let pixels = sums.par_chunks(block::PIXELS * numbers);
+        let blocks: Vec<_> = pixels.map(|sums| block::write(sums, numbers)).collect();
         for block in blocks {
             reserve(&mut bytes, block.len())?;
             bytes.extend(block);
@@ -190,22 +190,24 @@ pub fn decode(bytes: &[u8]) -> Result<FilmFile> {
 
 /// Takes the blocks of `area` pixels from `rest`, and unpacks them on all threads.
 fn take_sums(rest: &mut &[u8], area: u64, layers: &Layers) -> Result<Vec<i128>> {
-    let blocks = (0..area.div_ceil(block::PIXELS as u64)).map(|_| take_block(rest));
-    let blocks = blocks.collect::<Result<Vec<_>>>()?;
+    let count = area.div_ceil(block::PIXELS as u64);
+    let blocks = (0..count)
+        .map(|_| take_block(rest))
+        .collect::<Result<Vec<_>>>()?;
     let numbers = layers.sums();
-    let count = area as usize * numbers;
+    let length = area as usize * numbers;
     // Memory is reserved only if the file has enough bytes to fill it.
     let least = block::least_bytes(numbers);
     if blocks.iter().any(|packed| packed.bytes.len() < least) {
         return Err(broken("damaged: it is shorter than any film of its size"));
     }
-    let mut sums = bidir::film::filled(count, || 0).map_err(|_| {
-        let bytes = count.saturating_mul(size_of::<i128>());
+    let mut sums = bidir::film::filled(length, || 0).map_err(|_| {
+        let bytes = length.saturating_mul(size_of::<i128>());
         Error::memory("the film", bytes as u64)
     })?;
-    let unpacked = sums.par_chunks_mut(block::PIXELS * numbers).zip(&blocks);
-    let unpacked = unpacked.map(|(sums, packed)| packed.read(numbers, sums));
-    let unpacked: Vec<_> = unpacked.collect();
+    let packed = sums.par_chunks_mut(block::PIXELS * numbers).zip(&blocks);
+    let read = packed.map(|(sums, packed)| packed.read(numbers, sums));
+    let unpacked: Vec<_> = read.collect();
     match unpacked.iter().position(Option::is_none) {
         None => Ok(sums),
         Some(damaged) => Err(broken(format!(

@@ -12,6 +12,7 @@ use crate::image::Pixels;
 use bidir::film::{Film, LayerImage, Layers};
 use bidir::path::Strategy;
 use formats::film::Developed;
+use serde::Deserialize;
 
 /// The default maximum number of vertices of paths whose strategies have images.
 pub const VERTICES: u16 = 6;
@@ -20,7 +21,8 @@ pub const VERTICES: u16 = 6;
 pub const TILE: usize = 128;
 
 /// The kind of an image of a strategy.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Kind {
     /// With MIS weights: these images add up to the picture.
     Weighted,

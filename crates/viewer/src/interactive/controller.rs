@@ -249,11 +249,11 @@ impl RenderController {
     }
 
     fn log_begin(&self) {
-        let names = self.slots.iter().map(|slot| {
+        let name = |slot: &RenderSlot| {
             let status = slot.view.status(&slot.render);
             format!("{} {}", status.integrator, status.shadow_rays)
-        });
-        let names: Vec<_> = names.collect();
+        };
+        let names: Vec<_> = self.slots.iter().map(name).collect();
         let kind = if self.camera.is_preview() {
             "preview"
         } else {

@@ -2,6 +2,7 @@
 
 use super::camera::CameraControl;
 use super::controller::RenderController;
+use super::slot::RenderSlot;
 use crate::command::Command;
 use crate::status::{LaneId, State};
 use crate::view::method_of;
@@ -128,8 +129,8 @@ impl RenderController {
                 "images of strategies need paths of 2 to {most} vertices, or 0 for none"
             ));
         }
-        let layers = &self.wanted(lane)?.layers;
-        let layers = Layers::new(layers.aovs(), layers.light_groups(), vertices).with_raw();
+        let old = &self.wanted(lane)?.layers;
+        let layers = Layers::new(old.aovs(), old.light_groups(), vertices).with_raw();
         self.wanted[lane.index()].layers = layers;
         self.is_stale = true;
         Ok(())
@@ -145,9 +146,9 @@ impl RenderController {
     }
 
     fn save(&mut self, name: &str, lane: LaneId) -> Result<String, String> {
-        let slot = self.slots.get(lane.index());
-        let slot = slot.filter(|slot| !slot.render.session.film().passes().is_empty());
-        let slot = slot.ok_or("nothing is saved: no pass is done yet")?;
+        let has_pass = |slot: &&RenderSlot| !slot.render.session.film().passes().is_empty();
+        let found = self.slots.get(lane.index()).filter(has_pass);
+        let slot = found.ok_or("nothing is saved: no pass is done yet")?;
         let film = slot.render.session.film();
         self.saved.save(name, |path| {
             let metadata = metadata(&slot.render.header());

@@ -56,8 +56,8 @@ impl Access {
         }
         if headers.contains_key(header::ORIGIN) {
             let origin = text(headers, header::ORIGIN).unwrap_or_default();
-            let site = origin.strip_prefix("http://");
-            let site = site.or_else(|| origin.strip_prefix("https://"));
+            let plain = origin.strip_prefix("http://");
+            let site = plain.or_else(|| origin.strip_prefix("https://"));
             if !site.is_some_and(|site| site.eq_ignore_ascii_case(host)) {
                 return Err(forbidden("the Origin is another site"));
             }
@@ -82,10 +82,10 @@ impl Access {
         let Some(token) = &self.token else {
             return true;
         };
-        let mut shown = query
+        let given = query
             .split('&')
-            .filter_map(|pair| pair.strip_prefix("token="));
-        let shown = shown.next().unwrap_or_default();
+            .find_map(|pair| pair.strip_prefix("token="));
+        let shown = given.unwrap_or_default();
         bool::from(shown.as_bytes().ct_eq(token.as_bytes()))
     }
 }

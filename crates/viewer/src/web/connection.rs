@@ -41,8 +41,8 @@ impl Listener for Limited {
     type Addr = SocketAddr;
 
     async fn accept(&mut self) -> (Connection, SocketAddr) {
-        let place = Arc::clone(&self.places).acquire_owned().await;
-        let place = place.expect("nothing closes the semaphore");
+        let permit = Arc::clone(&self.places).acquire_owned().await;
+        let place = permit.expect("nothing closes the semaphore");
         let (stream, peer) = Listener::accept(&mut self.listener).await;
         // Without it a small answer may wait; it is no reason to give none.
         let _ = stream.set_nodelay(true);

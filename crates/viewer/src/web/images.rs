@@ -85,7 +85,7 @@ fn file_name(name: &str) -> String {
 pub(super) struct OfStrategies {
     #[serde(default)]
     lane: LaneId,
-    kind: KindName,
+    kind: Kind,
     s: u16,
     t: u16,
     /// The exposure of a strategy. Unit: stops.
@@ -93,28 +93,11 @@ pub(super) struct OfStrategies {
     exposure: f32,
 }
 
-#[derive(Clone, Copy, Debug, Deserialize)]
-#[serde(rename_all = "lowercase")]
-enum KindName {
-    Weighted,
-    Raw,
-}
-
-impl From<KindName> for Kind {
-    fn from(name: KindName) -> Self {
-        match name {
-            KindName::Weighted => Self::Weighted,
-            KindName::Raw => Self::Raw,
-        }
-    }
-}
-
 /// Answers with the image of a strategy, in the size of the film.
 pub(super) async fn strategies(
     State(site): State<Arc<Site>>,
     Asked(asked): Asked<OfStrategies>,
 ) -> Result<Response, Refusal> {
-    let kind = asked.kind.into();
     let strategy = Strategy {
         s: asked.s,
         t: asked.t,
@@ -126,12 +109,11 @@ pub(super) async fn strategies(
     let pixels = site.query(asked.lane, move |lane| {
         check_strategies(&lane.render.session)?;
         let film = lane.render.session.film();
-        let image = pyramid::strategy_image(film, kind, strategy);
+        let image = pyramid::strategy_image(film, asked.kind, strategy);
         image.ok_or_else(|| Refusal::query(format!("there is no image of {strategy}")))
     });
-    let pixels = pixels.await??;
-    let encode_pixels = move || encode_pixels(pixels, asked.exposure);
-    encode("image/png", encode_pixels).await
+    let found = pixels.await??;
+    encode("image/png", move || encode_pixels(found, asked.exposure)).await
 }
 
 /// Encodes a picture as PNG, `stops` stops brighter.

@@ -42,8 +42,8 @@ impl Site {
                 "a pass takes long: try again",
             )
         };
-        let answer = timeout(PASS_TIME, receive).await.map_err(|_| busy())?;
-        let answer = answer.map_err(|_| Refusal::now("the render has ended"))?;
+        let received = timeout(PASS_TIME, receive).await.map_err(|_| busy())?;
+        let answer = received.map_err(|_| Refusal::now("the render has ended"))?;
         answer.ok_or_else(|| Refusal::now("there is no such lane now"))
     }
 
@@ -51,8 +51,8 @@ impl Site {
     pub(super) async fn frame(&self, lane: LaneId) -> Result<Arc<SentFrame>, Refusal> {
         let state = self.client.state();
         let status = state.status();
-        let newest = status.lanes.iter().find(|newest| newest.lane == lane);
-        let newest = newest.ok_or_else(|| Refusal::now("there is no such lane now"))?;
+        let found = status.lanes.iter().find(|newest| newest.lane == lane);
+        let newest = found.ok_or_else(|| Refusal::now("there is no such lane now"))?;
         let is_newest = |shown: &Arc<SentFrame>| {
             shown.generation == newest.generation && shown.frame.passes == newest.passes
         };
@@ -67,12 +67,7 @@ impl Site {
     }
 
     fn ask(&self, request: Request) -> Result<(), Refusal> {
-        let busy = |_| {
-            Refusal::new(
-                StatusCode::TOO_MANY_REQUESTS,
-                "too many requests are waiting",
-            )
-        };
+        let busy = |_| Refusal::busy("too many requests are waiting");
         self.client.ask(request).map_err(busy)
     }
 }
@@ -150,8 +145,8 @@ pub(super) async fn sample(
                 "the camera is moving: try again when the image is complete",
             ));
         }
-        let replay = session.replay([x, y], pass);
-        let replay = replay.ok_or_else(|| not_rendered(x, y))?;
+        let replayed = session.replay([x, y], pass);
+        let replay = replayed.ok_or_else(|| not_rendered(x, y))?;
         json(&SampleOfLane {
             generation: lane.generation,
             report: SampleReport::new(session, [x, y], pass, &replay),

@@ -10,7 +10,6 @@ use axum::body::Bytes;
 use axum::extract::State;
 use axum::extract::ws::rejection::WebSocketUpgradeRejection;
 use axum::extract::ws::{CloseFrame, Message, WebSocket, WebSocketUpgrade, close_code};
-use axum::http::StatusCode;
 use axum::response::Response;
 use std::sync::Arc;
 use std::time::Duration;
@@ -48,19 +47,14 @@ pub(super) async fn live(
     State(site): State<Arc<Site>>,
     upgrade: Result<WebSocketUpgrade, WebSocketUpgradeRejection>,
 ) -> Result<Response, Refusal> {
-    let upgrade = upgrade.map_err(|error| Refusal::new(error.status(), error.body_text()))?;
-    let full = |_| {
-        Refusal::new(
-            StatusCode::TOO_MANY_REQUESTS,
-            "too many clients are connected",
-        )
-    };
+    let socket = upgrade.map_err(|error| Refusal::new(error.status(), error.body_text()))?;
+    let full = |_| Refusal::busy("too many clients are connected");
     let place = Arc::clone(&site.live.0).try_acquire_owned().map_err(full)?;
-    let upgrade = upgrade
+    Ok(socket
         .max_message_size(MOST_READ)
         .max_frame_size(MOST_READ)
-        .write_buffer_size(0);
-    Ok(upgrade.on_upgrade(move |socket| Client::new(socket, site, place).talk()))
+        .write_buffer_size(0)
+        .on_upgrade(move |socket| Client::new(socket, site, place).talk()))
 }
 
 /// A client.
