@@ -69,7 +69,8 @@ class Session:
         requested: Mapping[str, Any],
         threads: int,
         training: int | None,
-        limits: tuple[float | None, float | None],
+        time: float | None,
+        left: float | None,
     ) -> Session: ...
     def step(self, left: float | None = None) -> bool: ...
     def start_at(self, first: int) -> None: ...

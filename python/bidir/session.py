@@ -192,7 +192,7 @@ class Session:
         threads = check.count("threads", threads)
         training = None if training is None else check.count("training", training)
         # The time of a render, of which training takes at most a tenth, and the time until its end.
-        self._native = _bidir.Session(self.scene._native, native, threads, training, _limits)
+        self._native = _bidir.Session(self.scene._native, native, threads, training, *_limits)
 
     def step(self, passes: int = 1) -> None:
         """Render the next passes, each with one sample per pixel.

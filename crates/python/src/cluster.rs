@@ -103,12 +103,12 @@ pub(crate) fn render_block<'py>(
     let reference = pixels(py, reference.0, &reference.1)?;
     let files = Files::only(in_memory(files));
     let silent = |_: Python<'_>, _: Message| Ok(());
-    let done = wait(py, None, silent, |stop, sender| {
+    let rendered = wait(py, None, silent, |stop, sender| {
         let mut reporter = Reporter::new(stop, sender);
         let experiment = &experiment.experiment;
         experiment::render_block(experiment, &block, &files, &reference, &mut reporter)
     })?;
-    let done = done.map_err(|error| of_experiment(py, &error))?;
+    let done = rendered.map_err(|error| of_experiment(py, &error))?;
     let tuple = |Done { record, image }| {
         let record = serde_json::to_string(&record).map_err(|error| wrong(py, &error))?;
         let image = match image {

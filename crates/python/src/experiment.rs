@@ -90,16 +90,14 @@ impl Experiment {
         threads: Option<usize>,
     ) -> PyResult<Self> {
         let read = experiment::Experiment::read(text, &file);
-        let mut read = read.map_err(|error| of_experiment(py, &error))?;
+        let mut experiment = read.map_err(|error| of_experiment(py, &error))?;
         if quick {
-            read = read.quick();
+            experiment = experiment.quick();
         }
         // Records contain the resolved number.
-        read.threads = threads_of(py, threads.unwrap_or(read.threads))?.count();
-        Ok(Self {
-            experiment: read,
-            file,
-        })
+        let threads = threads.unwrap_or(experiment.threads);
+        experiment.threads = threads_of(py, threads)?.count();
+        Ok(Self { experiment, file })
     }
 
     /// Returns the title.
@@ -131,17 +129,16 @@ impl Experiment {
             experiment::run(&self.experiment, &setup, &mut reporter)
         })?;
         let Outcome { results, .. } = outcome.map_err(|error| of_experiment(py, &error))?;
-        let sections = results.as_ref();
-        let sections = sections.map(|results| self.experiment.sections(results));
-        let sections = sections.unwrap_or_default();
+        let tables_of = |results: &Results| self.experiment.sections(results);
+        let sections = results.as_ref().map(tables_of).unwrap_or_default();
         if let Some(results) = &results {
             let command = format!("bidir experiment {} -o FOLDER", self.file.display());
             let written = experiment::write_page(&setup.folder, results, &sections, &command);
             written.map_err(|error| of_experiment(py, &error))?;
         }
         let tables = sections.iter().flat_map(|section| &section.tables);
-        let tables: Vec<_> = tables.map(lab::report::table_text).collect();
-        Ok((json(results.as_ref()), tables.join("\n")))
+        let texts: Vec<_> = tables.map(lab::report::table_text).collect();
+        Ok((json(results.as_ref()), texts.join("\n")))
     }
 
     /// Renders everything except the runs. None: it was stopped.
@@ -155,11 +152,11 @@ impl Experiment {
     ) -> PyResult<Option<Prepared>> {
         let setup = self.setup(py, folder, restart, Some(machine))?;
         let pass_on = |py: Python<'_>, message: Message| pass_on(py, hear.as_ref(), message);
-        let prepared = wait(py, None, pass_on, |stop, sender| {
+        let outcome = wait(py, None, pass_on, |stop, sender| {
             let mut reporter = Reporter::new(stop, sender);
             experiment::prepare(&self.experiment, &setup, &mut reporter)
         })?;
-        let prepared = prepared.map_err(|error| of_experiment(py, &error))?;
+        let prepared = outcome.map_err(|error| of_experiment(py, &error))?;
         Ok(prepared.map(Prepared))
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::error::{of_file, raise};
 use crate::scene::Scene;
-use crate::wait::beside;
+use crate::wait::{beside, try_beside};
 use bidir::film::PassSet;
 use formats::film::{
     self, FilmFile, counts_by_name, decode, encode, is_film, metadata, read, write,
@@ -88,8 +88,7 @@ impl Film {
     /// Reads a film file.
     #[staticmethod]
     fn load(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
-        let file = beside(py, || read(&path));
-        let file = file.map_err(|error| of_file(py, &error))?;
+        let file = try_beside(py, || read(&path))?;
         let inputs = absolute([path]);
         Ok(Self { file, inputs })
     }
@@ -98,16 +97,14 @@ impl Film {
     #[staticmethod]
     #[pyo3(signature = (data, scene=None))]
     fn from_bytes(py: Python<'_>, data: &[u8], scene: Option<&Scene>) -> PyResult<Self> {
-        let file = beside(py, || decode(data));
-        let file = file.map_err(|error| of_file(py, &error))?;
+        let file = try_beside(py, || decode(data))?;
         let inputs = scene.map(|scene| scene.inputs.clone()).unwrap_or_default();
         Ok(Self { file, inputs })
     }
 
     /// Encodes a film file.
     fn to_bytes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
-        let encoded = beside(py, || encode(&self.file.header, &self.file.film));
-        let encoded = encoded.map_err(|error| of_file(py, &error))?;
+        let encoded = try_beside(py, || encode(&self.file.header, &self.file.film))?;
         Ok(PyBytes::new(py, &encoded))
     }
 
@@ -115,8 +112,7 @@ impl Film {
     fn save(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
         let others = self.inputs.iter().filter(|input| !is_film(input));
         Self::check_apart(py, others, &path)?;
-        let written = beside(py, || write(&path, &self.file.header, &self.file.film));
-        written.map_err(|error| of_file(py, &error))
+        try_beside(py, || write(&path, &self.file.header, &self.file.film))
     }
 
     /// Merges two films.
@@ -156,10 +152,9 @@ impl Film {
     fn write_image(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
         Self::check_apart(py, self.inputs.iter(), &path)?;
         let FilmFile { header, film } = &self.file;
-        let written = beside(py, || {
+        try_beside(py, || {
             film::Developed::new(film).write(&path, film.settings(), &metadata(header))
-        });
-        written.map_err(|error| of_file(py, &error))
+        })
     }
 
     /// Returns the passes, each range with its exclusive end.
@@ -202,8 +197,8 @@ impl Film {
     #[getter]
     fn counts(&self) -> BTreeMap<String, u64> {
         let counts = counts_by_name(&self.file.header).into_iter();
-        let counts = counts.filter_map(|(name, count)| Some((name, count.parse().ok()?)));
-        counts.collect()
+        let parsed = counts.filter_map(|(name, count)| Some((name, count.parse().ok()?)));
+        parsed.collect()
     }
 
     /// Returns the estimated relative error of the image.

@@ -1,8 +1,8 @@
 //! Images as arrays: reading, writing, and metrics.
 
-use crate::error::{of_file, raise};
+use crate::error::raise;
 use crate::film::bytes;
-use crate::wait::beside;
+use crate::wait::{beside, try_beside};
 use formats::image::{self, ExrImage, ExrLayer, Format, write_exr, write_png};
 use lab::image::{Pair, Pixels};
 use lab::metric::Metric;
@@ -33,10 +33,8 @@ pub(crate) fn encode_png<'py>(
     data: &[u8],
 ) -> PyResult<Bound<'py, PyBytes>> {
     let pixels = pixels(py, size, data)?;
-    let encoded = beside(py, || {
-        image::encode_png(size.map(|side| side as u32), &pixels.data)
-    });
-    let encoded = encoded.map_err(|error| of_file(py, &error))?;
+    let size = size.map(|side| side as u32);
+    let encoded = try_beside(py, || image::encode_png(size, &pixels.data))?;
     Ok(PyBytes::new(py, &encoded))
 }
 
@@ -49,21 +47,14 @@ pub(crate) fn write_image(
     data: &[u8],
 ) -> PyResult<()> {
     let pixels = pixels(py, size, data)?;
-    let written = match Format::of(&path) {
-        Some(Format::Exr) => beside(py, || {
+    try_beside(py, || match Format::of(&path) {
+        Some(Format::Exr) => {
             let layers = [ExrLayer::rgb("", &pixels.data)];
             write_exr(&path, &ExrImage::whole(size, &layers))
-        }),
-        Some(Format::Png) => beside(py, || write_png(&path, size, &pixels.data)),
-        _ => {
-            let message = format!(
-                "cannot write `{}`: output images are .exr or .png",
-                path.display()
-            );
-            return Err(raise(py, "SettingsError", &message));
         }
-    };
-    written.map_err(|error| of_file(py, &error))
+        Some(Format::Png) => write_png(&path, size, &pixels.data),
+        _ => Err(image::no_output(&path)),
+    })
 }
 
 /// Reads width, height and pixels of an image file.
@@ -72,10 +63,9 @@ pub(crate) fn read_image(
     py: Python<'_>,
     path: PathBuf,
 ) -> PyResult<([usize; 2], Bound<'_, PyBytes>)> {
-    let read = beside(py, || {
+    let read = try_beside(py, || {
         image::read(&path, None).map(|image| Pixels::from(&image))
-    });
-    let read = read.map_err(|error| of_file(py, &error))?;
+    })?;
     Ok((read.size, bytes(py, read.data.as_flattened())?))
 }
 
@@ -85,8 +75,7 @@ type Channels<'py> = Vec<(String, Bound<'py, PyBytes>)>;
 /// Reads width, height and all channels of an EXR.
 #[pyfunction]
 pub(crate) fn read_layers(py: Python<'_>, path: PathBuf) -> PyResult<([usize; 2], Channels<'_>)> {
-    let layers = beside(py, || image::read_layers(&path));
-    let layers = layers.map_err(|error| of_file(py, &error))?;
+    let layers = try_beside(py, || image::read_layers(&path))?;
     let channels = layers.names().map(|name| {
         let data = layers.channel(&name).unwrap_or_default();
         Ok((name, bytes(py, &data)?))

@@ -81,8 +81,8 @@ impl Scene {
         } else {
             Files::over_disk(memory)
         };
-        let loaded = wait_silently(py, None, |_| load_from(&path, &options, &files))?;
-        let loaded = loaded.map_err(|error| of_file(py, &error))?;
+        let read = wait_silently(py, None, |_| load_from(&path, &options, &files))?;
+        let loaded = read.map_err(|error| of_file(py, &error))?;
         Ok(Self {
             settings: loaded.settings.render_settings(),
             inputs: absolute(loaded.inputs.iter().cloned()),

@@ -80,8 +80,8 @@ fn no_memory(py: Python<'_>, error: &FilmError) -> PyErr {
 
 #[pymethods]
 impl Session {
-    /// Starts a session without passes; `bidir.Session` makes `requested`. `limits` are the time of the render, of
-    /// which training takes a part, and the time that is left for training. Unit: seconds.
+    /// Starts a session without passes; `bidir.Session` makes `requested`. `time` is that of the render, of which training
+    /// takes a part, `left` the time that is left for training. Unit: seconds.
     #[new]
     fn new(
         py: Python<'_>,
@@ -89,9 +89,9 @@ impl Session {
         requested: Requested,
         threads: usize,
         training: Option<u64>,
-        limits: (Option<f64>, Option<f64>),
+        time: Option<f64>,
+        left: Option<f64>,
     ) -> PyResult<Self> {
-        let (time, left) = limits;
         let settings = resolve(py, &requested, &scene.settings)?;
         let resources = Resources {
             threads: threads_of(py, threads)?.count(),
@@ -102,10 +102,10 @@ impl Session {
             time: time.map(duration),
         };
         let subject = scene.loaded.subject();
-        let render = wait_silently(py, deadline(left), |stop| {
+        let begun = wait_silently(py, deadline(left), |stop| {
             subject.begin(&settings, &resources, limits, &watch(stop))
         })?;
-        let render = render.map_err(|error| match &error {
+        let render = begun.map_err(|error| match &error {
             driver::SessionError::NoPath { .. } => raise(py, "SettingsError", &error.to_string()),
             driver::SessionError::Film(error) => scene.too_large(py, error),
             driver::SessionError::Stopped => {

@@ -108,8 +108,8 @@ fn request_of(py: Python<'_>, texts: &Texts) -> PyResult<Request> {
 /// Errors: the integrator is unknown, as `SettingsError`.
 #[pyfunction]
 pub(crate) fn settings_of(py: Python<'_>, integrator: &str) -> PyResult<Vec<String>> {
-    let kind: Result<IntegratorKind, UnknownName> = integrator.parse();
-    let kind = kind.map_err(|error| raise(py, "SettingsError", &error.to_string()))?;
+    let parsed: Result<IntegratorKind, UnknownName> = integrator.parse();
+    let kind = parsed.map_err(|error| raise(py, "SettingsError", &error.to_string()))?;
     let texts = lab::experiment::texts(&Settings::new(kind));
     Ok(texts.into_keys().collect())
 }

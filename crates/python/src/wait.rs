@@ -1,5 +1,6 @@
 //! Long operations that leave the interpreter responsive.
 
+use crate::error::of_file;
 use bidir::driver::{Threads, stand_alone, start_pool};
 use pyo3::prelude::*;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -52,12 +53,12 @@ pub(crate) fn wait<T: Send, M: Send>(
             let done = match worker {
                 Ok(worker) => {
                     drop(sender);
-                    let raised = listen(&receiver, hear, (stop, deadline));
+                    let raised = listen(&receiver, hear, stop, deadline);
                     return (worker.join(), raised);
                 }
                 Err(_) => run(sender),
             };
-            (Ok(done), listen(&receiver, hear, (stop, deadline)))
+            (Ok(done), listen(&receiver, hear, stop, deadline))
         })
     });
     match (done, raised) {
@@ -75,7 +76,8 @@ pub(crate) fn wait<T: Send, M: Send>(
 fn listen<M: Send>(
     receiver: &Receiver<M>,
     mut hear: impl FnMut(Python<'_>, M) -> PyResult<()> + Send,
-    (stop, deadline): (&Stop, Option<Instant>),
+    stop: &Stop,
+    deadline: Option<Instant>,
 ) -> Option<PyErr> {
     let mut raised = None;
     loop {
@@ -109,6 +111,14 @@ fn compute<T>(work: impl FnOnce() -> T) -> T {
 /// Runs `work` on this thread, while other Python threads run.
 pub(crate) fn beside<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send) -> T {
     py.detach(|| compute(work))
+}
+
+/// Runs `work` on files like [`beside`], and converts its error.
+pub(crate) fn try_beside<T: Send>(
+    py: Python<'_>,
+    work: impl FnOnce() -> formats::Result<T> + Send,
+) -> PyResult<T> {
+    beside(py, work).map_err(|error| of_file(py, &error))
 }
 
 /// Raises the exception of a pending signal; does nothing outside the interpreter's main thread.
