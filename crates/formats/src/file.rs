@@ -134,8 +134,8 @@ fn nearest_entry(
 ) -> Option<String> {
     let folder = folder.filter(|folder| !folder.as_os_str().is_empty());
     let entries = std::fs::read_dir(folder.unwrap_or(Path::new("."))).ok()?;
-    let names = entries.filter_map(|entry| entry.ok()?.file_name().into_string().ok());
-    let mut names: Vec<_> = names.filter(|name| is_wanted(Path::new(name))).collect();
+    let all = entries.filter_map(|entry| entry.ok()?.file_name().into_string().ok());
+    let mut names: Vec<_> = all.filter(|name| is_wanted(Path::new(name))).collect();
     names.sort();
     let near = nearest(name.to_str()?, names.iter().map(String::as_str))?;
     Some(near.to_owned())

@@ -104,10 +104,9 @@ pub(crate) fn repair_normals(
         let side: DVec3 = others
             .map(|normal| DVec3::from(normal.map(f64::from)))
             .sum();
-        let area = area(positions, triangle);
-        let area = if side.dot(area) < 0.0 { -area } else { area };
+        let front = area(positions, triangle);
         for corner in triangle {
-            sums[corner as usize] += area;
+            sums[corner as usize] += if side.dot(front) < 0.0 { -front } else { front };
         }
     }
     for (normal, sum) in normals.iter_mut().zip(sums) {

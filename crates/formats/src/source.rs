@@ -195,33 +195,26 @@ impl Excerpt {
         let start = text[..line_start.saturating_sub(1)]
             .rfind('\n')
             .map_or(0, |i| i + 1);
-        let end = text.get(line_end + 1..).and_then(|rest| rest.find('\n'));
-        let end = end.map_or(text.len(), |i| line_end + 1 + i);
-        let marked_end = marked.end.min(line_end.max(marked.start));
-        if end - start <= Self::WHOLE {
-            let first_line = line - 1 - usize::from(line_start > 0);
-            let (text, marked) = shown(&text[start..end], marked.start - start..marked_end - start);
-            return Self {
-                name,
-                text,
-                marked,
-                first_line,
-                cut: 0,
-            };
+        let next = text.get(line_end + 1..).and_then(|rest| rest.find('\n'));
+        let end = next.map_or(text.len(), |i| line_end + 1 + i);
+        let mut mark_end = marked.end.min(line_end.max(marked.start));
+        let mut around = start..end;
+        if around.len() > Self::WHOLE {
+            let before = marked.start.saturating_sub(Self::MARGIN);
+            mark_end = boundary_before(text, mark_end.min(marked.start + Self::WHOLE));
+            around = line_start.max(boundary_before(text, before))
+                ..line_end.min(boundary_before(text, mark_end + Self::MARGIN));
         }
-        let start = line_start.max(boundary_before(
-            text,
-            marked.start.saturating_sub(Self::MARGIN),
-        ));
-        let marked_end = boundary_before(text, marked_end.min(marked.start + Self::WHOLE));
-        let end = line_end.min(boundary_before(text, marked_end + Self::MARGIN));
-        let cut = text[line_start..start].chars().count();
-        let (text, marked) = shown(&text[start..end], marked.start - start..marked_end - start);
+        let before = text.get(line_start..around.start).unwrap_or_default();
+        let cut = before.chars().count();
+        let first_line = line - 1 - usize::from(around.start < line_start);
+        let mark = marked.start - around.start..mark_end - around.start;
+        let (text, marked) = shown(&text[around], mark);
         Self {
             name,
             text,
             marked,
-            first_line: line - 1,
+            first_line,
             cut,
         }
     }
@@ -235,9 +228,9 @@ impl Excerpt {
 /// are removed.
 fn shown(text: &str, marked: Range<usize>) -> (String, Range<usize>) {
     let text = text.strip_suffix('\r').unwrap_or(text);
-    let end = marked.end.min(text.len());
-    let is_between = text[..end].ends_with('\r') && text[end..].starts_with('\n');
-    let end = end - usize::from(is_between);
+    let given = marked.end.min(text.len());
+    let is_between = text[..given].ends_with('\r') && text[given..].starts_with('\n');
+    let end = given - usize::from(is_between);
     // The mark may be at the carriage return that is removed.
     let start = marked.start.min(end);
     let parts = [&text[..start], &text[start..end], &text[end..]];

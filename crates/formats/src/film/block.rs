@@ -65,8 +65,8 @@ pub(super) fn write(sums: &[i128], numbers: usize) -> Vec<u8> {
             }
         }
     }
-    let deflated = deflated.finish().expect("memory takes all");
-    let packed = [kinds, plain, deflated].concat();
+    let stream = deflated.finish().expect("memory takes all");
+    let packed = [kinds, plain, stream].concat();
     let length = (packed.len() as u32).to_le_bytes();
     [&length[..], &checksum(&packed).to_le_bytes(), &packed].concat()
 }

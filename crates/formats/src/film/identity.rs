@@ -157,10 +157,12 @@ pub fn metadata(header: &FilmHeader) -> Vec<(String, MetadataValue)> {
         ("passes", header.passes.to_string()),
         ("stopping", header.stopping.name().to_owned()),
     ];
-    let own = own.map(|(name, text)| (name.to_owned(), text));
     let texts = header.settings.clone().into_iter();
-    let texts = texts.chain(own).chain(counts_by_name(header));
-    let texts = texts.map(|(name, text)| (format!("bidir/{name}"), MetadataValue::Text(text)));
-    let pbrt = pbrt.map(|(name, value)| (name.to_owned(), value));
-    pbrt.into_iter().chain(texts).collect()
+    let all = texts
+        .chain(own.map(|(name, text)| (name.to_owned(), text)))
+        .chain(counts_by_name(header));
+    pbrt.map(|(name, value)| (name.to_owned(), value))
+        .into_iter()
+        .chain(all.map(|(name, text)| (format!("bidir/{name}"), MetadataValue::Text(text))))
+        .collect()
 }

@@ -31,12 +31,12 @@ impl LayerNames {
     /// Returns the layers with these names. None: a name is unknown, or the names are not in order.
     pub(super) fn layers(&self) -> Option<Layers> {
         let find = |name: &String| Aov::NAMES.iter().find(|(known, _)| known == name);
-        let aovs = self.aovs.iter().map(|name| Some(find(name)?.1));
-        let aovs: Vec<_> = aovs.collect::<Option<_>>()?;
-        let layers = Layers::new(&aovs, &self.light_groups, self.strategy_vertices);
+        let found = self.aovs.iter().map(|name| Some(find(name)?.1));
+        let aovs: Vec<_> = found.collect::<Option<_>>()?;
+        let weighted = Layers::new(&aovs, &self.light_groups, self.strategy_vertices);
         let layers = match self.strategy_images {
-            StrategyImages::Weighted => layers,
-            StrategyImages::WeightedAndRaw => layers.with_raw(),
+            StrategyImages::Weighted => weighted,
+            StrategyImages::WeightedAndRaw => weighted.with_raw(),
         };
         (*self == Self::from(&layers)).then_some(layers)
     }

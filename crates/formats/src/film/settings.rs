@@ -37,11 +37,9 @@ impl SettingsText {
     /// Returns the settings of these names in one line, such as `shadow rays all, seed 0`.
     pub fn line(&self, names: &[&str]) -> String {
         let texts = self.by_flag();
-        let named = names
-            .iter()
-            .filter_map(|&name| Some((name, texts.get(name)?)));
-        let named = named.map(|(name, value)| format!("{} {value}", name.replace('-', " ")));
-        named.collect::<Vec<_>>().join(", ")
+        let pair = |&name: &&str| Some(format!("{} {}", name.replace('-', " "), texts.get(name)?));
+        let pairs: Vec<_> = names.iter().filter_map(pair).collect();
+        pairs.join(", ")
     }
 }
 

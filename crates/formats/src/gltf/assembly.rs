@@ -58,16 +58,16 @@ impl<'a> Builder<'a> {
         needs: &Cell<Needs>,
     ) -> Gathered<Place> {
         let document = context.document;
-        document.start_counting(context.log.stored());
+        document.start_counting(context.log.reading.stored);
         let nodes = Nodes::of(document, context.layout.render_from_world())?;
-        let view = view::find(context, &nodes)?;
-        let film = view.film(context)?;
-        let film_place = view.film_place(context);
+        let described = view::find(context, &nodes)?;
+        let film = described.film(context)?;
+        let film_place = described.film_place(context);
         let resolution = film.resolution;
         let mut builder = Self {
             document,
             nodes,
-            assembly: Assembly::new(context, SETTINGS, view.eye()),
+            assembly: Assembly::new(context, SETTINGS, described.eye()),
             materials: Materials::default(),
             extent: Extent::NONE,
             places: 0,
@@ -80,14 +80,14 @@ impl<'a> Builder<'a> {
         }
         builder.add_meshes(context)?;
         let inside = outlook.inside.as_ref();
-        let world_from_camera = view.placed(context, resolution, (&builder.extent, inside));
+        let world_from_camera = described.placed(context, resolution, &builder.extent, inside);
         builder.add_lights(context, &world_from_camera, outlook)?;
-        needs.set(builder.needs(view.eye().is_none()));
+        needs.set(builder.needs(described.eye().is_none()));
         let mut assembly = builder.assembly;
         assembly.film_place = film_place;
         assembly.summary.materials = builder.materials.count();
         assembly.summary.textures = document.root.textures.len();
-        let camera = view.camera(resolution, world_from_camera)?;
+        let camera = described.camera(resolution, world_from_camera)?;
         let view = Context::view(camera, film)?;
         Ok((assembly, view))
     }
@@ -106,7 +106,7 @@ impl<'a> Builder<'a> {
                 .find(&document.root.meshes, mesh, "mesh")?;
             let weights = node.weights.as_ref().unwrap_or(&described.weights);
             if let Some(skin) = node.skin {
-                self.add_skinned(context, (mesh, skin, &place), weights)?;
+                self.add_skinned(context, mesh, skin, &place, weights)?;
                 continue;
             }
             let key = (
@@ -140,10 +140,12 @@ impl<'a> Builder<'a> {
     ) -> Result<Vec<DAffine3>, GltfFault> {
         let whole = context.layout.render_from_world();
         let render_from_node = self.nodes.render_from_node[index].unwrap_or(whole);
-        let local = mesh::places(self.document, &self.document.root.nodes[index], place)?;
-        let places = local.into_iter().map(|map| render_from_node * map);
-        let mut places: Vec<_> = places.collect();
+        let node = &self.document.root.nodes[index];
+        let mut places = mesh::places(self.document, node, place)?;
         let count = places.len();
+        for map in &mut places {
+            *map = render_from_node * *map;
+        }
         places.retain(|map| map.matrix3.determinant() != 0.0);
         if places.len() < count {
             context.warn(place.clone(), "a mesh that is scaled to zero is left out");
@@ -172,19 +174,19 @@ impl<'a> Builder<'a> {
             match destination {
                 Destination::World(copies) => {
                     for (i, map) in copies.iter().enumerate() {
-                        let user = (&material.uv, &mut self.assembly.survey);
-                        let shape = surface.place(map, user, &place)?;
+                        let survey = &mut self.assembly.survey;
+                        let shape = surface.place(map, &material.uv, survey, &place)?;
                         let skin = material.skin(self.families + i);
                         let emission = material.emission.clone();
-                        self.add_to_world(context, (shape, emission), &skin, &place)?;
+                        self.add_to_world(context, shape, emission, &skin, &place)?;
                     }
                 }
                 Destination::Object(object) => {
-                    let user = (&material.uv, self.assembly.object_survey());
-                    let shape = surface.place(&object.kept_from_own(), user, &place)?;
-                    self.count(context, &shape, &place)?;
-                    self.include(&shape, places.iter().map(|map| object.place_kept(map)));
-                    let (shape, skin) = (Shape::Mesh(shape), material.skin(self.families));
+                    let (map, survey) = (object.kept_from_own(), self.assembly.object_survey());
+                    let mesh = surface.place(&map, &material.uv, survey, &place)?;
+                    self.count(context, &mesh, &place)?;
+                    self.include(&mesh, places.iter().map(|map| object.place_kept(map)));
+                    let (shape, skin) = (Shape::Mesh(mesh), material.skin(self.families));
                     self.assembly.add_to_object(object, shape, &skin, &place);
                 }
             }
@@ -206,11 +208,11 @@ impl<'a> Builder<'a> {
         let primitives = &self.document.root.meshes[mesh].primitives;
         for (i, primitive) in primitives.iter().enumerate() {
             let place = Place::of("meshes", mesh).key("primitives").index(i);
-            let read = Surface::read(context, (primitive, &place), weights)?;
+            let read = Surface::read(context, primitive, &place, weights)?;
             let Some(surface) = read else { continue };
-            let user = (primitive.material, &place);
-            let tools = (&mut *context, &mut self.assembly.builder);
-            let material = self.materials.get(tools, user, surface.color)?;
+            let (materials, builder) = (&mut self.materials, &mut self.assembly.builder);
+            let index = primitive.material;
+            let material = materials.get(context, builder, index, &place, surface.color)?;
             surfaces.push((surface, material, place));
         }
         Ok(surfaces)
@@ -219,7 +221,9 @@ impl<'a> Builder<'a> {
     fn add_skinned(
         &mut self,
         context: &mut Context<'_>,
-        (mesh, skin, place): (usize, usize, &Place),
+        mesh: usize,
+        skin: usize,
+        place: &Place,
         weights: &[f32],
     ) -> Result<(), GltfFault> {
         let place = place.key("skin");
@@ -230,14 +234,14 @@ impl<'a> Builder<'a> {
             for warning in surface.repair_weights(joints.len()).warnings() {
                 context.warn(place.clone(), warning);
             }
-            let user = (&material.uv, &mut self.assembly.survey);
+            let (uv, survey) = (&material.uv, &mut self.assembly.survey);
             let shape = if surface.joints.is_empty() {
-                surface.place(&whole, user, &place)?
+                surface.place(&whole, uv, survey, &place)?
             } else {
-                surface.skinned(&joints, user, &place)?
+                surface.skinned(&joints, uv, survey, &place)?
             };
-            let skin = material.skin(self.families);
-            self.add_to_world(context, (shape, material.emission.clone()), &skin, &place)?;
+            let (skin, emission) = (material.skin(self.families), material.emission.clone());
+            self.add_to_world(context, shape, emission, &skin, &place)?;
         }
         self.families += 1;
         Ok(())
@@ -250,7 +254,7 @@ impl<'a> Builder<'a> {
         place: &Place,
     ) -> Result<(), GltfFault> {
         self.places += count as u64;
-        let most = limits::INSTANCES.of(context.log.stored());
+        let most = limits::INSTANCES.of(context.log.reading.stored);
         if self.places <= most {
             return Ok(());
         }
@@ -284,7 +288,8 @@ impl<'a> Builder<'a> {
     fn add_to_world(
         &mut self,
         context: &Context<'_>,
-        (shape, emission): (Mesh, Option<Emission>),
+        shape: Mesh,
+        emission: Option<Emission>,
         skin: &Skin<'_>,
         place: &Place,
     ) -> Result<(), GltfFault> {
@@ -305,7 +310,7 @@ impl<'a> Builder<'a> {
     ) {
         let linear = render_from_mesh.matrix3 * context.layout.space.unit;
         let error = VertexError::of(&surface.positions, &linear);
-        self.assembly.add_error(place, error);
+        self.assembly.vertex_errors.add(place, error);
     }
 
     /// Adds the lights that are not shapes, and a soft one from behind the viewer if the scene would be dark.

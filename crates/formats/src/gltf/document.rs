@@ -180,8 +180,8 @@ impl Document {
         let place = Place::of("bufferViews", index);
         let buffer = place.find(&self.buffers, view.buffer, "buffer")?;
         let end = view.byte_offset.checked_add(view.byte_length);
-        let bytes = end.and_then(|end| buffer.get(view.byte_offset..end));
-        let bytes = bytes.ok_or_else(|| {
+        let found = end.and_then(|end| buffer.get(view.byte_offset..end));
+        let bytes = found.ok_or_else(|| {
             let (offset, length, have) = (view.byte_offset, view.byte_length, buffer.len());
             let message =
                 format!("{length} bytes from byte {offset} end beyond the buffer of {have} bytes");
@@ -195,8 +195,8 @@ impl Document {
 fn parse(path: &Path, json: String) -> Result<Root> {
     let root = serde_json::from_str(&json);
     root.or_else(|error| {
-        let message = error.to_string();
-        let message = message.split(" at line ").next().unwrap_or_default();
+        let text = error.to_string();
+        let message = text.split(" at line ").next().unwrap_or_default();
         let start = offset(&json, &error);
         let mut sources = SourceMap::default();
         let file = sources.add(path, json)?;

@@ -19,12 +19,12 @@ pub(super) fn all(
     let mut lights = Vec::new();
     for &index in &nodes.order {
         let node = &document.root.nodes[index];
-        let Some(light) = node.extensions.light.as_ref().and_then(|light| light.light) else {
+        let Some(named) = node.extensions.light.as_ref().and_then(|light| light.light) else {
             continue;
         };
         let place = Place::of("nodes", index).extension("KHR_lights_punctual");
         let render_from_node = nodes.render_from_node[index].unwrap_or(DAffine3::IDENTITY);
-        let light = build(context, (light, &place), &render_from_node)?;
+        let light = build(context, named, &place, &render_from_node)?;
         lights.push((place, light));
     }
     Ok(lights)
@@ -32,11 +32,12 @@ pub(super) fn all(
 
 fn build(
     context: &mut Context<'_>,
-    (index, user): (usize, &Place),
+    index: usize,
+    user: &Place,
     render_from_node: &DAffine3,
 ) -> Result<Light, GltfFault> {
-    let all = context.document.root.extensions.lights.as_ref();
-    let all = all.map_or(&[][..], |all| &all.lights);
+    let lights = context.document.root.extensions.lights.as_ref();
+    let all = lights.map_or(&[][..], |lights| &lights.lights);
     let described = user.find(all, index, "light")?;
     let place = Place::TOP
         .extension("KHR_lights_punctual")
@@ -63,7 +64,7 @@ fn build(
             position,
             intensity: intensity.into(),
         })),
-        "spot" => spot(described, &place, (position, axis), intensity).map(Light::Spot),
+        "spot" => spot(described, &place, position, axis, intensity).map(Light::Spot),
         other => {
             let fault = place
                 .key("type")
@@ -88,13 +89,14 @@ fn power(described: &Described, place: &Place) -> Result<[f32; 3], GltfFault> {
 fn spot(
     described: &Described,
     place: &Place,
-    (position, axis): (Vec3, Vec3),
+    position: Vec3,
+    axis: Vec3,
     intensity: [f32; 3],
 ) -> Result<SpotLight, GltfFault> {
     let cone = described.spot.as_ref();
     let inner = cone.and_then(|cone| cone.inner_cone_angle).unwrap_or(0.0);
-    let outer = cone.and_then(|cone| cone.outer_cone_angle);
-    let outer = outer.unwrap_or(std::f32::consts::FRAC_PI_4);
+    let given = cone.and_then(|cone| cone.outer_cone_angle);
+    let outer = given.unwrap_or(std::f32::consts::FRAC_PI_4);
     if !(inner >= 0.0 && inner <= outer && outer > 1e-4 && outer < 1.58) {
         let message =
             format!("the cone angles {inner} and {outer} are invalid: 0 <= inner < outer <= pi/2");

@@ -58,8 +58,10 @@ impl Materials {
     /// Returns material number `index`, or the default material, with its base colour times `color`.
     pub(super) fn get(
         &mut self,
-        (context, builder): (&mut Context<'_>, &mut SceneBuilder),
-        (index, user): (Option<usize>, &Place),
+        context: &mut Context<'_>,
+        builder: &mut SceneBuilder,
+        index: Option<usize>,
+        user: &Place,
         color: [f32; 4],
     ) -> Result<Built, GltfFault> {
         let key = (index, color.map(f32::to_bits));
@@ -84,13 +86,13 @@ impl Materials {
         };
         let material = reader.material(color)?;
         let inside = reader.inside()?;
-        let index = reader.index();
+        let ior = reader.index();
         let thin = inside.is_some().then(|| material.clone().into_thin());
         let id = builder.material(material);
         let content = inside.zip(thin);
         let built = Built {
             id,
-            content: content.map(|(medium, thin)| content_of(builder, (index, medium), thin)),
+            content: content.map(|(medium, thin)| content_of(builder, ior, medium, thin)),
             emission: reader.emission()?,
             coverage: reader.coverage(color[3])?,
             uv: reader.baked,
@@ -108,7 +110,8 @@ impl Materials {
 /// Returns the contents of a volume with this index of refraction and medium. No medium: it is clear.
 fn content_of(
     builder: &mut SceneBuilder,
-    (index, medium): (f32, Option<Medium>),
+    index: f32,
+    medium: Option<Medium>,
     thin: Material,
 ) -> VolumeContent {
     let medium = medium.map_or(MediumId::VACUUM, |medium| builder.medium(medium));

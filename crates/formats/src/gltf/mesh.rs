@@ -93,7 +93,8 @@ impl Surface {
     /// Reads a primitive. None: it has no triangles; a warning says why.
     pub(super) fn read(
         context: &mut Context<'_>,
-        (primitive, place): (&Primitive, &Place),
+        primitive: &Primitive,
+        place: &Place,
         weights: &[f32],
     ) -> Result<Option<Self>, GltfFault> {
         let document = context.document;
@@ -115,8 +116,8 @@ impl Surface {
             ..Self::default()
         };
         surface.triangles = triangles(document, primitive, place, surface.positions.len())?;
-        surface.read_attributes(context, (primitive, &attributes))?;
-        surface.morph(document, (primitive, place), weights)?;
+        surface.read_attributes(context, primitive, &attributes)?;
+        surface.morph(document, primitive, place, weights)?;
         let mut repairs = surface.repair();
         // Strips repeat vertices where they turn.
         if mode != 4 {
@@ -168,7 +169,8 @@ impl Surface {
     fn read_attributes(
         &mut self,
         context: &mut Context<'_>,
-        (primitive, place): (&Primitive, &Place),
+        primitive: &Primitive,
+        place: &Place,
     ) -> Result<(), GltfFault> {
         let document = context.document;
         let find = |name: &str| Some((*primitive.attributes.get(name)?, place.key(name)));
@@ -178,9 +180,9 @@ impl Surface {
         // The format demands that tangents are ignored if there are no normals.
         let is_smooth = !self.normals.is_empty();
         if let Some((index, place)) = find("TANGENT").filter(|_| is_smooth) {
-            let tangents = document.vectors::<4>(index, &place)?;
-            let tangents = tangents.into_iter().map(|[x, y, z, _]| [x, y, z]);
-            self.tangents = self.per_vertex(tangents.collect(), &place)?;
+            let signed = document.vectors::<4>(index, &place)?.into_iter();
+            let tangents = signed.map(|[x, y, z, _]| [x, y, z]).collect();
+            self.tangents = self.per_vertex(tangents, &place)?;
         }
         for (set, name) in ["TEXCOORD_0", "TEXCOORD_1"].into_iter().enumerate() {
             if let Some((index, place)) = find(name) {
@@ -190,14 +192,35 @@ impl Surface {
         if let Some((index, place)) = find("COLOR_0") {
             self.read_color(context, index, &place)?;
         }
-        if let (Some(joints), Some(weights)) = (find("JOINTS_0"), find("WEIGHTS_0")) {
-            self.joints = self.read_joints(document, joints, weights)?;
-            if find("JOINTS_1").is_some() {
-                let message = "joints beyond the first four of a vertex have no effect";
-                context.warn(place.clone(), message);
-            }
+        self.joints = self.read_joints(document, find)?;
+        if !self.joints.is_empty() && find("JOINTS_1").is_some() {
+            let message = "joints beyond the first four of a vertex have no effect";
+            context.warn(place.clone(), message);
         }
         Ok(())
+    }
+
+    /// Reads the joints of each vertex with their weights; `find` returns the accessor of an attribute, and its place.
+    fn read_joints(
+        &self,
+        document: &Document,
+        find: impl Fn(&str) -> Option<(usize, Place)>,
+    ) -> Result<Vec<[(u32, f32); 4]>, GltfFault> {
+        let (Some((joints, of_joints)), Some((weights, of_weights))) =
+            (find("JOINTS_0"), find("WEIGHTS_0"))
+        else {
+            return Ok(Vec::new());
+        };
+        let numbers = document.finite_vectors::<4>(joints, &of_joints)?;
+        let parts = document.vectors::<4>(weights, &of_weights)?;
+        let numbers_and_parts = self
+            .per_vertex(numbers, &of_joints)?
+            .into_iter()
+            .zip(self.per_vertex(parts, &of_weights)?);
+        let of_vertex = |(numbers, parts): ([f32; 4], [f32; 4])| {
+            std::array::from_fn(|k| (numbers[k] as u32, parts[k]))
+        };
+        Ok(numbers_and_parts.map(of_vertex).collect())
     }
 
     /// Checks that there is one value per vertex.
@@ -250,27 +273,12 @@ impl Surface {
         Ok(())
     }
 
-    fn read_joints(
-        &self,
-        document: &Document,
-        (joints, joints_place): (usize, Place),
-        (weights, weights_place): (usize, Place),
-    ) -> Result<Vec<[(u32, f32); 4]>, GltfFault> {
-        let joints = document.finite_vectors::<4>(joints, &joints_place)?;
-        let weights = document.vectors::<4>(weights, &weights_place)?;
-        let joints = self.per_vertex(joints, &joints_place)?;
-        let weights = self.per_vertex(weights, &weights_place)?;
-        let of_vertex = |(joints, weights): (&[f32; 4], &[f32; 4])| {
-            std::array::from_fn(|k| (joints[k] as u32, weights[k]))
-        };
-        Ok(joints.iter().zip(&weights).map(of_vertex).collect())
-    }
-
     /// Adds the displacements of morph targets, each times its weight.
     fn morph(
         &mut self,
         document: &Document,
-        (primitive, place): (&Primitive, &Place),
+        primitive: &Primitive,
+        place: &Place,
         weights: &[f32],
     ) -> Result<(), GltfFault> {
         for (i, target) in primitive.targets.iter().enumerate() {

@@ -74,10 +74,10 @@ fn roots(
 
 /// Returns the map from a node to its parent.
 fn local(node: &Node, place: &Place) -> Result<DAffine3, GltfFault> {
-    let Some(matrix) = &node.matrix else {
+    let Some(numbers) = &node.matrix else {
         return Ok(from_parts(node.translation, node.rotation, node.scale));
     };
-    let matrix = DMat4::from_cols_array(matrix);
+    let matrix = DMat4::from_cols_array(numbers);
     let bottom = matrix.row(3);
     if (bottom - glam::DVec4::W).abs().max_element() > 1e-6 {
         return Err(place

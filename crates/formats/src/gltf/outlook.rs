@@ -62,8 +62,9 @@ const DARK: f32 = 0.001;
 /// Returns better defaults than those that the scene was read with. None: these suffice.
 pub(super) fn better(loaded: &Loaded, needs: Needs) -> Option<Outlook> {
     let (scene, view) = (&loaded.scene, &loaded.view);
-    let inside = Some(()).filter(|()| needs.camera && needs.has_own_light);
-    let inside = inside.and_then(|()| place_inside(scene, || is_dark(scene, view)));
+    let may_be_room = needs.camera && needs.has_own_light;
+    let search = || place_inside(scene, || is_dark(scene, view));
+    let inside = may_be_room.then(search).flatten();
     // Light from outside does not come into a room: there, only what the camera will see counts.
     let is_dark = inside.is_none() && needs.light && is_dark(scene, view);
     (inside.is_some() || is_dark).then_some(Outlook { inside, is_dark })
@@ -81,8 +82,8 @@ fn is_dark(scene: &Scene, view: &View) -> bool {
     let size = Vec2::from(SIZE.map(|side| side as f32));
     let factor = size / Vec2::from(film.resolution.map(|side| side as f32));
     let camera = view.camera().resized(factor);
-    let small = FilmSettings::new(SIZE, film.filter.clone());
-    let Ok(small) = View::new(camera, small) else {
+    let small_film = FilmSettings::new(SIZE, film.filter.clone());
+    let Ok(small) = View::new(camera, small_film) else {
         return false;
     };
     let mut settings = Settings::new(IntegratorKind::Bdpt);

@@ -164,6 +164,6 @@ pub(super) fn surroundings(world_from_camera: &Affine3A) -> InfiniteLight {
         [BACKGROUND + square_to_direction(at).dot(key).max(0.0); 3]
     };
     let image = Image::new(TEXELS, (0..TEXELS * TEXELS).map(texel).collect());
-    let image = image.expect("it has texels in whole rows");
-    InfiniteLight::image(image, 1.0, Mat3::IDENTITY)
+    let texels = image.expect("it has texels in whole rows");
+    InfiniteLight::image(texels, 1.0, Mat3::IDENTITY)
 }

@@ -100,8 +100,8 @@ impl Textures {
         let texture = Found::of(context.document, lookup)?;
         let source = texture.source;
         let key = (source, encoding == Encoding::Srgb);
-        let filter = (texture.filter(), &Place::of("images", source));
-        let image = self.colors.get(key, filter, || {
+        let place = Place::of("images", source);
+        let image = self.colors.get(key, texture.filter(), &place, || {
             let data = self.decoder.decode(context, source, encoding)?;
             Ok((data.width, data.rgb().collect()))
         })?;
@@ -114,13 +114,14 @@ impl Textures {
         &mut self,
         context: &mut Context<'_>,
         lookup: Lookup<'_>,
-        (part, change): (Part, Change),
+        part: Part,
+        change: Change,
     ) -> Result<FloatTexture, GltfFault> {
         let texture = Found::of(context.document, lookup)?;
         let source = texture.source;
         let key = (source, format!("{part:?} {change:?}"));
-        let filter = (texture.filter(), &Place::of("images", source));
-        let image = self.numbers.get(key, filter, || {
+        let place = Place::of("images", source);
+        let image = self.numbers.get(key, texture.filter(), &place, || {
             let data = self.decoder.decode(context, source, Encoding::Linear)?;
             let numbers = channel(data, part).map(|value| [change.apply(value)]);
             Ok((data.width, numbers.collect()))
@@ -146,9 +147,9 @@ impl Decoder {
                 context.log.add(Content::Image, &bytes, [file]);
             }
             let format = format_of(&bytes, &context.document.root.images[source], &place)?;
-            let data = image::decode_stored(format, &bytes, encoding);
-            let data = data.and_then(|data| context.log.reading.image(data));
-            let data = data.map_err(|error| GltfFault::from_error(place, &error))?;
+            let decoded = image::decode_stored(format, &bytes, encoding);
+            let counted = decoded.and_then(|data| context.log.reading.image(data));
+            let data = counted.map_err(|error| GltfFault::from_error(place, &error))?;
             self.last = Some((key, data));
         }
         let (_, data) = self.last.as_ref().expect("it was just stored");
@@ -188,8 +189,8 @@ impl<'a> Found<'a> {
                 (&extensions.avif, "its only image is an AVIF file"),
                 (&extensions.dds, "its only image is a DDS file"),
             ];
-            let found = others.iter().find(|(other, _)| other.is_some());
-            let found = found.map_or("it has no image", |(_, found)| *found);
+            let other = others.iter().find(|(other, _)| other.is_some());
+            let found = other.map_or("it has no image", |(_, found)| *found);
             let fault = place.fault(ErrorKind::Unsupported, found);
             return Err(fault.with_hint(IMAGES_TO_EXPORT));
         };
@@ -262,11 +263,9 @@ fn resource(
 /// Returns the format of an image by its first bytes.
 fn format_of(bytes: &[u8], described: &json::Image, place: &Place) -> Result<Format, GltfFault> {
     Format::of_bytes(bytes).ok_or_else(|| {
-        let file = described
-            .uri
-            .as_ref()
-            .filter(|uri| !uri.starts_with("data:"));
-        let file = file.map_or("it".into(), |uri| format!("`{}`", printable(uri)));
+        let is_file = |uri: &&String| !uri.starts_with("data:");
+        let name = described.uri.as_ref().filter(is_file);
+        let file = name.map_or("it".into(), |uri| format!("`{}`", printable(uri)));
         let found = match image::other_format(bytes) {
             Some(name) => format!("{file} is {name}, which is not read"),
             None => format!("{file} is neither png, jpg nor webp"),

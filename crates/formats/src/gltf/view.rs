@@ -45,9 +45,8 @@ pub(super) struct View {
 /// Finds the first camera of the scene.
 pub(super) fn find(context: &mut Context<'_>, nodes: &Nodes) -> Result<View, GltfFault> {
     let document = context.document;
-    let cameras = nodes.order.iter();
-    let cameras = cameras.filter_map(|&node| Some((node, document.root.nodes[node].camera?)));
-    let cameras: Vec<(usize, usize)> = cameras.collect();
+    let camera = |&node: &usize| Some((node, document.root.nodes[node].camera?));
+    let cameras: Vec<_> = nodes.order.iter().filter_map(camera).collect();
     let Some(&(node, camera)) = cameras.first() else {
         return Ok(View {
             world_from_camera: None,
@@ -135,10 +134,8 @@ fn orthographic(
 fn rigid(render_from_node: &DAffine3) -> Affine3A {
     let m = render_from_node.matrix3;
     let forward = (-m.z_axis).normalize_or(DVec3::NEG_Z);
-    let up = m.y_axis.reject_from_normalized(forward);
-    let up = up
-        .try_normalize()
-        .unwrap_or_else(|| forward.any_orthonormal_vector());
+    let upwards = m.y_axis.reject_from_normalized(forward).try_normalize();
+    let up = upwards.unwrap_or_else(|| forward.any_orthonormal_vector());
     looking(render_from_node.translation, forward, up)
 }
 
@@ -184,7 +181,8 @@ impl View {
         &self,
         context: &mut Context<'_>,
         resolution: [u32; 2],
-        (extent, inside): (&Extent, Option<&outlook::Place>),
+        extent: &Extent,
+        inside: Option<&outlook::Place>,
     ) -> Affine3A {
         if let Some(own) = self.world_from_camera {
             return own;

@@ -5,7 +5,7 @@ use super::placing::check_point;
 use super::precision::{self, VertexErrors};
 use super::space::box_corners;
 use super::volumes::{Content, Space, Volumes};
-use super::{Context, Document, Layout, SceneSettings, Summary, Survey, VertexError};
+use super::{Context, Document, SceneSettings, Summary, Survey};
 use crate::error::ErrorKind;
 use crate::source::Fault;
 use bidir::light::Light;
@@ -14,7 +14,6 @@ use bidir::medium::{MediumId, MediumSides};
 use bidir::scene::{Emission, MaterialId, ObjectId, Scene, SceneBuilder, SceneError};
 use bidir::shape::Shape;
 use bidir::texture::FloatTexture;
-use bidir::view::View;
 use glam::{DAffine3, DVec3};
 
 /// The warning for lights at infinity beyond a medium.
@@ -29,19 +28,19 @@ const ELSEWHERE: &str =
 pub(crate) struct Assembly<P> {
     pub(crate) builder: SceneBuilder,
     pub(crate) summary: Summary,
-    settings: SceneSettings,
+    pub(super) settings: SceneSettings,
     /// The survey of everything but shared objects.
     pub(crate) survey: Survey,
     /// The survey of each shared object, in its own space.
-    objects: Vec<Survey>,
-    vertex_errors: VertexErrors<P>,
+    pub(super) objects: Vec<Survey>,
+    pub(crate) vertex_errors: VertexErrors<P>,
     /// Number of vertices of all meshes in memory.
     vertices: u64,
     /// The place of each shape in the file, by the shape's number.
     shapes: Vec<P>,
     /// The place of each instance in the file, by the instance's number.
     instances: Vec<P>,
-    lamps: Vec<Placed<P>>,
+    pub(super) lamps: Vec<Placed<P>>,
     volumes: Volumes,
     /// The place in the file that gives the film's size. None: the caller's options give the size.
     pub(crate) film_place: Option<P>,
@@ -129,16 +128,6 @@ pub(crate) struct Skin<'a> {
     pub(crate) content: Option<(Content, usize)>,
 }
 
-/// A scene that was built.
-pub(super) struct Built<P> {
-    pub(super) scene: Scene,
-    pub(super) view: View,
-    pub(super) settings: SceneSettings,
-    pub(super) lamps: Vec<Placed<P>>,
-    pub(super) film_place: Option<P>,
-    pub(super) summary: Summary,
-}
-
 impl<P: Clone> Assembly<P> {
     /// Returns an empty scene, seen from `eye`. None: the position of the camera depends on the scene.
     pub(crate) fn new<D: Document>(
@@ -181,11 +170,6 @@ impl<P: Clone> Assembly<P> {
         context.check_shapes(self.summary.shapes as u64 + size.shapes, place)
     }
 
-    /// Records the rounding error of a mesh's vertices. None: it is negligible.
-    pub(crate) fn add_error(&mut self, place: &P, error: Option<VertexError>) {
-        self.vertex_errors.add(place, error);
-    }
-
     /// Adds the parts of a shape. Each part that emits is a light of its own; all of them are one lamp of the file.
     pub(crate) fn add_shape(
         &mut self,
@@ -203,7 +187,7 @@ impl<P: Clone> Assembly<P> {
                 }
                 None => self.builder.boundary(part, skin.media),
             };
-            self.note_shape(number, (skin, None), place);
+            self.note_shape(number, skin, None, place);
         }
         if emits {
             let lights = first_light..self.builder.next_light();
@@ -211,14 +195,13 @@ impl<P: Clone> Assembly<P> {
         }
     }
 
-    fn note_shape(&mut self, number: usize, (skin, space): (&Skin<'_>, Space), place: &P) {
+    fn note_shape(&mut self, number: usize, skin: &Skin<'_>, space: Space, place: &P) {
         self.summary.shapes += 1;
         self.shapes.push(place.clone());
         if let Some(material) = skin.material {
             self.builder.sides(number, skin.media);
             if let Some((content, family)) = skin.content {
-                let user = (material, content);
-                self.volumes.add(number, user, (family, space));
+                self.volumes.add(number, material, content, family, space);
             }
             if let Some(coverage) = skin.coverage {
                 self.builder.alpha(number, coverage.clone());
@@ -265,7 +248,7 @@ impl<P: Clone> Assembly<P> {
             None => self.builder.object_boundary(object.id, shape, skin.media),
         };
         let object = self.objects.len();
-        self.note_shape(number, (skin, Some(object)), place);
+        self.note_shape(number, skin, Some(object), place);
     }
 
     /// Adds the instances of the last group, and returns their number; `name` returns the place in the file of each.
@@ -302,10 +285,6 @@ impl<P: Clone> Assembly<P> {
         self.lamps.push((place, number..number + 1));
     }
 
-    pub(super) fn layout(&self) -> Layout {
-        Layout::of(&self.survey, &self.objects)
-    }
-
     /// Refuses a scene whose vertices have rounding errors that are large for its size.
     pub(super) fn check_vertices(&self) -> Result<(), Fault<P>> {
         match self.vertex_errors.refusal(self.survey.reach()) {
@@ -316,19 +295,19 @@ impl<P: Clone> Assembly<P> {
         }
     }
 
-    /// Builds the scene for `view`, with warnings about lights, media and vertices.
+    /// Builds the scene, with warnings about lights, media and vertices.
     pub(super) fn finish<D: Document<Place = P>>(
-        mut self,
-        view: View,
+        &mut self,
         context: &mut Context<'_, D>,
-    ) -> Result<Built<P>, Fault<P>> {
+    ) -> Result<Scene, Fault<P>> {
         if let Some((place, message)) = self.vertex_errors.warning() {
             context.warn(place, message);
         }
-        self.volumes
-            .settle(&mut self.builder, context, &self.shapes);
-        let scene = self.builder.build();
-        let scene = scene.map_err(|error| {
+        let mut builder = std::mem::take(&mut self.builder);
+        let volumes = std::mem::take(&mut self.volumes);
+        volumes.settle(&mut builder, context, &self.shapes);
+        let built = builder.build();
+        let scene = built.map_err(|error| {
             let place = match error {
                 SceneError::Instance { instance } => self.instances.get(instance),
                 ref error => error.shape().and_then(|shape| self.shapes.get(shape)),
@@ -355,13 +334,6 @@ impl<P: Clone> Assembly<P> {
                 context.warn(place.clone(), UNREACHABLE);
             }
         }
-        Ok(Built {
-            scene,
-            view,
-            settings: self.settings,
-            lamps: self.lamps,
-            film_place: self.film_place,
-            summary: self.summary,
-        })
+        Ok(scene)
     }
 }

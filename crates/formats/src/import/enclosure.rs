@@ -211,11 +211,11 @@ impl Hull {
             let (rim, _) = rims.find(edge.ends[0]);
             let origin = self.places[rim as usize];
             let [a, b] = edge.ends.map(|end| self.places[end as usize] - origin);
-            let part = roots[edge.face as usize].0;
-            *areas.entry((part, rim)).or_default() += 0.5 * net * a.cross(b);
+            let root = roots[edge.face as usize].0;
+            *areas.entry((root, rim)).or_default() += 0.5 * net * a.cross(b);
         }
-        for ((part, _), area) in areas {
-            let part = &mut parts[part as usize];
+        for ((root, _), area) in areas {
+            let part = &mut parts[root as usize];
             part.is_open |= area.length() > OPEN * part.area;
         }
         for part in parts {
@@ -226,8 +226,8 @@ impl Hull {
     /// Returns the winding number of all other parts around a corner of part `own`.
     fn winding(&self, own: u32, roots: &[(u32, bool)]) -> i32 {
         let from = self.places[self.faces[own as usize].corners[0] as usize];
-        let others = self.faces.iter().zip(roots);
-        let others = others.filter(|(_, (root, _))| *root != own);
+        let faces = self.faces.iter().zip(roots);
+        let others = faces.filter(|(_, (root, _))| *root != own);
         others
             .map(|(face, (_, is_turned))| {
                 let crossing = crossing(from, self.corners(face));
@@ -281,13 +281,15 @@ impl Findings {
         let edges = hull.edges();
         let (parts, mut roots) = hull.parts(&edges);
         let is_positive = |part: &Part| !part.is_open && part.volume > 0.0;
-        let negative = (0..).zip(&parts);
-        let negative = negative.filter(|(_, part)| !part.is_open && part.volume < 0.0);
-        let negative: Vec<u32> = negative.map(|(i, _)| i).collect();
+        let is_negative = |part: &Part| !part.is_open && part.volume < 0.0;
+        let numbered = (0..).zip(&parts);
+        let negative: Vec<u32> = numbered
+            .filter_map(|(i, part)| is_negative(part).then_some(i))
+            .collect();
         let is_inside_out = !negative.is_empty() && !parts.iter().any(is_positive);
         if !is_inside_out && negative.len() * hull.faces.len() <= MOST_TESTS {
-            let wrong = negative.into_iter();
-            let wrong: BTreeSet<_> = wrong.filter(|&i| hull.winding(i, &roots) <= 0).collect();
+            let is_wrong = |&i: &u32| hull.winding(i, &roots) <= 0;
+            let wrong: BTreeSet<_> = negative.into_iter().filter(is_wrong).collect();
             for (root, is_turned) in &mut roots {
                 *is_turned ^= wrong.contains(root);
             }

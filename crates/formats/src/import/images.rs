@@ -15,12 +15,15 @@ impl<K: Ord, const N: usize> Images<K, N> {
     pub(crate) fn get<P: Clone>(
         &mut self,
         key: K,
-        (filter, place): (ImageFilter, &P),
+        filter: ImageFilter,
+        place: &P,
         read: impl FnOnce() -> Result<(usize, Vec<[f32; N]>), Fault<P>>,
     ) -> Result<Arc<Image<N>>, Fault<P>> {
-        let mut image = match self.0.get(&key) {
-            Some(image) => Arc::clone(image),
-            None => Arc::new(image(read()?, place)?),
+        let mut image = if let Some(known) = self.0.get(&key) {
+            Arc::clone(known)
+        } else {
+            let (width, texels) = read()?;
+            Arc::new(image(width, texels, place)?)
         };
         if filter == ImageFilter::Trilinear && image.copies() == 0 {
             image = Arc::new(Arc::unwrap_or_clone(image).with_copies());
@@ -32,7 +35,8 @@ impl<K: Ord, const N: usize> Images<K, N> {
 
 /// Returns the image of texels in rows of `width`. Errors: there are none.
 pub(crate) fn image<const N: usize, P: Clone>(
-    (width, texels): (usize, Vec<[f32; N]>),
+    width: usize,
+    texels: Vec<[f32; N]>,
     place: &P,
 ) -> Result<Image<N>, Fault<P>> {
     let image = Image::new(width, texels);

@@ -4,10 +4,10 @@ use super::LoadOptions;
 use super::digest::{Content, DigestBuilder};
 use super::reading::Reading;
 use crate::bytes::FileBytes;
-use crate::error::{ErrorKind, Result};
+use crate::error::Result;
 use crate::files::Files;
 use crate::limits::{FURTHER_WARNINGS, MOST_WARNINGS};
-use crate::source::{Fault, Span};
+use crate::source::Span;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
@@ -67,28 +67,6 @@ impl<P> Log<P> {
 
     pub(crate) fn warn(&mut self, place: P, message: impl Into<String>) {
         warn(&mut self.warnings, place, message);
-    }
-
-    pub(super) fn unsupported(
-        &mut self,
-        place: P,
-        feature: &str,
-        substitute: &str,
-    ) -> Result<(), Fault<P>> {
-        if self.lenient {
-            let message = format!("{feature} is not supported: {substitute}");
-            self.substitutes.insert(message.clone());
-            self.warn(place, message);
-            return Ok(());
-        }
-        let message = format!("{feature} is not supported");
-        let fault = Fault::new(ErrorKind::Unsupported, place, message);
-        Err(fault.with_hint(format!("with --lenient, {substitute}")))
-    }
-
-    /// Returns the size of all files on the disk, each counted once. Unit: bytes.
-    pub(crate) fn stored(&self) -> u64 {
-        self.reading.stored()
     }
 
     /// Reads a file and counts it against the limits; [`add`](Self::add) makes it a part of the scene.

@@ -31,7 +31,7 @@ pub use lamp::Lamp;
 pub use log::Warning;
 pub(crate) use log::{Log, warn};
 pub use options::{Crop, LoadOptions};
-pub(crate) use placing::{check_point, mirrored, place_vertices, unit, vector};
+pub(crate) use placing::{check_point, mirrored, opposite, place_vertices, unit, vector};
 pub(crate) use precision::VertexError;
 pub(crate) use space::{Layout, Survey, box_corners};
 pub(crate) use volumes::Content as VolumeContent;
@@ -41,7 +41,6 @@ use crate::files::Files;
 use crate::film::Subject;
 use crate::limits;
 use crate::source::Fault;
-use assembly::Built;
 use bidir::camera::Camera;
 use bidir::driver::Settings;
 use bidir::film::{Aov, FilmError, FilmSettings, Layers};
@@ -203,7 +202,15 @@ impl<D: Document> Context<'_, D> {
         feature: &str,
         substitute: &str,
     ) -> Result<(), Fault<D::Place>> {
-        self.log.unsupported(place, feature, substitute)
+        if self.log.lenient {
+            let message = format!("{feature} is not supported: {substitute}");
+            self.log.substitutes.insert(message.clone());
+            self.warn(place, message);
+            return Ok(());
+        }
+        let message = format!("{feature} is not supported");
+        let fault = Fault::new(ErrorKind::Unsupported, place, message);
+        Err(fault.with_hint(format!("with --lenient, {substitute}")))
     }
 
     /// Builds something that the scene does not use, to check it. Errors in it are reported, but an unsupported
@@ -229,13 +236,13 @@ impl<D: Document> Context<'_, D> {
     /// Refuses more primitives, or vertices of meshes, than the caller allows, or than the size of the
     /// files allows.
     pub(crate) fn check_size(&self, count: u64, place: &D::Place) -> Result<(), Fault<D::Place>> {
-        let most = self.options.most_primitives(self.log.stored());
+        let most = self.options.most_primitives(self.log.reading.stored);
         check(count, most, "primitives or vertices", place)
     }
 
     /// Refuses more shapes than the size of the files allows: a shape that emits is copied for each instance.
     fn check_shapes(&self, count: u64, place: &D::Place) -> Result<(), Fault<D::Place>> {
-        let most = limits::SHAPES.of(self.log.stored());
+        let most = limits::SHAPES.of(self.log.reading.stored);
         check(count, most, "shapes, counted at each place", place)
     }
 }
@@ -266,7 +273,8 @@ pub(crate) fn load<'a, D: Document>(
         layout: Layout::default(),
         log,
     };
-    let built = build(&mut context, gather).map_err(|fault| document.error(fault))?;
+    let built = build(&mut context, gather);
+    let (assembly, scene, view) = built.map_err(|fault| document.error(fault))?;
     let text = |place: &D::Place| document.text(place);
     let log = context.log;
     let names: BTreeSet<_> = document
@@ -275,7 +283,7 @@ pub(crate) fn load<'a, D: Document>(
         .chain(log.files.clone())
         .collect();
     let is_from_disk = |name: &PathBuf| document.files().is_from_disk(name);
-    let film_place = built.film_place.map(|place| {
+    let film_place = assembly.film_place.map(|place| {
         let fault = Fault::new(ErrorKind::Limit, place, String::new());
         document.error(fault).into_place()
     });
@@ -283,18 +291,21 @@ pub(crate) fn load<'a, D: Document>(
     Ok(Loaded {
         name: name.unwrap_or_default(),
         film_place,
-        lamps: lamp::unhittable(&built.scene, &built.lamps, text),
-        scene: built.scene.into(),
-        view: built.view,
-        settings: built.settings,
+        lamps: lamp::unhittable(&scene, &assembly.lamps, text),
+        scene: scene.into(),
+        view,
+        settings: assembly.settings,
         warnings: log.texts(text, |_| true),
         refused: log.texts(text, |message| log.substitutes.contains(message)),
-        summary: built.summary,
+        summary: assembly.summary,
         digest: log.digest.finish(),
         inputs: names.into_iter().filter(is_from_disk).collect(),
         files: log.files,
     })
 }
+
+/// A finished assembly, its scene, and the view of it.
+type Built<P> = (Assembly<P>, Scene, View);
 
 /// Gathers everything in world space and builds the scene. If the scene needs another layout, gathers it again in that.
 fn build<'a, D: Document>(
@@ -304,12 +315,13 @@ fn build<'a, D: Document>(
     let log = context.log.clone();
     let (mut assembly, mut view) = gather(context)?;
     assembly.check_vertices()?;
-    let layout = assembly.layout();
+    let layout = Layout::of(&assembly.survey, &assembly.objects);
     if layout != context.layout {
         drop(assembly);
         context.layout = layout;
         context.log = log;
         (assembly, view) = gather(context)?;
     }
-    assembly.finish(view, context)
+    let scene = assembly.finish(context)?;
+    Ok((assembly, scene, view))
 }

@@ -51,8 +51,8 @@ impl LoadOptions {
         resolution: [u32; 2],
         place: P,
     ) -> Result<PixelRect, Fault<P>> {
-        let crop = self.crop.or(described).unwrap_or(Crop::WHOLE);
-        let crop = crop.pixels(resolution);
+        let wanted = self.crop.or(described).unwrap_or(Crop::WHOLE);
+        let crop = wanted.pixels(resolution);
         if crop.area() > 0 {
             return Ok(crop);
         }

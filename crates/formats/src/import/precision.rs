@@ -65,6 +65,7 @@ impl<P: Clone> VertexErrors<P> {
         longest: None,
     };
 
+    /// Adds the error of a mesh. None: it is negligible.
     pub(crate) fn add(&mut self, place: &P, error: Option<VertexError>) {
         let Some(error) = error else { return };
         self.count += 1;

@@ -10,7 +10,7 @@ use std::path::PathBuf;
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Reading {
     /// The size of all files on the disk, each counted once. Unit: bytes.
-    stored: u64,
+    pub(crate) stored: u64,
     /// The identities of the files.
     files: BTreeSet<PathBuf>,
     /// The size of all repeated readings of files. Unit: bytes.
@@ -30,11 +30,6 @@ impl Reading {
         }
     }
 
-    /// Returns the size of all files on the disk, each counted once. Unit: bytes.
-    pub(crate) fn stored(&self) -> u64 {
-        self.stored
-    }
-
     /// Counts a file of `length` unpacked bytes that has `stored` bytes on the disk. Errors: files are read too often.
     pub(crate) fn file(&mut self, identity: PathBuf, stored: u64, length: u64) -> Result<()> {
         if self.files.insert(identity) {
@@ -42,10 +37,8 @@ impl Reading {
             return Ok(());
         }
         self.again += length;
-        self.check(
-            (self.again, "bytes that are read again"),
-            limits::FILES_AGAIN,
-        )
+        let what = "bytes that are read again";
+        self.check(self.again, what, limits::FILES_AGAIN)
     }
 
     /// Counts an image, and returns it. Errors: all images together are too large for their files.
@@ -54,17 +47,17 @@ impl Reading {
             [image.width, image.height].map(|n| n as u64),
             image.channels as u64,
         );
-        self.check((self.numbers, "numbers of images"), limits::IMAGES)?;
+        self.check(self.numbers, "numbers of images", limits::IMAGES)?;
         Ok(image)
     }
 
     /// Counts the cells of a grid, before they are read. Errors: all grids together are too large for their files.
     pub(crate) fn cells(&mut self, count: u64) -> Result<()> {
         self.cells = self.cells.saturating_add(count);
-        self.check((self.cells, "cells of grids"), limits::VOXELS)
+        self.check(self.cells, "cells of grids", limits::VOXELS)
     }
 
-    fn check(&self, (count, what): (u64, &str), allowance: Allowance) -> Result<()> {
+    fn check(&self, count: u64, what: &str, allowance: Allowance) -> Result<()> {
         let stored = self.stored;
         let most = allowance.of(stored);
         if count <= most {
@@ -90,7 +83,7 @@ mod tests {
         read(most).expect("a file may be read again");
         let error = read(1).expect_err("but not for ever");
         assert_eq!(error.kind(), ErrorKind::Limit);
-        assert_eq!(reading.stored(), 1050);
+        assert_eq!(reading.stored, 1050);
     }
 
     #[test]

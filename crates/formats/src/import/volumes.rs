@@ -61,8 +61,10 @@ impl Volumes {
     pub(super) fn add(
         &mut self,
         shape: usize,
-        (material, content): (MaterialId, Content),
-        (family, space): (usize, Space),
+        material: MaterialId,
+        content: Content,
+        family: usize,
+        space: Space,
     ) {
         let next = self.drafts.len();
         let number = *self

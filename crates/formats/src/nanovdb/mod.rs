@@ -150,12 +150,12 @@ fn grid(described: &Described<'_>, part: &[u8]) -> Result<Found> {
     let view = Bytes(&bytes);
     let place = |at: usize, i: usize| view.f64(at + 8 * i);
     // Rows in the file.
-    let mut matrix = [0.0; 9];
-    for (i, number) in matrix.iter_mut().enumerate() {
+    let mut rows = [0.0; 9];
+    for (i, number) in rows.iter_mut().enumerate() {
         *number = place(384, i)?;
     }
     let translation = DVec3::new(place(528, 0)?, place(528, 1)?, place(528, 2)?);
-    let matrix = DMat3::from_cols_array(&matrix).transpose();
+    let matrix = DMat3::from_cols_array(&rows).transpose();
     let bounds = tree::bounds(view)?;
     Ok(Found::Grid(Grid {
         bounds,
@@ -233,8 +233,7 @@ impl<'b> Bytes<'b> {
 
     /// Returns the offset that is stored at `at`, relative to `origin`, as an offset in the file.
     fn place(self, origin: usize, at: usize) -> Result<usize> {
-        let offset = self.at(at).map(i64::from_le_bytes)?;
-        let offset = usize::try_from(offset).ok();
+        let offset = usize::try_from(i64::from_le_bytes(self.at(at)?)).ok();
         let place = offset.and_then(|offset| origin.checked_add(offset));
         place
             .filter(|&place| place < self.0.len())

@@ -134,8 +134,8 @@ impl Dense {
     }
 
     fn upper(&mut self, bytes: Bytes<'_>, node: usize, first: [i64; 3]) -> Result<()> {
-        self.inner(&UPPER, bytes, (node, first), |dense, child, first| {
-            dense.inner(&LOWER, bytes, (child, first), |dense, leaf, first| {
+        self.inner(&UPPER, bytes, node, first, |dense, child, first| {
+            dense.inner(&LOWER, bytes, child, first, |dense, leaf, first| {
                 dense.leaf(bytes, leaf, first)
             })
         })
@@ -146,7 +146,8 @@ impl Dense {
         &mut self,
         kind: &Inner,
         bytes: Bytes<'_>,
-        (node, first): (usize, [i64; 3]),
+        node: usize,
+        first: [i64; 3],
         take: impl Fn(&mut Self, usize, [i64; 3]) -> Result<()>,
     ) -> Result<()> {
         let Some(range) = self.range(first, kind.bits + kind.child_bits) else {
@@ -161,8 +162,8 @@ impl Dense {
             for y in numbers(1) {
                 for z in numbers(2) {
                     let number = ((x << kind.bits | y) << kind.bits | z) as usize;
-                    let corner = [x, y, z].map(|n| n << kind.child_bits);
-                    let corner = std::array::from_fn(|i| first[i] + corner[i]);
+                    let inside = [x, y, z].map(|n| n << kind.child_bits);
+                    let corner = std::array::from_fn(|i| first[i] + inside[i]);
                     let [mask] = bytes.at(node + kind.children + number / 8)?;
                     let entry = node + kind.table + 8 * number;
                     if mask >> (number % 8) & 1 == 1 {

@@ -85,8 +85,8 @@ impl Parser {
                 .find_map(|(name, &(_, span))| Some((name, span?)));
             if let Some((name, span)) = undefined {
                 let defined = table.iter().filter(|(_, (_, span))| span.is_none());
-                let defined = defined.map(|(name, _)| name.as_str());
-                return Err(known::unknown(span, what, name, defined));
+                let names = defined.map(|(name, _)| name.as_str());
+                return Err(known::unknown(span, what, name, names));
             }
         }
         Ok(())

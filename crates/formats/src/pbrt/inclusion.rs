@@ -99,8 +99,8 @@ impl Parser {
     /// Counts a text that is included repeatedly.
     fn load_again(&mut self, file: FileId, span: Span) -> Result<FileId, Fault> {
         self.counts.again += self.scene.sources.text(file).len() as u64;
-        let again = (self.counts.again, "bytes that are included again");
-        self.check_count(again, limits::TEXTS_AGAIN, span)?;
+        let what = "bytes that are included again";
+        self.check_count(self.counts.again, what, limits::TEXTS_AGAIN, span)?;
         Ok(file)
     }
 
@@ -108,7 +108,8 @@ impl Parser {
     /// repeatedly, expand to any number of items.
     pub(super) fn check_count(
         &self,
-        (count, what): (u64, &str),
+        count: u64,
+        what: &str,
         allowance: Allowance,
         span: Span,
     ) -> Result<(), Fault> {

@@ -37,22 +37,18 @@ pub fn parse_file_from(path: &Path, files: &Files) -> Result<SceneDescription> {
         path.parent()
     };
     let parser = Parser::new(folder.unwrap_or(Path::new("")), files.clone());
-    parse(parser, path, (text, stored))
+    parse(parser, path, text, stored)
 }
 
 /// Parses a scene in memory, whose other files are read from the working directory.
 pub fn parse_text(name: &str, text: &str) -> Result<SceneDescription> {
     let parser = Parser::new(Path::new(""), Files::default());
-    let text = (text.to_owned(), text.len() as u64);
-    parse(parser, Path::new(name), text)
+    let stored = text.len() as u64;
+    parse(parser, Path::new(name), text.to_owned(), stored)
 }
 
 /// Parses a text that has `stored` bytes on the disk.
-fn parse(
-    mut parser: Parser,
-    name: &Path,
-    (text, stored): (String, u64),
-) -> Result<SceneDescription> {
+fn parse(mut parser: Parser, name: &Path, text: String, stored: u64) -> Result<SceneDescription> {
     parser.scene.stored = stored;
     parser.scene.texts.push(name.to_owned());
     let file = parser.scene.sources.add(name, text)?;
@@ -125,8 +121,8 @@ impl Parser {
             return Err(Fault::syntax(token.span, message));
         };
         self.counts.directives += 1;
-        let directives = (self.counts.directives, "directives");
-        self.check_count(directives, limits::DIRECTIVES, token.span)?;
+        let count = self.counts.directives;
+        self.check_count(count, "directives", limits::DIRECTIVES, token.span)?;
         if let Some(hint) = v3::directive(word) {
             return Err(v3::fault(token.span, &format!("`{word}`"), hint));
         }
@@ -148,8 +144,8 @@ impl Parser {
         let list = parse_list(tokens, self.scope.state.color_space)?;
         if let Some(last) = list.last() {
             self.counts.parameters += list.len() as u64;
-            let parameters = (self.counts.parameters, "parameters");
-            self.check_count(parameters, limits::PARAMETERS, last.span)?;
+            let count = self.counts.parameters;
+            self.check_count(count, "parameters", limits::PARAMETERS, last.span)?;
         }
         Ok(list)
     }

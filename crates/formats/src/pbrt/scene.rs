@@ -5,6 +5,7 @@ use super::transform::Transforms;
 use crate::files::Files;
 use crate::import::Warning;
 use crate::source::{SourceMap, Span};
+use bidir::shape::Orientation;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -180,8 +181,8 @@ pub struct ShapeDescription {
     pub entity: Entity,
     /// World space from object space; for a shape of an object, instance space from object space.
     pub transforms: Transforms,
-    /// True if `ReverseOrientation` reversed the normals.
-    pub reverse_orientation: bool,
+    /// The orientation, which `ReverseOrientation` turns.
+    pub orientation: Orientation,
     /// An index into [`SceneDescription::materials`].
     pub material: usize,
     /// The emission. None: the shape does not emit.

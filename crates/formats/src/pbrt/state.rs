@@ -3,6 +3,7 @@
 use super::scene::{AttributeDefaults, ColorSpace, Entity, MediumInterface};
 use super::transform::{Active, Transforms};
 use crate::source::Span;
+use bidir::shape::Orientation;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -12,7 +13,7 @@ pub(super) struct GraphicsState {
     pub(super) transforms: Transforms,
     pub(super) active: Active,
     pub(super) color_space: ColorSpace,
-    pub(super) reverse_orientation: bool,
+    pub(super) orientation: Orientation,
     /// An index into the materials; 0 is the default material.
     pub(super) material: usize,
     pub(super) area_light: Option<Arc<Entity>>,

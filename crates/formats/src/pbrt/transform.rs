@@ -90,10 +90,10 @@ pub(super) fn look_at(eye: DVec3, target: DVec3, up: DVec3) -> Result<DAffine3, 
         .ok_or("the eye must not be at the target")?;
     let parallel = "the up vector must not be zero or parallel to the view";
     let up = up.try_normalize().ok_or(parallel)?;
-    let right = up.cross(forward);
+    let across = up.cross(forward);
     // The vectors have unit length: 1e-9 is far below any intended angle.
-    let right = if right.length() > 1e-9 {
-        right.normalize()
+    let right = if across.length() > 1e-9 {
+        across.normalize()
     } else {
         return Err(parallel);
     };

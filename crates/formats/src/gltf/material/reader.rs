@@ -71,7 +71,7 @@ impl Reader<'_, '_> {
             place: &self.place,
             baked: self.baked,
         };
-        self.textures.number(self.context, lookup, (part, change))
+        self.textures.number(self.context, lookup, part, change)
     }
 
     /// Builds the material, with its normal map if it has one.
@@ -129,8 +129,8 @@ impl Reader<'_, '_> {
         let color = specular.specular_color_factor.unwrap_or([1.0; 3]);
         material.specular_color = self.color(color, specular.specular_color_texture.as_ref())?;
         if let Some(anisotropy) = &extensions.anisotropy {
-            let texture = anisotropy.anisotropy_texture.as_ref();
-            let texture = texture.map(|info| self.image(info, Encoding::Linear));
+            let info = anisotropy.anisotropy_texture.as_ref();
+            let texture = info.map(|info| self.image(info, Encoding::Linear));
             let (sin, cos) = sin_cos(anisotropy.anisotropy_rotation);
             material.anisotropy = Anisotropy {
                 strength: anisotropy.anisotropy_strength.clamp(0.0, 1.0),
@@ -248,8 +248,8 @@ impl Reader<'_, '_> {
     }
 
     pub(super) fn emission(&mut self) -> Result<Option<Emission>, GltfFault> {
-        let strength = &self.described.extensions.emissive_strength;
-        let strength = strength.emissive_strength.unwrap_or(1.0);
+        let given = &self.described.extensions.emissive_strength;
+        let strength = given.emissive_strength.unwrap_or(1.0);
         let factor = self.described.emissive_factor.unwrap_or_default();
         let radiance = factor.map(|channel| channel * strength);
         let is_radiance = |channel: &f32| channel.is_finite() && *channel >= 0.0;
@@ -260,9 +260,9 @@ impl Reader<'_, '_> {
         if radiance.iter().all(|&channel| channel <= 0.0) {
             return Ok(None);
         }
-        let pattern = self.described.emissive_texture.as_ref();
-        let pattern = pattern.map(|info| self.image(info, Encoding::Srgb));
-        let pattern = pattern.transpose()?;
+        let info = self.described.emissive_texture.as_ref();
+        let image = info.map(|info| self.image(info, Encoding::Srgb));
+        let pattern = image.transpose()?;
         // Lamps cost time even if they are dark, so a black image makes no lamp.
         if pattern.as_ref().is_some_and(is_black) {
             return Ok(None);

@@ -66,9 +66,9 @@ pub(in crate::gltf) fn places(
         rotations.as_ref().map(Vec::len),
         scales.as_ref().map(Vec::len),
     ];
-    let mut counts = counts.into_iter().flatten();
-    let count = counts.next().unwrap_or(1);
-    if counts.any(|other| other != count) {
+    let mut given = counts.into_iter().flatten();
+    let count = given.next().unwrap_or(1);
+    if given.any(|other| other != count) {
         return Err(place.scene("the attributes have different counts"));
     }
     let at = |i: usize| {

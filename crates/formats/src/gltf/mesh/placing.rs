@@ -4,71 +4,63 @@ use super::{Surface, UvMap};
 use crate::gltf::place::{GltfFault, Place};
 use crate::import::{Survey, mirrored, place_vertices, unit, vector};
 use bidir::shape::{Mesh, Orientation};
-use glam::{DAffine3, DVec3};
+use glam::DAffine3;
 
 impl Surface {
     /// Returns the mesh transformed by `world_from_mesh`, and adds it to `survey`. Errors: it extends too far.
     pub(in crate::gltf) fn place(
         &self,
         world_from_mesh: &DAffine3,
-        (uv, survey): (&UvMap, &mut Survey),
+        uv: &UvMap,
+        survey: &mut Survey,
         place: &Place,
     ) -> Result<Mesh, GltfFault> {
-        let normal_matrix = normal_matrix(world_from_mesh);
-        let positions = self.positions.iter();
-        let positions = positions.map(|&p| world_from_mesh.transform_point3(vector(p)));
-        let normals = self.normals.iter().map(|&n| normal_matrix * vector(n));
-        let tangents = self.tangents.iter();
-        let tangents = tangents.map(|&t| world_from_mesh.transform_vector3(vector(t)));
-        let orientation = mirrored(Orientation::Natural, world_from_mesh);
-        let vertices = (positions, normals, tangents);
-        self.mesh(vertices, (orientation, uv, survey), place)
+        Ok(Mesh {
+            orientation: mirrored(Orientation::Natural, world_from_mesh),
+            ..self.mesh(|_| world_from_mesh, uv, survey, place)?
+        })
     }
 
     /// Returns the mesh transformed by its joints; `joints` are their transforms from the mesh to the world.
     pub(in crate::gltf) fn skinned(
         &self,
         joints: &[DAffine3],
-        (uv, survey): (&UvMap, &mut Survey),
+        uv: &UvMap,
+        survey: &mut Survey,
         place: &Place,
     ) -> Result<Mesh, GltfFault> {
-        let mut maps = Vec::with_capacity(self.joints.len());
-        for vertex in &self.joints {
-            maps.push(blend(vertex, joints).ok_or_else(|| {
-                place.scene(format!(
-                    "a vertex names a joint that its skin does not have: the skin has {}",
-                    joints.len()
-                ))
-            })?);
-        }
-        let positions = self.positions.iter().zip(&maps);
-        let positions = positions.map(|(&p, map)| map.transform_point3(vector(p)));
-        let normals = self.normals.iter().zip(&maps);
-        let normals = normals.map(|(&n, map)| normal_matrix(map) * vector(n));
-        let tangents = self.tangents.iter().zip(&maps);
-        let tangents = tangents.map(|(&t, map)| map.transform_vector3(vector(t)));
-        let vertices = (positions, normals, tangents);
-        self.mesh(vertices, (Orientation::Natural, uv, survey), place)
+        let missing = || {
+            let count = joints.len();
+            place.scene(format!(
+                "a vertex names a joint that its skin does not have: the skin has {count}"
+            ))
+        };
+        let vertices = self.joints.iter();
+        let blends = vertices.map(|vertex| blend(vertex, joints).ok_or_else(missing));
+        let maps = blends.collect::<Result<Vec<_>, _>>()?;
+        self.mesh(|vertex| &maps[vertex], uv, survey, place)
     }
 
-    fn mesh(
+    /// Returns the mesh transformed by the map of each vertex.
+    fn mesh<'m>(
         &self,
-        (positions, normals, tangents): (
-            impl Iterator<Item = DVec3>,
-            impl Iterator<Item = DVec3>,
-            impl Iterator<Item = DVec3>,
-        ),
-        (orientation, uv, survey): (Orientation, &UvMap, &mut Survey),
+        map: impl Fn(usize) -> &'m DAffine3,
+        uv: &UvMap,
+        survey: &mut Survey,
         place: &Place,
     ) -> Result<Mesh, GltfFault> {
+        let point = |(i, &p): (usize, &[f32; 3])| map(i).transform_point3(vector(p));
+        let normal = |(i, &n): (usize, &[f32; 3])| unit(normal_matrix(map(i)) * vector(n));
+        let tangent = |(i, &t): (usize, &[f32; 3])| unit(map(i).transform_vector3(vector(t)));
+        let positions = self.positions.iter().enumerate().map(point);
         let uvs = self.uvs[uv.set.min(1)].iter();
         Ok(Mesh {
             positions: place_vertices(positions, survey, place)?,
-            normals: normals.map(unit).collect(),
-            tangents: tangents.map(unit).collect(),
+            normals: self.normals.iter().enumerate().map(normal).collect(),
+            tangents: self.tangents.iter().enumerate().map(tangent).collect(),
             uvs: uvs.map(|&at| uv.apply(at)).collect(),
             triangles: self.triangles.clone(),
-            orientation,
+            ..Mesh::default()
         })
     }
 }

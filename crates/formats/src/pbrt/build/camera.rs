@@ -103,11 +103,11 @@ fn exposure_time(reader: &mut Reader<'_, '_>) -> Result<f32, Fault> {
 
 impl Screen {
     fn read(reader: &mut Reader<'_, '_>) -> Result<Self, Fault> {
-        let window = reader.floats(ParameterType::Float, "screenwindow");
+        let edges = reader.floats(ParameterType::Float, "screenwindow");
         let span = reader.span();
         let wrong = |_| Fault::scene(span, "`screenwindow` needs left, right, bottom and top");
-        let window = window
-            .map(|window| window.try_into().map_err(wrong))
+        let window = edges
+            .map(|edges| edges.try_into().map_err(wrong))
             .transpose()?;
         let aspect = reader.float_within("frameaspectratio", 0.0, [0.0, f32::MAX])?;
         let near = [f32::MIN_POSITIVE, f32::MAX];

@@ -120,8 +120,8 @@ pub(super) fn rgb(parameter: &Parameter, purpose: Purpose) -> Result<Rgb, Fault>
         let message = format!("the colour `{}` has a negative component", parameter.name);
         return Err(Fault::scene(parameter.value_span, message));
     }
-    let value = to_rec709(parameter.color_space, value, purpose);
-    Ok(value.map(|channel| channel.clamp(0.0, purpose.most())))
+    let rec709 = to_rec709(parameter.color_space, value, purpose);
+    Ok(rec709.map(|channel| channel.clamp(0.0, purpose.most())))
 }
 
 /// Converts a colour from another space to linear Rec. 709. A white reflectance is 1 in all spaces; white

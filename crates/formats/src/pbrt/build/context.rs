@@ -85,13 +85,8 @@ impl Context<'_> {
         spectral::parse(&text).map_err(refuse)
     }
 
-    /// Reads the bytes of a NanoVDB file, which `span` names.
-    pub(super) fn read_grids(&mut self, path: &Path, span: Span) -> Result<Vec<u8>, Fault> {
-        self.read(path, limits::LARGEST_GRID, Content::Grid, span)
-    }
-
-    /// Reads a file of the scene.
-    fn read(
+    /// Reads a file of the scene, which `span` names.
+    pub(super) fn read(
         &mut self,
         path: &Path,
         limit: u64,

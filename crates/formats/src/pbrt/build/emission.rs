@@ -39,30 +39,30 @@ pub(super) struct AreaEmission {
 impl AreaEmission {
     pub(super) fn read(context: &mut Context<'_>, entity: &Entity) -> Result<Self, Fault> {
         let mut reader = Reader::new(context, entity);
-        let radiance = color::read_light(&mut reader, "L")?;
+        let light = color::read_light(&mut reader, "L")?;
         let scale = reader.float_within("scale", 1.0, [0.0, f32::MAX])?;
         let power = reader.optional_float("power")?.filter(|&power| power > 0.0);
-        let place = reader.find(ParameterType::Float, "power");
-        let place = place.map_or(entity.span, |parameter| parameter.value_span);
+        let parameter = reader.find(ParameterType::Float, "power");
+        let place = parameter.map_or(entity.span, |parameter| parameter.value_span);
         let sides = if reader.bool("twosided", false)? {
             EmissionSides::Both
         } else {
             EmissionSides::Front
         };
         let pattern = pattern(&mut reader)?;
-        if radiance.is_some() && pattern.is_some() {
+        if light.is_some() && pattern.is_some() {
             return Err(reader.fault("an area light has `L` or `filename`, not both"));
         }
         let group = group::read(&mut reader)?;
         reader.finish()?;
-        let radiance = radiance.unwrap_or([1.0; 3].into());
-        // Power per area does not depend on the unit, nor does power per squared distance.
-        let power = power.map(|power| (context.layout.space.intensity(power), place));
         Ok(Self {
-            radiance: radiance.map(|channel| channel * scale),
+            radiance: light
+                .unwrap_or([1.0; 3].into())
+                .map(|channel| channel * scale),
             pattern,
             sides,
-            power,
+            // Power per area does not depend on the unit, nor does power per squared distance.
+            power: power.map(|power| (context.layout.space.intensity(power), place)),
             group,
             span: entity.span,
         })
@@ -147,8 +147,8 @@ fn pattern(reader: &mut Reader<'_, '_>) -> Result<Option<(ColorTexture, f32)>, F
 
 /// Returns the mesh of some of the triangles, with three vertices for each.
 fn part(mesh: &Mesh, triangles: Range<usize>) -> Mesh {
-    let corners = mesh.triangles[triangles.clone()].as_flattened();
-    let corners = corners.iter().map(|&corner| corner as usize);
+    let flat = mesh.triangles[triangles.clone()].as_flattened();
+    let corners = flat.iter().map(|&corner| corner as usize);
     let first = |i: u32| [3 * i, 3 * i + 1, 3 * i + 2];
     Mesh {
         positions: corners.clone().map(|i| mesh.positions[i]).collect(),

@@ -80,7 +80,7 @@ impl ImageSettings {
     ) -> Result<ImageMap<N>, Fault> {
         let (path, span, encoding) = (&self.path, self.span, self.encoding);
         let key = (path.clone(), format!("{encoding:?}"));
-        let image = images.get(key, (self.filter, &span), || {
+        let image = images.get(key, self.filter, &span, || {
             let data = context.read_image(path, encoding, span)?;
             let mut texels = texels(&data);
             let count = import::replace_invalid(&mut texels, f32::is_finite);

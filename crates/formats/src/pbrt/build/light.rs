@@ -167,7 +167,7 @@ pub(super) fn radiance_image(
         let message = format!("{count} values of the image are not radiances and count as 0");
         context.warn(span, message);
     }
-    import::image((data.width, texels), &span)
+    import::image(data.width, texels, &span)
 }
 
 /// Computes the illuminance of an environment as the format defines it: (2π/N) Σ luminance · cosθ over the

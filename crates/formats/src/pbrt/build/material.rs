@@ -210,15 +210,8 @@ impl<'a> Materials<'a> {
 impl Built {
     /// Returns the material with its coverage times `part`.
     fn covering(self, part: FloatTexture) -> Self {
-        let coverage = match self.coverage {
-            None => part,
-            Some(texture) => FloatTexture::Scale(Arc::new(Scale {
-                texture,
-                factor: part,
-            })),
-        };
         Self {
-            coverage: Some(coverage),
+            coverage: all_of(self.coverage, Some(part)),
             ..self
         }
     }
@@ -291,10 +284,23 @@ fn in_space(height: FloatTexture, space: &RenderSpace) -> FloatTexture {
     if *space == RenderSpace::WORLD {
         return height;
     }
-    FloatTexture::Scale(Arc::new(Scale {
-        texture: height,
-        factor: FloatTexture::Constant((1.0 / space.unit) as f32),
-    }))
+    scaled(height, FloatTexture::Constant((1.0 / space.unit) as f32))
+}
+
+/// Returns the product of two textures.
+fn scaled(texture: FloatTexture, factor: FloatTexture) -> FloatTexture {
+    FloatTexture::Scale(Arc::new(Scale { texture, factor }))
+}
+
+/// Returns the product of two coverages. None: opaque.
+pub(super) fn all_of(
+    first: Option<FloatTexture>,
+    second: Option<FloatTexture>,
+) -> Option<FloatTexture> {
+    match (first, second) {
+        (Some(texture), Some(factor)) => Some(scaled(texture, factor)),
+        (first, second) => first.or(second),
+    }
 }
 
 /// The default index of refraction.

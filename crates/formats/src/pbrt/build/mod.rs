@@ -35,11 +35,11 @@ use crate::source::{Fault, Span};
 use bidir::medium::MediumId;
 use bidir::scene::{Emission, MaterialId, Volume};
 use bidir::shape::Shape;
-use bidir::texture::{FloatTexture, Scale};
+use bidir::texture::FloatTexture;
 use context::Context;
 use emission::AreaEmission;
 use glam::DVec3;
-use material::{Built, Materials};
+use material::{Built, Materials, all_of};
 use media::Media;
 use shape::Geometry;
 use std::collections::BTreeSet;
@@ -103,8 +103,8 @@ impl<'a> Builder<'a> {
         let film = film::build(context, &lens)?;
         let settings = settings::build(context, &film)?;
         let camera = lens.camera(film.settings.resolution, film.own_resolution)?;
-        let view = Context::view(camera, film.settings)?;
-        let view = view.with_filtering(settings::texture_filtering(description)?);
+        let filtering = settings::texture_filtering(description)?;
+        let view = Context::view(camera, film.settings)?.with_filtering(filtering);
         let mut builder = Self {
             assembly: Assembly::new(context, settings, Some(lens.eye)),
             textures: Textures::new(description),
@@ -154,8 +154,8 @@ impl<'a> Builder<'a> {
             };
             let builder = &mut self.assembly.builder;
             let add = |built: Built| {
-                let content = built.content.filter(|_| is_used);
-                let content = content.map(|recipe| Ok(builder.medium(recipe()?)));
+                let recipe = built.content.filter(|_| is_used);
+                let content = recipe.map(|recipe| Ok(builder.medium(recipe()?)));
                 Ok(Surface {
                     id: builder.material(built.material),
                     coverage: built.coverage,
@@ -200,7 +200,10 @@ impl<'a> Builder<'a> {
         let part = surface.and_then(|surface| surface.coverage.clone());
         let coverage = all_of(alpha, part);
         let filling = surface.and_then(|surface| surface.filling);
-        let content = filling.map(|filling| (content(filling, media.inside), shape.material));
+        let content = filling.map(|(priority, index)| {
+            let content = content(priority, index, media.inside);
+            (content, shape.material)
+        });
         let skin = Skin {
             material: surface.map(|surface| surface.id),
             coverage: coverage.as_ref(),
@@ -208,10 +211,10 @@ impl<'a> Builder<'a> {
             content,
         };
         let light = shape.area_light.as_ref().filter(|_| surface.is_some());
-        let emission = light
+        let shared = light
             .map(|light| self.emission(context, light))
             .transpose()?;
-        let emission = emission.as_deref();
+        let emission = shared.as_deref();
         if let Some(emission) = emission {
             emission.warn_of_parts(context, &geometry);
         }
@@ -224,7 +227,7 @@ impl<'a> Builder<'a> {
         };
         self.assembly.count(context, size, &span)?;
         let error = geometry.vertex_error(&shape.transforms.start.matrix3);
-        self.assembly.add_error(&span, error);
+        self.assembly.vertex_errors.add(&span, error);
         match destination {
             Destination::World(places) => {
                 for place in places {
@@ -296,7 +299,7 @@ impl<'a> Builder<'a> {
 }
 
 /// Returns the contents of volumes with this priority, index of refraction and medium.
-fn content((priority, index): (i32, f32), medium: MediumId) -> VolumeContent {
+fn content(priority: i32, index: f32, medium: MediumId) -> VolumeContent {
     VolumeContent {
         volume: Volume {
             index,
@@ -305,16 +308,6 @@ fn content((priority, index): (i32, f32), medium: MediumId) -> VolumeContent {
         },
         thin: None,
         warning: ENCLOSES_NOTHING,
-    }
-}
-
-/// Returns the product of two coverages. None: opaque.
-fn all_of(first: Option<FloatTexture>, second: Option<FloatTexture>) -> Option<FloatTexture> {
-    match (first, second) {
-        (Some(texture), Some(factor)) => {
-            Some(FloatTexture::Scale(Arc::new(Scale { texture, factor })))
-        }
-        (first, second) => first.or(second),
     }
 }
 

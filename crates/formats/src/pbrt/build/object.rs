@@ -37,8 +37,8 @@ impl Builder<'_> {
         object: &ObjectDescription,
         instances: &[&InstanceDescription],
     ) -> Result<(), Fault> {
-        let places = instances.iter();
-        let places: Vec<DAffine3> = places.map(|it| context.place(&it.transforms)).collect();
+        let place = |it: &&InstanceDescription| context.place(&it.transforms);
+        let places: Vec<DAffine3> = instances.iter().map(place).collect();
         let mut group = Group::new(&places);
         for shape in &object.shapes {
             if let Some(light) = &shape.area_light {

@@ -68,20 +68,22 @@ impl Geometry {
         Ok(Some((geometry, alpha)))
     }
 
+    /// Returns the mesh. None: the shape is a quadric.
+    fn mesh(&self) -> Option<&PlyMesh> {
+        match self {
+            Self::Mesh(mesh) => Some(mesh),
+            Self::Sphere(..) | Self::Disk(..) | Self::Cylinder(..) => None,
+        }
+    }
+
     /// Returns the number of primitives.
     pub(super) fn primitives(&self) -> u64 {
-        match self {
-            Self::Mesh(mesh) => mesh.triangles.len() as u64,
-            Self::Sphere(..) | Self::Disk(..) | Self::Cylinder(..) => 1,
-        }
+        self.mesh().map_or(1, |mesh| mesh.triangles.len() as u64)
     }
 
     /// Returns the number of stored vertices.
     pub(super) fn vertices(&self) -> u64 {
-        match self {
-            Self::Mesh(mesh) => mesh.positions.len() as u64,
-            Self::Sphere(..) | Self::Disk(..) | Self::Cylinder(..) => 0,
-        }
+        self.mesh().map_or(0, |mesh| mesh.positions.len() as u64)
     }
 
     /// Returns the lowest and highest corner of a quadric's bounding box. None: the shape is a mesh.
@@ -97,10 +99,7 @@ impl Geometry {
 
     /// Returns the rounding error of the file's vertices, for a shape that `linear` maps to the world.
     pub(super) fn vertex_error(&self, linear: &DMat3) -> Option<VertexError> {
-        match self {
-            Self::Mesh(mesh) => VertexError::of(&mesh.positions, linear),
-            Self::Sphere(..) | Self::Disk(..) | Self::Cylinder(..) => None,
-        }
+        VertexError::of(&self.mesh()?.positions, linear)
     }
 
     /// Returns the shape mapped by `world_from_local`, and adds it to `survey`. A reflection does not change the
@@ -114,7 +113,7 @@ impl Geometry {
     ) -> Result<Shape, Fault> {
         let span = described.entity.span;
         let affine = world_from_local.as_affine3a();
-        let orientation = orientation(described);
+        let orientation = described.orientation;
         let shape = match self {
             Self::Sphere(radius, limits) => {
                 Shape::Sphere(Sphere::partial(affine, *radius, *limits, orientation))
@@ -126,10 +125,10 @@ impl Geometry {
                 Shape::Disk(Disk::new(affine, *height, *radii, *phi_max, orientation))
             }
             Self::Mesh(mesh) => {
-                let vertices = mesh.positions.iter();
-                let vertices = vertices.map(|&p| world_from_local.transform_point3(vector(p)));
-                let positions = import::place_vertices(vertices, survey, &span)?;
-                let mesh = with_vertices(mesh, positions, (world_from_local, orientation));
+                let place = |&p| world_from_local.transform_point3(vector(p));
+                let placed = mesh.positions.iter().map(place);
+                let positions = import::place_vertices(placed, survey, &span)?;
+                let mesh = with_vertices(mesh, positions, world_from_local, orientation);
                 return Ok(Shape::Mesh(mesh));
             }
         };
@@ -148,7 +147,8 @@ impl Geometry {
 fn with_vertices(
     mesh: &PlyMesh,
     positions: Vec<Vec3>,
-    (world_from_local, orientation): (&DAffine3, Orientation),
+    world_from_local: &DAffine3,
+    orientation: Orientation,
 ) -> Mesh {
     let normal_matrix = world_from_local.matrix3.inverse().transpose();
     let sign = f64::from(orientation.sign());
@@ -160,15 +160,6 @@ fn with_vertices(
         triangles: mesh.triangles.clone(),
         orientation: import::mirrored(orientation, world_from_local),
         ..Mesh::default()
-    }
-}
-
-/// Returns the orientation in the file, which does not depend on the shape's transformation.
-fn orientation(shape: &ShapeDescription) -> Orientation {
-    if shape.reverse_orientation {
-        Orientation::Reversed
-    } else {
-        Orientation::Natural
     }
 }
 

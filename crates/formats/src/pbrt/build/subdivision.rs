@@ -129,8 +129,8 @@ impl ControlMesh {
 
     /// Returns the normal of the limit surface, by two tangents from the ring \[Biermann00\].
     fn normal(&self, v: usize, ring: &Ring) -> DVec3 {
-        let points = ring.neighbours.iter().map(|&v| self.points[v as usize]);
-        let points: Vec<_> = points.collect();
+        let point = |&v: &u32| self.points[v as usize];
+        let points: Vec<_> = ring.neighbours.iter().map(point).collect();
         let [along, across] = if ring.is_border {
             border_tangents(self.points[v], &points)
         } else {
@@ -155,8 +155,8 @@ fn border_tangents(v: DVec3, ring: &[DVec3]) -> [DVec3; 2] {
         [a, b, c, d] => (*b + *c) * 2.0 - *a - *d - v * 2.0,
         _ => {
             let step = PI / (ring.len() - 1) as f64;
-            let inner = (1..ring.len() - 1).map(|j| ring[j] * libm::sin(step * j as f64));
-            let inner: DVec3 = inner.sum();
+            let terms = (1..ring.len() - 1).map(|j| ring[j] * libm::sin(step * j as f64));
+            let inner: DVec3 = terms.sum();
             inner * (2.0 - 2.0 * libm::cos(step)) - (*first + *last) * libm::sin(step)
         }
     };

@@ -11,6 +11,7 @@ use super::scene::{CameraDescription, ColorSpace, FilmDescription, OptionDescrip
 use super::state::Opener;
 use super::transform::{Active, Transforms};
 use crate::error::ErrorKind;
+use crate::import::opposite;
 use crate::limits::{MOST_DEFAULT_VALUES, MOST_DEFAULTS};
 use crate::source::{Fault, Span};
 use std::sync::Arc;
@@ -27,9 +28,14 @@ pub(super) fn apply(parser: &mut Parser, tokens: &mut Tokens<'_>, word: &str, sp
             world_begin(parser);
             Ok(())
         }
-        "AttributeBegin" | "AttributeEnd" | "TransformBegin" | "TransformEnd" => {
-            block(parser, word, span)
+        "AttributeBegin" => parser.open_block(Opener::Attribute, span),
+        "AttributeEnd" => parser.close_block(Opener::Attribute, span),
+        "TransformBegin" => {
+            let message = "`TransformBegin` saves the whole state: write `AttributeBegin`";
+            parser.warn(span, message);
+            parser.open_block(Opener::Transform, span)
         }
+        "TransformEnd" => parser.close_block(Opener::Transform, span),
         "ObjectBegin" | "ObjectEnd" | "ObjectInstance" => world::object(parser, tokens, word, span),
         "Camera" | "Film" | "Sampler" | "Integrator" | "Accelerator" | "PixelFilter" => {
             setting(parser, tokens, word)
@@ -38,7 +44,8 @@ pub(super) fn apply(parser: &mut Parser, tokens: &mut Tokens<'_>, word: &str, sp
         "ColorSpace" => color_space(parser, tokens),
         "Attribute" => attribute(parser, tokens),
         "ReverseOrientation" => {
-            parser.scope.state.reverse_orientation ^= true;
+            let state = &mut parser.scope.state;
+            state.orientation = opposite(state.orientation);
             Ok(())
         }
         "Material" | "MakeNamedMaterial" | "NamedMaterial" => world::material(parser, tokens, word),
@@ -77,20 +84,6 @@ fn world_begin(parser: &mut Parser) {
     scope.state.active = Active::All;
     scope.coordinate_systems.insert("world".into(), world);
     parser.in_world = true;
-}
-
-fn block(parser: &mut Parser, word: &str, span: Span) -> Done {
-    match word {
-        "AttributeBegin" => parser.open_block(Opener::Attribute, span)?,
-        "AttributeEnd" => parser.close_block(Opener::Attribute, span)?,
-        "TransformBegin" => {
-            let message = "`TransformBegin` saves the whole state: write `AttributeBegin`";
-            parser.warn(span, message);
-            parser.open_block(Opener::Transform, span)?;
-        }
-        _ => parser.close_block(Opener::Transform, span)?,
-    }
-    Ok(())
 }
 
 fn setting(parser: &mut Parser, tokens: &mut Tokens<'_>, word: &str) -> Done {

@@ -160,7 +160,7 @@ pub(super) fn shape(parser: &mut Parser, tokens: &mut Tokens<'_>) -> Done {
     let shape = ShapeDescription {
         entity,
         transforms,
-        reverse_orientation: state.reverse_orientation,
+        orientation: state.orientation,
         material: state.material,
         area_light: state.area_light.clone(),
         medium: state.medium.clone(),

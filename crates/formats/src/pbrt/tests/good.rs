@@ -4,6 +4,7 @@ use crate::cases;
 use crate::pbrt::scene::{Entity, MaterialDescription, MediumReference};
 use crate::pbrt::transform::Transforms;
 use crate::pbrt::{SceneDescription, parse_file, parse_text};
+use bidir::shape::Orientation;
 use expect_test::expect_file;
 use flate2::{Compression, write::GzEncoder};
 use glam::DVec3;
@@ -71,10 +72,9 @@ fn meaning(scene: &SceneDescription) -> String {
         let material = material(&scene.materials[shape.material]);
         let side = |medium: &Option<MediumReference>| medium.as_ref().map(|it| it.name.to_string());
         let media = [side(&shape.medium.inside), side(&shape.medium.outside)];
-        let reversed = if shape.reverse_orientation {
-            ", reversed"
-        } else {
-            ""
+        let reversed = match shape.orientation {
+            Orientation::Natural => "",
+            Orientation::Reversed => ", reversed",
         };
         let light = shape
             .area_light

@@ -63,8 +63,7 @@ impl Cloud {
         let at = |i: usize| {
             let cell = [i % nx, i / nx % ny, i / (nx * ny)];
             let part = |axis: usize| (cell[axis] as f32 + 0.5) / size[axis] as f32;
-            let part = Vec3::from_array(std::array::from_fn(part));
-            self.low + (self.high - self.low) * part
+            self.low + (self.high - self.low) * Vec3::from_array(std::array::from_fn(part))
         };
         let cells = (0..nx * ny * nz).into_par_iter();
         let values = cells.map(|i| [self.density_at(at(i))]).collect();

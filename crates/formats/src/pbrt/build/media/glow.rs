@@ -32,28 +32,28 @@ pub(super) fn even(reader: &mut Reader<'_, '_>) -> Result<Option<Glow>, Fault> {
 
 /// Reads L_e of a `uniformgrid`: a colour or temperatures, times a factor for each cell. None: it does not emit.
 pub(super) fn of_cells(reader: &mut Reader<'_, '_>, cells: Cells) -> Result<Option<Glow>, Fault> {
-    let radiance = color::read_light(reader, "Le")?;
-    let factors = reader.find(ParameterType::Float, "Lescale");
+    let light = color::read_light(reader, "Le")?;
+    let scale = reader.find(ParameterType::Float, "Lescale");
     let temperatures = temperatures(reader, cells)?;
-    let factor = match factors {
-        Some(factors) => Some(numbers(factors, cells.size, 1)?),
+    let factors = match scale {
+        Some(scale) => Some(numbers(scale, cells.size, 1)?),
         None => None,
     };
-    let factor = |i: usize| factor.map_or(1.0, |factor| factor[i]);
-    let radiance: Vec<Rgb> = match (radiance, temperatures) {
+    let factor = |i: usize| factors.map_or(1.0, |factors| factors[i]);
+    let radiance: Vec<Rgb> = match (light, temperatures) {
         (None, None) => return Ok(None),
         (Some(_), Some(_)) => {
             return Err(reader.fault("the medium has both `Le` and `temperature`"));
         }
-        (Some(radiance), None) if factors.is_none() => {
-            let radiance = scaled_light(reader.span(), radiance, 1.0)?;
+        (Some(light), None) if scale.is_none() => {
+            let radiance = scaled_light(reader.span(), light, 1.0)?;
             return Ok(Some(Glow::Even(radiance)));
         }
-        (Some(radiance), None) => vec![radiance.color(); cells.count()],
+        (Some(light), None) => vec![light.color(); cells.count()],
         (None, Some(radiance)) => radiance,
     };
-    let values = radiance.iter().enumerate();
-    let values = values.map(|(i, &radiance)| bright(reader, scaled(radiance, factor(i))));
+    let numbered = radiance.iter().enumerate();
+    let values = numbered.map(|(i, &radiance)| bright(reader, scaled(radiance, factor(i))));
     grid(reader, values.collect::<Result<_, _>>()?, cells)
 }
 
@@ -64,9 +64,9 @@ pub(super) fn of_colors(reader: &mut Reader<'_, '_>, cells: Cells) -> Result<Opt
     let Some(parameter) = reader.find(ParameterType::Rgb, "Le") else {
         return Ok(None);
     };
-    let values = numbers(parameter, cells.size, 3)?.as_chunks::<3>().0.iter();
-    let values = values.map(|&rgb| {
-        let rgb = to_rec709(parameter.color_space, rgb, Purpose::Illuminant);
+    let colors = numbers(parameter, cells.size, 3)?.as_chunks::<3>().0.iter();
+    let values = colors.map(|&color| {
+        let rgb = to_rec709(parameter.color_space, color, Purpose::Illuminant);
         bright(reader, scaled(rgb.map(|channel| channel.max(0.0)), scale))
     });
     grid(reader, values.collect::<Result<_, _>>()?, cells)
@@ -105,9 +105,9 @@ impl Heat {
     /// Returns L_e of cells with these temperatures; `span` is the place of errors.
     pub(super) fn glow(&self, span: Span, values: &[f32], cells: Cells) -> Result<Glow, Fault> {
         let to_kelvin = |value| (value - self.offset) * self.scale;
-        let values = black_bodies(span, values, to_kelvin)?.into_iter();
-        let values = values.map(|radiance| check_emission(span, scaled(radiance, self.factor)));
-        build(span, values.collect::<Result<_, _>>()?, cells).map(Glow::Grid)
+        let bodies = black_bodies(span, values, to_kelvin)?.into_iter();
+        let glows = bodies.map(|radiance| check_emission(span, scaled(radiance, self.factor)));
+        build(span, glows.collect::<Result<_, _>>()?, cells).map(Glow::Grid)
     }
 }
 

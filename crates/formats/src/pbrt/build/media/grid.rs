@@ -2,7 +2,7 @@
 
 use super::super::color::to_rec709;
 use super::super::reader::Reader;
-use super::{color, glow, own_coefficients, phase, scale, scaled};
+use super::{TOO_DENSE, color, glow, own_coefficients, phase, scale, scaled};
 use crate::error::ErrorKind;
 use crate::import::{box_corners, check_point};
 use crate::limits::LONGEST_GRID;
@@ -28,8 +28,8 @@ pub(super) fn uniform(
     let Some(density) = reader.find(ParameterType::Float, "density") else {
         return Err(reader.fault("the medium has no `density`"));
     };
-    let values = numbers(density, cells.size, 1)?;
-    let values = values.iter().map(|&value| [value]).collect();
+    let densities = numbers(density, cells.size, 1)?.iter();
+    let values = densities.map(|&value| [value]).collect();
     let grid = build(density.value_span, values, cells)?;
     let medium = Medium::of_density(coefficients, grid, phase);
     glow::add(
@@ -68,10 +68,10 @@ pub(super) fn rgb(reader: &mut Reader<'_, '_>, transforms: &Transforms) -> Resul
     };
     let [absorption, scattering] = [read(absorption)?, read(scattering)?];
     let sum = |(a, s): (&[f32; 3], &[f32; 3])| std::array::from_fn(|i| a[i] + s[i]);
-    let extinction = absorption.iter().zip(&scattering).map(sum).collect();
-    let extinction = build(any.value_span, extinction, cells)?;
-    let scattering = build(any.value_span, scattering, cells)?;
-    let medium = Medium::chromatic(extinction, scattering, phase);
+    let sums = absorption.iter().zip(&scattering).map(sum).collect();
+    let extinction = build(any.value_span, sums, cells)?;
+    let scattered = build(any.value_span, scattering, cells)?;
+    let medium = Medium::chromatic(extinction, scattered, phase);
     glow::add(reader.span(), medium.ok_or_else(|| too_dense(any))?, light)
 }
 
@@ -182,8 +182,7 @@ pub(super) fn signed_numbers(
 }
 
 fn too_dense(parameter: &Parameter) -> Fault {
-    let message = "the coefficients of the medium are too large";
-    Fault::scene(parameter.value_span, message)
+    Fault::scene(parameter.value_span, TOO_DENSE)
 }
 
 /// Returns the grid of these values; `span` is the place of errors.

@@ -54,9 +54,11 @@ impl Layer {
                 reflectance: f64::from(dielectric(-cos as f32, eta)),
             })
             .collect();
-        let entering = points.iter().map(|at| square * (1.0 - at.reflectance));
-        let entering = entering.collect();
-        Self { points, entering }
+        let entering = |at: &Point| square * (1.0 - at.reflectance);
+        Self {
+            entering: points.iter().map(entering).collect(),
+            points,
+        }
     }
 
     /// Returns the 1 - α for which `part` of the diffuse light that enters comes back.
@@ -78,8 +80,8 @@ impl Layer {
     fn reflectance(&self, albedo: f64) -> f64 {
         let h = self.chandrasekhar(albedo);
         let up = converged(vec![0.0; self.points.len()], |up| {
-            let back = self.points.iter().zip(up);
-            let back = back.map(|(at, up)| at.reflectance * up);
+            let returned = self.points.iter().zip(up);
+            let back = returned.map(|(at, up)| at.reflectance * up);
             let down: Vec<f64> = back.zip(&self.entering).map(|(back, e)| back + e).collect();
             let from_below = |at: &Point, h_at: f64| {
                 let terms = self.points.iter().zip(&h).zip(&down);

@@ -28,6 +28,8 @@ pub(super) struct Media {
     clouds: usize,
 }
 
+const TOO_DENSE: &str = "the coefficients of the medium are too large";
+
 /// Builds a medium whose parameters were read. Only media in use are built.
 pub(super) type Recipe = Box<dyn FnOnce() -> Result<Medium, Fault>>;
 
@@ -130,8 +132,7 @@ fn phase(reader: &mut Reader<'_, '_>) -> Result<HenyeyGreenstein, Fault> {
 fn scaled(reader: &Reader<'_, '_>, given: [Rgb; 2], scale: f32) -> Result<Coefficients, Fault> {
     let scale = scale * reader.context.layout.space.unit as f32;
     let [absorption, scattering] = given.map(|sigma| sigma.map(|channel| channel * scale));
-    let message = "the coefficients of the medium are too large";
-    Coefficients::new(absorption, scattering).ok_or_else(|| reader.fault(message))
+    Coefficients::new(absorption, scattering).ok_or_else(|| reader.fault(TOO_DENSE))
 }
 
 /// Reads `sigma_a` and `sigma_s`. None: the file does not have it. Unit: 1 / the scene's unit of length.

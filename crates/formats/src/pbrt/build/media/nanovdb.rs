@@ -2,7 +2,9 @@
 
 use super::super::reader::Reader;
 use super::grid::{Cells, build, placed};
-use super::{Recipe, glow, own_coefficients, phase, ready, scale, scaled};
+use super::{Recipe, TOO_DENSE, glow, own_coefficients, phase, ready, scale, scaled};
+use crate::import::Content;
+use crate::limits::LARGEST_GRID;
 use crate::nanovdb::{self, CellBox, Found, Grid};
 use crate::pbrt::lexer::shorten;
 use crate::pbrt::transform::Transforms;
@@ -34,7 +36,8 @@ pub(super) fn read(reader: &mut Reader<'_, '_>, transforms: &Transforms) -> Resu
         return Err(reader.fault("the medium has no `filename`"));
     };
     let path = reader.context.document.resolve(name);
-    let bytes = reader.context.read_grids(&path, span)?;
+    let context = &mut *reader.context;
+    let bytes = context.read(&path, LARGEST_GRID, Content::Grid, span)?;
     let heat = glow::Heat::read(reader)?;
     let given = own_coefficients(reader)?.map(|given| given.unwrap_or([1.0; 3]));
     let scale = scale(reader)?;
@@ -43,8 +46,8 @@ pub(super) fn read(reader: &mut Reader<'_, '_>, transforms: &Transforms) -> Resu
     let density = reader
         .string("gridname")?
         .map_or("density", |(name, _)| name);
-    let temperature = reader.string("temperaturename")?;
-    let temperature = temperature.map_or("temperature", |(name, _)| name);
+    let named = reader.string("temperaturename")?;
+    let temperatures = named.map_or("temperature", |(name, _)| name);
     let find = |name| {
         let found = nanovdb::find(&bytes, name);
         found.map_err(|error| Fault::from_error(span, &error.in_file(&path)))
@@ -64,7 +67,7 @@ pub(super) fn read(reader: &mut Reader<'_, '_>, transforms: &Transforms) -> Resu
     };
     let within = grid.bounds.grown();
     let density = Part { grid, within };
-    let temperature = match find(temperature)? {
+    let temperature = match find(temperatures)? {
         Found::Grid(grid) => Some(Part { grid, within }),
         Found::Nothing => None,
         Found::Unsupported(what) => {
@@ -113,13 +116,12 @@ impl Smoke {
     fn medium(&self) -> Result<Medium, Fault> {
         let Self { span, cells, .. } = *self;
         // Filters leave densities a little below 0.
-        let values = self.density.values(span)?.into_iter();
-        let values = values.map(|value| [value.max(0.0)]).collect();
+        let densities = self.density.values(span)?.into_iter();
+        let values = densities.map(|value| [value.max(0.0)]).collect();
         let grid = build(span, values, cells)?;
         let medium = Medium::of_density(self.coefficients, grid, self.phase);
-        let message = "the coefficients of the medium are too large";
-        let medium = medium.ok_or_else(|| Fault::scene(span, message))?;
-        glow::add(span, medium, self.light()?)
+        let too_dense = || Fault::scene(span, TOO_DENSE);
+        glow::add(span, medium.ok_or_else(too_dense)?, self.light()?)
     }
 
     fn light(&self) -> Result<Option<Glow>, Fault> {
@@ -142,6 +144,8 @@ fn cells(
     let scale = DVec3::from_array(size.map(|n| n as f64));
     let cube = DAffine3::from_translation(first) * DAffine3::from_scale(scale);
     let place = placed(reader, transforms, part.grid.world_from_cells * cube)?;
-    let size = size.map(|n| n as usize);
-    Ok(Cells { size, place })
+    Ok(Cells {
+        size: size.map(|n| n as usize),
+        place,
+    })
 }

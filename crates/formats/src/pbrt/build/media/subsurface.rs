@@ -5,7 +5,7 @@
 
 use super::super::reader::Reader;
 use super::layer::Layer;
-use super::{Recipe, color, preset};
+use super::{Recipe, TOO_DENSE, color, preset};
 use crate::pbrt::parameters::ParameterType;
 use crate::source::Fault;
 use bidir::medium::{Coefficients, HenyeyGreenstein, Medium};
@@ -68,10 +68,9 @@ pub(in super::super) fn read(reader: &mut Reader<'_, '_>, eta: f32) -> Result<Re
             Given::Reflectance(part, length) => of_reflectance(part, length, eta, phase),
         };
         let [absorption, scattering] = sigmas.map(|sigma| sigma.map(|channel| channel * factor));
-        let message = "the coefficients of the medium are too large";
         let coefficients = Coefficients::new(absorption, scattering);
-        let coefficients = coefficients.ok_or_else(|| Fault::scene(span, message))?;
-        Ok(Medium::homogeneous(coefficients, phase))
+        let medium = coefficients.map(|known| Medium::homogeneous(known, phase));
+        medium.ok_or_else(|| Fault::scene(span, TOO_DENSE))
     }))
 }
 
