@@ -164,8 +164,9 @@ pub struct SceneSpec {
     pub size: Option<[u32; 2]>,
     /// The reference of the scene's images.
     pub reference: ReferenceSpec,
-    /// Required or optional.
-    pub presence: Presence,
+    /// True: the scene is left out, with a warning, if its file is missing or its reference is contradicted. False:
+    /// that is an error.
+    pub optional: bool,
     /// The place in the description that names the file. None: no description names it.
     pub file_place: Option<Place>,
     /// The place in the description that names an existing reference. None: it names none.
@@ -181,15 +182,6 @@ pub enum SceneSource {
     Memory(Files),
     /// A generated room, which is made when the scene is loaded.
     Room(Room),
-}
-
-/// The treatment of a missing scene.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Presence {
-    /// A missing file is an error.
-    Required,
-    /// The scene is left out, with a warning, if its file is missing or its reference is contradicted.
-    Optional,
 }
 
 /// The reference of a scene.

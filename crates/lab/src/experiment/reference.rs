@@ -7,7 +7,7 @@ use super::observer::{self, Event, Observer};
 use super::run::write_image;
 use super::run_set::{RunSet, Setup};
 use super::settings::texts;
-use super::{Absent, Experiment, Presence, ReferenceRecipe, ReferenceSpec};
+use super::{Absent, Experiment, ReferenceRecipe, ReferenceSpec};
 use crate::image::Pixels;
 use crate::reference::{self as references, Host, Plan};
 use crate::seal::sha256;
@@ -63,7 +63,7 @@ pub(super) fn obtain_all<'a>(
                     error: references::Error::Disagree { .. },
                     ..
                 },
-            ) if loaded.spec.presence == Presence::Optional => {
+            ) if loaded.spec.optional => {
                 let scene = Absent {
                     name: loaded.spec.name.clone(),
                     reason: error.to_string(),

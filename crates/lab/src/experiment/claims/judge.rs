@@ -1,7 +1,7 @@
 //! Intervals and verdicts of claims, from records.
 
 use super::measure::{Clock, Measured};
-use super::{BudgetChoice, ClaimKind, ClaimSpec, Cost, Expected, Measure, Over, Quantity};
+use super::{BudgetChoice, ClaimSpec, Cost, Measure, Over, Quantity};
 use crate::experiment::Experiment;
 use crate::experiment::analysis::{CONFIDENCE, records_of};
 use crate::results::{BudgetKind, Claim, Record, Results, Verdict};
@@ -141,7 +141,7 @@ impl<'a> Findings<'a> {
             id: spec.id.clone(),
             claim: spec.claim.clone(),
             source: spec.source.clone(),
-            verdict: worded(verdict(&intervals, spec.expected), spec.kind),
+            verdict: worded(verdict(&intervals, spec), spec),
             found: format!("{measure}{}.", parts.join("; ")),
             method: self.method(spec),
             tables: Vec::new(),
@@ -181,12 +181,13 @@ fn part(name: &str, found: Option<Interval>) -> String {
 }
 
 /// Returns the verdict on the statement that all numbers with these intervals are in the expected range.
-fn verdict(intervals: &[Option<Interval>], expected: Expected) -> Verdict {
-    let Expected { low, high } = expected;
+fn verdict(intervals: &[Option<Interval>], spec: &ClaimSpec) -> Verdict {
     let known = intervals.iter().copied().collect::<Option<Vec<_>>>();
     let Some(known) = known.filter(|known| !known.is_empty()) else {
         return Verdict::NotMeasured;
     };
+    let low = spec.above.unwrap_or(f64::NEG_INFINITY);
+    let high = spec.below.unwrap_or(f64::INFINITY);
     let is_outside = |found: &Interval| found.high < low || found.low > high;
     let is_inside = |found: &Interval| found.low > low && found.high < high;
     if known.iter().any(is_outside) {
@@ -198,10 +199,10 @@ fn verdict(intervals: &[Option<Interval>], expected: Expected) -> Verdict {
     }
 }
 
-fn worded(verdict: Verdict, kind: ClaimKind) -> Verdict {
-    match (verdict, kind) {
-        (Verdict::Reproduced, ClaimKind::Goal) => Verdict::Met,
-        (Verdict::NotReproduced, ClaimKind::Goal) => Verdict::NotMet,
+fn worded(verdict: Verdict, spec: &ClaimSpec) -> Verdict {
+    match (verdict, spec.goal) {
+        (Verdict::Reproduced, true) => Verdict::Met,
+        (Verdict::NotReproduced, true) => Verdict::NotMet,
         (other, _) => other,
     }
 }

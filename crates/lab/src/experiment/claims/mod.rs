@@ -7,7 +7,7 @@
 //! # Verdicts
 //!
 //! The intervals of its numbers decide a statement: it is reproduced if each interval lies within the stated
-//! range ([`Expected`]), not reproduced if one lies outside, and undecided otherwise. Bonferroni's correction
+//! range, not reproduced if one lies outside, and undecided otherwise. Bonferroni's correction
 //! makes 95 % the confidence of the whole statement, whatever the number of its parts. A goal is met or not
 //! met in the same way.
 //!
@@ -40,15 +40,6 @@ use super::analysis::{self, Section};
 use crate::metric::Metric;
 use crate::results::{BudgetInfo, BudgetKind, Claim, Results, Scale};
 
-/// The range stated for a number.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Expected {
-    /// The lower end; minus infinity if unbounded.
-    pub low: f64,
-    /// The upper end; infinity if unbounded.
-    pub high: f64,
-}
-
 /// A statement.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ClaimSpec {
@@ -58,21 +49,14 @@ pub struct ClaimSpec {
     pub source: String,
     /// The statement, in a sentence.
     pub claim: String,
-    /// A statement of others, or a goal.
-    pub kind: ClaimKind,
-    /// The range of each of the claim's numbers.
-    pub expected: Expected,
+    /// True: a goal, which is met or not. False: a statement of others, which is reproduced or not.
+    pub goal: bool,
+    /// The lower end of the range of each of the claim's numbers. None: unbounded.
+    pub above: Option<f64>,
+    /// The upper end of the range. None: unbounded.
+    pub below: Option<f64>,
     /// The numbers with their names, at least one.
     pub parts: Vec<(String, Quantity)>,
-}
-
-/// The kind of a statement, which selects the wording of its verdict.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ClaimKind {
-    /// A statement of others: reproduced, or not.
-    Statement,
-    /// A goal: met, or not.
-    Goal,
 }
 
 /// A number computed from records.

@@ -1,8 +1,7 @@
 //! Claims and tables of a description.
 
 use super::super::claims::{
-    BudgetChoice, CellSpec, ClaimKind, ClaimSpec, Expected, Measure, Over, PlotSpec, Quantity,
-    TablePlace, TableSpec,
+    BudgetChoice, CellSpec, ClaimSpec, Measure, Over, PlotSpec, Quantity, TablePlace, TableSpec,
 };
 use super::super::error::ExperimentError;
 use super::super::expand::Binding;
@@ -107,13 +106,14 @@ pub(super) fn claims(top: &mut Section<'_>, names: &Names) -> Result<Vec<ClaimSp
 fn claim(section: &mut Section<'_>, names: &Names) -> Result<ClaimSpec> {
     section.only(&[CLAIM, QUANTITY].join(" "), &[])?;
     let id = section.need("id")?;
-    let kind = match section.get("goal", Entry::truth)? {
-        Some(true) => ClaimKind::Goal,
-        _ => ClaimKind::Statement,
-    };
+    let goal = section.get("goal", Entry::truth)?.unwrap_or(false);
     let claim = section.need("claim")?.text()?.to_owned();
     let source = section.text("source")?;
-    let expected = expected(section)?;
+    let above = section.get("above", Entry::number)?;
+    let below = section.get("below", Entry::number)?;
+    if above.or(below).is_none() {
+        return Err(section.fault("expected `below`, `above`, or both"));
+    }
     let name = file_name(id.text()?);
     if name.is_empty() {
         return Err(id.fault("an id needs a letter or a digit"));
@@ -124,8 +124,9 @@ fn claim(section: &mut Section<'_>, names: &Names) -> Result<ClaimSpec> {
         id: name,
         source: source.unwrap_or_else(|| "Own claim".to_owned()),
         claim,
-        kind,
-        expected,
+        goal,
+        above,
+        below,
         parts: parts.collect::<Result<_>>()?,
     })
 }
@@ -137,19 +138,6 @@ fn part(section: &Section<'_>, binding: &Binding, names: &Names) -> Result<(Stri
     let quantity = quantity(&mut section, names)?;
     let default = || format!("{}, {}", quantity.method, quantity.scene);
     Ok((name.unwrap_or_else(default), quantity))
-}
-
-/// Reads the range from `below`, `above`, or both.
-fn expected(section: &mut Section<'_>) -> Result<Expected> {
-    let low = section.get("above", Entry::number)?;
-    let high = section.get("below", Entry::number)?;
-    if low.is_none() && high.is_none() {
-        return Err(section.fault("expected `below`, `above`, or both"));
-    }
-    Ok(Expected {
-        low: low.unwrap_or(f64::NEG_INFINITY),
-        high: high.unwrap_or(f64::INFINITY),
-    })
 }
 
 /// Reads all `[[table]]`.

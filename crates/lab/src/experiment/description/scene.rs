@@ -3,9 +3,7 @@
 use super::super::error::{ExperimentError, Place};
 use super::super::names::value_of;
 use super::super::reader::{Entry, Section};
-use super::super::{
-    Absent, Lamp, Presence, ReferenceRecipe, ReferenceSpec, Room, SceneSource, SceneSpec,
-};
+use super::super::{Absent, Lamp, ReferenceRecipe, ReferenceSpec, Room, SceneSource, SceneSpec};
 use super::size;
 use bidir::integrator::IntegratorKind;
 use bidir::settings::Request;
@@ -47,7 +45,7 @@ pub(super) fn all(
 
 /// Returns the reason why an optional scene is missing. None: it is available.
 fn absence(scene: &SceneSpec) -> Option<String> {
-    if scene.presence == Presence::Required {
+    if !scene.optional {
         return None;
     }
     if let Some(variable) = variable(&scene.path) {
@@ -63,12 +61,17 @@ fn variable(path: &Path) -> Option<&str> {
     first.as_os_str().to_str()?.strip_prefix('$')
 }
 
-/// Replaces the environment variable of a path by its value, if it is set.
-fn with_variable(file: &str) -> PathBuf {
+/// Returns the path of a file: relative to `folder`, with the value of the environment variable that it begins with. If
+/// the variable is not set, the path still begins with it.
+fn path(folder: &Path, file: &str) -> PathBuf {
     let path = Path::new(file);
-    match variable(path).and_then(std::env::var_os) {
-        Some(value) => Path::new(&value).join(path.components().skip(1).collect::<PathBuf>()),
-        None => path.to_owned(),
+    match variable(path).map(std::env::var_os) {
+        None => joined(folder, path),
+        Some(None) => path.to_owned(),
+        Some(Some(value)) => {
+            let below = path.components().skip(1).collect::<PathBuf>();
+            joined(folder, &Path::new(&value).join(below))
+        }
     }
 }
 
@@ -79,17 +82,18 @@ fn scene(
     memory: &Files,
 ) -> Result<SceneSpec> {
     section.only(SCENE, &OLD_SCENE)?;
-    let presence = match section.get("optional", Entry::truth)? {
-        Some(true) => Presence::Optional,
-        _ => Presence::Required,
-    };
+    let optional = section.get("optional", Entry::truth)?.unwrap_or(false);
     let mut source = SceneSource::Disk;
     let (path, file_place) = if let Some(room) = section.nested("room", ROOM, room)? {
         source = SceneSource::Room(room);
         (room.name(), None)
     } else {
         let entry = section.need("file")?;
-        (path(&entry, folder, presence)?, Some(entry))
+        let path = path(folder, entry.text()?);
+        if let Some(name) = variable(&path).filter(|_| !optional) {
+            return Err(entry.fault(format!("the environment variable {name} is not set")));
+        }
+        (path, Some(entry))
     };
     if memory.has_in_memory(&path) {
         source = SceneSource::Memory(memory.clone());
@@ -110,22 +114,10 @@ fn scene(
         source,
         size,
         reference,
-        presence,
+        optional,
         file_place: file_place.map(|entry| entry.at()),
         reference_place,
     })
-}
-
-/// Reads the path of a scene's file. Its environment variable may be missing if the scene is optional.
-fn path(entry: &Entry<'_>, folder: &Path, presence: Presence) -> Result<PathBuf> {
-    let path = with_variable(entry.text()?);
-    match (variable(&path), presence) {
-        (None, _) => Ok(joined(folder, &path)),
-        (Some(_), Presence::Optional) => Ok(path),
-        (Some(name), Presence::Required) => {
-            Err(entry.fault(format!("the environment variable {name} is not set")))
-        }
-    }
 }
 
 /// Reads a generated room.
