@@ -101,7 +101,8 @@ impl Experiment {
             tables: Vec::new(),
             quick: quick(&mut top)?,
         };
-        experiment.claims = claims::claims(&mut top, &names)?;
+        let claim = |section: &mut Section<'_>| claims::claim(section, &names);
+        experiment.claims = all(&mut top, "claim", |claim| &claim.id, claim)?;
         experiment.tables = claims::tables(&mut top, &names, &experiment.claims)?;
         experiment.add_metrics();
         Ok(experiment)
@@ -207,7 +208,7 @@ fn metrics(top: &mut Section<'_>) -> Result<Vec<Metric>> {
     Ok(metrics)
 }
 
-/// Reads all tables `[[key]]`. Errors: there is none; two names are equal, also as parts of file names.
+/// Reads all tables `[[key]]`. Errors: there is none, except of claims; two names are equal, also as parts of file names.
 fn all<'a, T>(
     top: &mut Section<'a>,
     key: &'static str,
@@ -227,7 +228,7 @@ fn all<'a, T>(
         }
         all.push(one);
     }
-    if all.is_empty() {
+    if all.is_empty() && key != "claim" {
         return Err(top.fault(format!("there is no [[{key}]]")));
     }
     Ok(all)

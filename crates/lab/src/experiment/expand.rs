@@ -154,6 +154,14 @@ mod tests {
     }
 
     #[test]
+    fn placeholders_become_numbers() {
+        let text = "name = \"a\"\n[[budget]]\nfor.n = [2, 4]\nsamples = \"{n}\"";
+        let budgets = read(text).unwrap().budgets;
+        let names: Vec<_> = budgets.iter().map(|budget| &*budget.name).collect();
+        assert_eq!(names, ["1 spp", "2 spp", "4 spp"]);
+    }
+
+    #[test]
     fn copies_are_limited() {
         let numbers: Vec<_> = (0..9000).map(|n| n.to_string()).collect();
         let text = format!(

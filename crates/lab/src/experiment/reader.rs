@@ -9,6 +9,7 @@ use std::cell::Cell;
 use std::fmt::Display;
 use std::ops::Range;
 use std::path::Path;
+use std::str::FromStr;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
@@ -259,9 +260,43 @@ impl<'a> Entry<'a> {
 
     /// Reads a finite number.
     pub(super) fn number(&self) -> Result<f64> {
-        let number = self.written()?.parse().ok();
-        let number = number.filter(|number: &f64| number.is_finite());
-        number.ok_or_else(|| self.fault("expected a number"))
+        self.parsed("a number", |number: &f64| number.is_finite())
+    }
+
+    /// Reads a finite number above zero.
+    pub(super) fn positive(&self) -> Result<f64> {
+        let is_positive = |number: &f64| *number > 0.0 && number.is_finite();
+        self.parsed("a number above 0", is_positive)
+    }
+
+    /// Reads a whole number of at least `least`.
+    pub(super) fn whole(&self, least: u64) -> Result<u64> {
+        // JSON numbers are exact up to this limit.
+        let range = least..1 << 53;
+        let expected = format!("a whole number of at least {least}");
+        self.parsed(&expected, |number| range.contains(number))
+    }
+
+    /// Reads a whole number from 1 to `most`.
+    pub(super) fn up_to(&self, most: usize) -> Result<usize> {
+        let expected = format!("a whole number from 1 to {most}");
+        self.parsed(&expected, |number| (1..=most).contains(number))
+    }
+
+    /// Reads a number, which may be written as a text. `expected` names the numbers that are inside.
+    pub(super) fn parsed<T: FromStr>(
+        &self,
+        expected: &str,
+        is_inside: impl FnOnce(&T) -> bool,
+    ) -> Result<T> {
+        let text = match &self.value {
+            DeValue::Integer(number) => i128::from_str_radix(number.as_str(), number.radix())
+                .ok()
+                .map(|number| number.to_string()),
+            _ => self.written().ok().map(str::to_owned),
+        };
+        let number = text.and_then(|text| text.parse().ok()).filter(is_inside);
+        number.ok_or_else(|| self.fault(format!("expected {expected}")))
     }
 
     /// Reads `true` or `false`.
@@ -270,40 +305,6 @@ impl<'a> Entry<'a> {
             DeValue::Boolean(truth) => Ok(truth),
             _ => Err(self.fault("expected true or false")),
         }
-    }
-
-    /// Reads a whole number of at least `least`.
-    pub(super) fn whole(&self, least: u64) -> Result<u64> {
-        let number = match &self.value {
-            DeValue::Integer(number) => u64::from_str_radix(number.as_str(), number.radix()).ok(),
-            _ => None,
-        };
-        // JSON numbers are exact up to this limit.
-        let number = number.filter(|number| (least..1 << 53).contains(number));
-        number.ok_or_else(|| self.fault(format!("expected a whole number of at least {least}")))
-    }
-
-    /// Reads a whole number from 1 to `most`, which may be written as a text.
-    pub(super) fn up_to(&self, most: usize) -> Result<usize> {
-        let written = || self.written().ok()?.parse().ok();
-        let number = self
-            .whole(1)
-            .ok()
-            .or_else(written)
-            .map(|number| number as usize);
-        let number = number.filter(|number| (1..=most).contains(number));
-        number.ok_or_else(|| self.fault(format!("expected a whole number from 1 to {most}")))
-    }
-
-    /// Reads a finite number above zero.
-    pub(super) fn positive(&self) -> Result<f64> {
-        let number = match &self.value {
-            DeValue::Integer(_) => Some(self.whole(1)? as f64),
-            DeValue::Float(number) => number.as_str().parse().ok(),
-            _ => None,
-        };
-        let number = number.filter(|number: &f64| *number > 0.0 && number.is_finite());
-        number.ok_or_else(|| self.fault("expected a number above 0"))
     }
 
     /// Parses a text by `read`. An error gets the place of the text.

@@ -90,20 +90,8 @@ fn divisor(entry: &Entry<'_>, names: &Names) -> Result<Over> {
     }
 }
 
-/// Reads all `[[claim]]`.
-pub(super) fn claims(top: &mut Section<'_>, names: &Names) -> Result<Vec<ClaimSpec>> {
-    let mut claims: Vec<ClaimSpec> = Vec::new();
-    for mut section in top.sections("claim")? {
-        let claim = claim(&mut section, names)?;
-        if claims.iter().any(|other| other.id == claim.id) {
-            return Err(section.fault(format!("there is another claim `{}`", claim.id)));
-        }
-        claims.push(claim);
-    }
-    Ok(claims)
-}
-
-fn claim(section: &mut Section<'_>, names: &Names) -> Result<ClaimSpec> {
+/// Reads a `[[claim]]`.
+pub(super) fn claim(section: &mut Section<'_>, names: &Names) -> Result<ClaimSpec> {
     section.only(&[CLAIM, QUANTITY].join(" "), &[])?;
     let id = section.need("id")?;
     let goal = section.get("goal", Entry::truth)?.unwrap_or(false);
@@ -179,9 +167,8 @@ fn table(section: &mut Section<'_>, names: &Names, claims: &[ClaimSpec]) -> Resu
 fn place(section: &mut Section<'_>, claims: &[ClaimSpec]) -> Result<TablePlace> {
     match (section.take("claim"), section.take("section")) {
         (Some(claim), None) => {
-            let ids: Vec<String> = claims.iter().map(|claim| claim.id.clone()).collect();
             let id = file_name(claim.text()?);
-            if ids.contains(&id) {
+            if claims.iter().any(|other| other.id == id) {
                 return Ok(TablePlace::Claim(id));
             }
             Err(claim.fault(format!("there is no claim `{id}`")))

@@ -122,15 +122,14 @@ fn scene(
 
 /// Reads a generated room.
 fn room(section: &mut Section<'_>) -> Result<Room> {
+    let is_albedo = |albedo: &f64| *albedo > 0.0 && *albedo < 1.0;
     let light = section.need("light")?;
     let albedo = section.need("albedo")?;
-    let is_albedo = |albedo: &f64| *albedo > 0.0 && *albedo < 1.0;
-    let value = Some(albedo.number()?).filter(is_albedo);
-    let triangles = section.need("triangles")?.up_to(MOST_TRIANGLES);
+    let triangles = section.need("triangles")?;
     Ok(Room {
         light: light.read(|name| value_of(&Lamp::NAMES, name))?,
-        albedo: value.ok_or_else(|| albedo.fault("expected a number between 0 and 1"))? as f32,
-        triangles: triangles?,
+        albedo: albedo.parsed("a number between 0 and 1", is_albedo)? as f32,
+        triangles: triangles.up_to(MOST_TRIANGLES)?,
     })
 }
 
