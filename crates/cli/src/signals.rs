@@ -2,7 +2,7 @@
 //! the second ends the command at once. SIGUSR1 requests that files are written.
 
 use crate::exit::{Exit, Failure};
-use bidir::driver::Stop;
+use bidir::driver::{Stop, stands_alone};
 use signal_hook::consts::{SIGABRT, SIGINT, SIGTERM};
 use signal_hook::flag;
 use std::panic;
@@ -84,6 +84,10 @@ impl Signals {
         work: impl FnOnce() -> T + Send + 'static,
         mut tick: impl FnMut(),
     ) -> Option<T> {
+        if stands_alone() {
+            // Parallel iterators run on this thread alone.
+            return Some(work());
+        }
         let work = Arc::new(Mutex::new(Some(work)));
         let (sender, receiver) = mpsc::channel();
         let in_thread = Arc::clone(&work);

@@ -22,7 +22,7 @@ pub use accel::Stop;
 pub use budget::{Budget, Spent, Stopping};
 pub use replay::{Landing, Replay, ReplayedTerm, Selection};
 pub use session::{SceneHandle, Session};
-pub use threads::{Shortage, Threads, stand_alone, start_pool};
+pub use threads::{Shortage, Threads, stand_alone, stands_alone, start_pool};
 pub use training::{Effort, Plan, Training};
 pub use variance::StrategyMoments;
 

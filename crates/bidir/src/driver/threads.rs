@@ -150,13 +150,19 @@ pub fn start_pool(threads: Threads) -> Option<Shortage> {
 /// Makes the calling thread a pool of its own, for good, unless it is in a pool: parallel iterators then run on this
 /// thread only, even if the pool of the process has none. The pool's few kilobytes are not freed.
 pub fn stand_alone() {
-    if rayon::current_thread_index().is_none() {
+    if !stands_alone() {
         let builder = ThreadPoolBuilder::new().num_threads(1);
         // The pool starts no thread, so that the system has nothing to refuse; if building it fails all the same,
         // work goes to the pool of the process.
         let pool = builder.use_current_thread().build();
         std::mem::forget(pool);
     }
+}
+
+/// Returns true for a thread that is in a pool, perhaps one of its own. Where this is the main thread,
+/// [`start_pool`] found no thread, and parallel iterators of another thread have no pool to run on.
+pub fn stands_alone() -> bool {
+    rayon::current_thread_index().is_some()
 }
 
 /// The threads of a session.
