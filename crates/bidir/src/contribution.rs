@@ -1,5 +1,6 @@
 //! The terms of a sample's estimate ⟨I⟩ = Σ C w v / π. The contribution C, the weight w, the probability π of tracing the
-//! shadow ray and the part v of it that arrives stay apart until a film adds them.
+//! shadow ray and the part v of it that arrives stay apart until a film adds them
+//! ([`Entry`](crate::integrator::Entry)).
 
 use crate::math::fixed::LARGEST_CONTRIBUTION;
 use crate::spectrum::Spectrum;
@@ -23,57 +24,6 @@ impl Term {
     #[inline]
     pub fn value(&self) -> Spectrum {
         self.contribution * self.weight
-    }
-
-    /// Returns the contribution of the term where its shadow ray is certain to be traced and the part `transmittance` of
-    /// it arrives.
-    #[inline]
-    pub fn certain(self, transmittance: f32) -> Contribution {
-        Contribution {
-            term: self,
-            prob: 1.0,
-            transmittance,
-        }
-    }
-}
-
-/// The addend of a term in an image.
-#[derive(Clone, Copy, Debug)]
-pub struct Contribution {
-    /// The term.
-    pub term: Term,
-    /// The probability π of tracing its shadow ray.
-    pub prob: f64,
-    /// The part v of it that surfaces let pass, in `[0, 1]`; the media's T is in the term's contribution.
-    pub transmittance: f32,
-}
-
-impl Contribution {
-    /// Returns C w v / π.
-    #[inline]
-    pub fn value(&self) -> Spectrum {
-        self.arriving(self.term.value())
-    }
-
-    /// Returns C v / π: the value without the weight. None: no film can sum it, though it can sum the value.
-    ///
-    /// It is zero if the weight is zero, because such terms are not all traced.
-    pub fn unweighted(&self) -> Option<Spectrum> {
-        if self.term.weight == 0.0 {
-            return Some(Spectrum::ZERO);
-        }
-        Some(self.arriving(self.term.contribution)).filter(|&value| is_summable(value))
-    }
-
-    #[inline]
-    fn arriving(&self, value: Spectrum) -> Spectrum {
-        // Most terms are traced for certain, and a division is dear.
-        let traced = if self.prob < 1.0 {
-            value.map(|lane| (f64::from(lane) / self.prob) as f32)
-        } else {
-            value
-        };
-        traced * self.transmittance
     }
 }
 

@@ -68,7 +68,7 @@ MEDIA = [
     (
         "the weight of a guess kept after the ray",
         "crates/bidir/src/integrator/stages/media.rs",
-        "        entry.contribution.term.weight = weights.connection(job, &path, &sums);",
+        "        entry.term.weight = weights.connection(job, &path, &sums);",
         "        weights.connection(job, &path, &sums);",
         media("nested_media"),
     ),

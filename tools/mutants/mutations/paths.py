@@ -178,24 +178,21 @@ PATHS = [
     (
         "sum of the group in place of C/pi",
         "crates/bidir/src/integrator/stages/trace.rs",
-        "            contribution: Contribution {\n"
-        "                term: of.term,\n"
-        "                prob,\n"
-        "                transmittance: 1.0,\n"
-        "            },\n",
-        "                // Right in every grey image, wrong in colour.\n"
-        "                contribution: {\n"
-        "                    let candidates = offered.get(number);\n"
-        "                    let all: f32 = candidates.iter().map(|c| c.score).sum();\n"
-        "                    let values = candidates.iter().map(|c| c.term.value());\n"
-        "                    let sum = values.fold(crate::spectrum::Spectrum::ZERO, |sum, v| sum + v);\n"
-        "                    let term = crate::contribution::Term {\n"
-        "                        contribution: sum * (of.score / prob as f32 / all),\n"
-        "                        weight: 1.0,\n"
-        "                        ..of.term\n"
-        "                    };\n"
-        "                    term.certain(1.0)\n"
-        "                },\n",
+        "            term: of.term,\n"
+        "            prob,\n",
+        "            // Right in every grey image, wrong in colour.\n"
+        "            term: {\n"
+        "                let candidates = offered.get(number);\n"
+        "                let all: f32 = candidates.iter().map(|c| c.score).sum();\n"
+        "                let values = candidates.iter().map(|c| c.term.value());\n"
+        "                let sum = values.fold(crate::spectrum::Spectrum::ZERO, |sum, v| sum + v);\n"
+        "                crate::contribution::Term {\n"
+        "                    contribution: sum * (of.score / prob as f32 / all),\n"
+        "                    weight: 1.0,\n"
+        "                    ..of.term\n"
+        "                }\n"
+        "            },\n"
+        "            prob: 1.0,\n",
         estimators("every_choice_of_shadow_rays"),
     ),
     (
@@ -292,8 +289,8 @@ PATHS = [
     (
         "chosen rays not divided by their probability",
         "crates/bidir/src/integrator/stages/trace.rs",
-        "                prob,\n",
-        "                prob: 1.0,\n",
+        "            prob,\n",
+        "            prob: 1.0,\n",
         analytic("selection_keeps"),
     ),
     (

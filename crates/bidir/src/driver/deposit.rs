@@ -1,9 +1,8 @@
 //! Adds a batch to the running pass: to the picture, its parts, and raw images.
 
 use super::features::Features;
-use crate::contribution::Contribution;
 use crate::film::{Layers, PassBuffer, SplatPlace};
-use crate::integrator::{Batch, Entry, Sample, Worker};
+use crate::integrator::{Batch, Entry, Sample, splats};
 use crate::path::{Job, Strategy};
 use crate::spectrum::{Rgb, Spectrum, luminance};
 use crate::stats::Stats;
@@ -24,23 +23,21 @@ impl Deposit<'_> {
             }
         }
         if self.layers.parts() > 0 {
-            for (sample, entry) in added(&batch.walked.samples, &batch.entries) {
-                self.part_of_pixel(sample, &entry.contribution);
-            }
+            self.take_parts(batch);
         }
         self.take_splats(batch);
     }
 
-    /// Adds the splats of `batch`, and images of single strategies.
+    /// Adds the splats of `batch`, also to images of single strategies.
     pub(super) fn take_splats(&self, batch: &mut Batch) {
-        for (contribution, place) in splats(&batch.splats) {
-            let value = self.rgb(contribution.value());
-            let parts = self.parts_of(contribution);
-            let film = self.job.view.film();
-            self.buffer.splat(film, place, value, parts);
-        }
-        if self.layers.strategy_vertices() > 0 {
-            self.strategies(batch);
+        let film = self.job.view.film();
+        for (entry, place) in splats(&batch.splats) {
+            let parts = self.parts_of(entry);
+            self.buffer
+                .splat(film, place, self.rgb(entry.value()), parts);
+            if self.layers.strategy_vertices() > 0 {
+                self.splat_raw(entry, place, &mut batch.worker.stats);
+            }
         }
     }
 
@@ -63,112 +60,80 @@ impl Deposit<'_> {
         view.film().sensor.respond(lanes.to_rgb(value))
     }
 
-    /// Adds a contribution to the parts at the sample's own pixel.
-    fn part_of_pixel(&self, sample: &Sample, contribution: &Contribution) {
-        let value = self.rgb(contribution.value());
-        for part in self.parts_of(contribution) {
-            self.add_to_part(sample, part, value);
-        }
+    /// Returns the parts of the picture that a term is in.
+    fn parts_of(&self, entry: &Entry) -> impl Iterator<Item = usize> {
+        let group = self.job.scene.light_group(entry.term.light);
+        self.layers.parts_of(entry.term.strategy, group)
     }
 
-    fn add_to_part(&self, sample: &Sample, part: usize, value: Rgb) {
-        if let Some(pixel) = self.pixel(sample) {
-            self.buffer.add_to_part(pixel, part, value);
-        }
-    }
-
-    /// Returns the parts of the picture that a contribution is in.
-    fn parts_of(&self, contribution: &Contribution) -> impl Iterator<Item = usize> {
-        let group = self.job.scene.light_group(contribution.term.light);
-        self.layers.parts_of(contribution.term.strategy, group)
-    }
-
-    /// Adds raw values to the raw images of strategies, and squares of weighted luminances to the counts.
-    fn strategies(&self, batch: &mut Batch) {
-        let Batch {
-            walked,
-            entries,
-            luminances,
-            splats: of_light,
-            worker: Worker { stats, .. },
-            ..
-        } = batch;
-        for (sample, entry) in added(&walked.samples, entries) {
-            let value = self.raw(&entry.contribution, stats);
-            if let Some((part, value)) = value {
-                self.add_to_part(sample, part, value);
+    /// Adds the entries of `batch` to the parts of the picture, their raw values to the raw images of strategies, and
+    /// squares of weighted luminances to the counts.
+    fn take_parts(&self, batch: &mut Batch) {
+        let (stats, sums) = (&mut batch.worker.stats, &mut batch.luminances);
+        for entry in batch.entries.iter().filter(|entry| entry.is_added()) {
+            let Some(pixel) = self.pixel(&batch.walked.samples[entry.sample as usize]) else {
+                continue;
+            };
+            let value = self.rgb(entry.value());
+            for part in self.parts_of(entry) {
+                self.buffer.add_to_part(pixel, part, value);
             }
-            self.add_luminance(entry, luminances);
+            if let Some((part, value)) = self.raw(entry, stats) {
+                self.buffer.add_to_part(pixel, part, value);
+            }
+            self.add_luminance(entry, sums);
         }
-        for ((_, strategy), luminance) in luminances.drain(..) {
+        for ((_, strategy), luminance) in sums.drain(..) {
             stats.add_square(strategy, luminance);
         }
-        for (contribution, place) in splats(of_light) {
-            self.splat(contribution, place, stats);
-        }
     }
 
-    /// Adds a contribution's luminance to the sum of its sample and strategy, if the strategy has a weighted image. A
+    /// Adds the luminance of a term to the sum of its sample and strategy, if the strategy has a weighted image. A
     /// strategy may contribute to a sample several times, and not in a row: by several light points, by several
     /// vertices of a light cache, by each environment that a walk escapes to.
     fn add_luminance(&self, entry: &Entry, sums: &mut Vec<((u32, Strategy), f64)>) {
-        let strategy = entry.contribution.term.strategy;
+        let strategy = entry.term.strategy;
         if self.layers.weighted_part(strategy).is_none() {
             return;
         }
-        let luminance = self.luminance(&entry.contribution);
-        let place = (entry.sample, strategy);
-        match sums.iter_mut().find(|(known, _)| *known == place) {
+        let luminance = self.luminance(entry);
+        let key = (entry.sample, strategy);
+        match sums.iter_mut().find(|(known, _)| *known == key) {
             Some((_, sum)) => *sum += luminance,
-            None => sums.push((place, luminance)),
+            None => sums.push((key, luminance)),
         }
     }
 
     /// Adds a splat to its strategy's raw image, and counts its square, if it reaches the film.
-    fn splat(&self, contribution: &Contribution, place: SplatPlace, stats: &mut Stats) {
-        let (film, strategy) = (self.job.view.film(), contribution.term.strategy);
+    fn splat_raw(&self, entry: &Entry, place: SplatPlace, stats: &mut Stats) {
+        let (film, strategy) = (self.job.view.film(), entry.term.strategy);
         let Some((_, weight)) = film.pick_pixel(place) else {
             return;
         };
         // A light subpath has one splat by each strategy.
         if self.layers.weighted_part(strategy).is_some() {
-            let luminance = self.luminance(contribution) * f64::from(weight);
+            let luminance = self.luminance(entry) * f64::from(weight);
             stats.add_square(strategy, luminance);
         }
-        if let Some((part, value)) = self.raw(contribution, stats) {
+        if let Some((part, value)) = self.raw(entry, stats) {
             self.buffer.splat_to_part(film, place, value, part);
         }
     }
 
-    fn luminance(&self, contribution: &Contribution) -> f64 {
-        f64::from(luminance(self.rgb(contribution.value())))
+    fn luminance(&self, entry: &Entry) -> f64 {
+        f64::from(luminance(self.rgb(entry.value())))
     }
 
-    /// Returns the part that is the raw image of a contribution's strategy, and the value to add to it. None: there
-    /// is no such image, or no film can sum the value, which is counted as dropped.
-    fn raw(&self, contribution: &Contribution, stats: &mut Stats) -> Option<(usize, Rgb)> {
-        let part = self.layers.raw_part(contribution.term.strategy)?;
-        let Some(value) = contribution.unweighted() else {
-            stats.drop_raw(contribution.term.strategy);
+    /// Returns the part that is the raw image of a term's strategy, and the value to add to it. None: there is no
+    /// such image, or no film can sum the value, which is counted as dropped.
+    fn raw(&self, entry: &Entry, stats: &mut Stats) -> Option<(usize, Rgb)> {
+        let part = self.layers.raw_part(entry.term.strategy)?;
+        let Some(value) = entry.unweighted() else {
+            stats.drop_raw(entry.term.strategy);
             return None;
         };
         Some((part, self.rgb(value)))
     }
-}
-
-/// Returns the entries that add to an image, with their samples.
-fn added<'a>(
-    samples: &'a [Sample],
-    entries: &'a [Entry],
-) -> impl Iterator<Item = (&'a Sample, &'a Entry)> {
-    let added = entries.iter().filter(|entry| entry.is_added());
-    added.map(|entry| (&samples[entry.sample as usize], entry))
-}
-
-/// Returns the splats that add to the light image, with their places.
-fn splats(entries: &[Entry]) -> impl Iterator<Item = (&Contribution, SplatPlace)> {
-    let splats = entries.iter();
-    splats.filter_map(|entry| Some((&entry.contribution, entry.splat_place()?)))
 }
 
 #[cfg(test)]
@@ -196,7 +161,9 @@ mod tests {
         };
         Entry {
             sample: 0,
-            contribution: term.certain(1.0),
+            term,
+            prob: 1.0,
+            transmittance: 1.0,
             link: match t {
                 1 => Link::LightImage([Locus::in_space(Vec3::ZERO); 2], place),
                 _ => Link::Walk,
@@ -242,7 +209,7 @@ mod tests {
         let splat = entry((2, 1), 7e30, 1e-30);
         let (film, stats) = deposit(&[fine, large], splat);
         let layers = film.layers();
-        let strategy = |entry: &Entry| entry.contribution.term.strategy;
+        let strategy = |entry: &Entry| entry.term.strategy;
         let dropped = |entry: &Entry| stats.strategy_images.get(strategy(entry)).raw_dropped;
         check_image(&film, layers.raw_part(strategy(&fine)), 2.0);
         for (entry, weighted) in [(fine, 0.5), (large, 3.0), (splat, 7.0)] {
@@ -273,6 +240,6 @@ mod tests {
     #[test]
     fn a_weight_of_zero_leaves_nothing() {
         let nothing = entry((1, 2), 0.0, 0.0);
-        assert_eq!(nothing.contribution.unweighted(), Some(Spectrum::ZERO));
+        assert_eq!(nothing.unweighted(), Some(Spectrum::ZERO));
     }
 }

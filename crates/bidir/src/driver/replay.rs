@@ -4,9 +4,9 @@
 //! Replays add nothing to a film. Connections that the render did not trace are traced here, by rays that are not
 //! counted.
 
-use crate::contribution::{Contribution, Term};
+use crate::contribution::Term;
 use crate::film::{FilmSettings, SplatPlace};
-use crate::integrator::{Batch, Entry, Fate, Link};
+use crate::integrator::{Batch, Entry, Fate, Link, splats};
 use crate::locus::Locus;
 use crate::path::{Job, Strategy, Subpath};
 use crate::select::Selector;
@@ -114,9 +114,8 @@ impl Replay {
     }
 
     /// Returns the terms that the sample adds to the light image, with their positions.
-    pub fn splats(&self) -> impl Iterator<Item = (&Contribution, SplatPlace)> {
-        let splats = self.batch.splats.iter();
-        splats.filter_map(|entry| Some((&entry.contribution, entry.splat_place()?)))
+    pub fn splats(&self) -> impl Iterator<Item = (&Entry, SplatPlace)> {
+        splats(&self.batch.splats)
     }
 
     /// Returns the light subpath of the sample; empty if the sample uses that of another, or none was walked.
@@ -151,7 +150,7 @@ impl Replay {
 impl ReplayedTerm {
     fn new(job: &Job<'_>, entry: &Entry, selection: Option<Selection>) -> Self {
         let ends = entry.link.ends();
-        let mut term = entry.contribution.term;
+        let mut term = entry.term;
         let transmittance = match ends {
             None => 1.0,
             Some([a, b]) if job.scene.has_media() => {
@@ -172,7 +171,7 @@ impl ReplayedTerm {
             }
         };
         let added = match entry.fate {
-            Fate::Added => entry.contribution.value(),
+            Fate::Added => entry.value(),
             Fate::NotTraced | Fate::Blocked | Fate::Dropped => Spectrum::ZERO,
         };
         Self {

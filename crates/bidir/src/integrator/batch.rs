@@ -155,13 +155,13 @@ impl Batch {
             if !entry.is_added() {
                 continue;
             }
-            let value = entry.contribution.value();
+            let value = entry.value();
             if is_summable(value) {
                 self.values[entry.sample as usize] += value;
             } else {
                 entry.fate = Fate::Dropped;
                 let sample = &self.walked.samples[entry.sample as usize];
-                let strategy = entry.contribution.term.strategy;
+                let strategy = entry.term.strategy;
                 drop_term(&mut self.worker.stats, sample, strategy);
             }
         }

@@ -52,7 +52,7 @@ impl Batch {
         densities: &mut PathDensities,
         parts: &mut Vec<ConnectionPart>,
     ) -> Option<Shares> {
-        let (number, term) = (entry.sample as usize, &entry.contribution.term);
+        let (number, term) = (entry.sample as usize, &entry.term);
         let (s, t) = (usize::from(term.strategy.s), usize::from(term.strategy.t));
         let walked = &self.walked;
         let shadow = entry

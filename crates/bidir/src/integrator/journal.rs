@@ -1,9 +1,10 @@
 //! The terms of a batch that take part in its estimate, each with what became of it.
 
 use super::Sample;
-use crate::contribution::{Contribution, Term, is_summable};
+use crate::contribution::{Term, is_summable};
 use crate::film::SplatPlace;
 use crate::locus::Locus;
+use crate::spectrum::Spectrum;
 use crate::stats::{Dropped, Stats};
 use crate::strategy::Strategy;
 
@@ -47,8 +48,12 @@ pub enum Fate {
 pub struct Entry {
     /// Its sample, by number in the batch.
     pub sample: u32,
-    /// The term, with its probability and what arrives.
-    pub contribution: Contribution,
+    /// The term, before selection and visibility.
+    pub term: Term,
+    /// The probability π of tracing its shadow ray.
+    pub prob: f64,
+    /// The part v of it that surfaces let pass, in `[0, 1]`; the media's T is in the term's contribution.
+    pub transmittance: f32,
     /// How its subpaths come together.
     pub link: Link,
     /// Its outcome.
@@ -67,7 +72,9 @@ impl Entry {
         };
         Self {
             sample: sample as u32,
-            contribution: term.certain(1.0),
+            term,
+            prob: 1.0,
+            transmittance: 1.0,
             link,
             fate,
         }
@@ -82,9 +89,9 @@ impl Entry {
     /// Notes how much its shadow ray lets through.
     #[inline]
     pub(super) fn arrive(&mut self, transmittance: f32, stats: &mut Stats) {
-        let strategy = self.contribution.term.strategy;
+        let strategy = self.term.strategy;
         stats.count_shadow_ray(strategy);
-        self.contribution.transmittance = transmittance;
+        self.transmittance = transmittance;
         self.fate = Fate::Added;
         if transmittance <= 0.0 {
             stats.count_blocked(strategy);
@@ -92,20 +99,47 @@ impl Entry {
         }
     }
 
+    /// Returns C w v / π.
+    #[inline]
+    pub fn value(&self) -> Spectrum {
+        self.arriving(self.term.value())
+    }
+
+    /// Returns C v / π: the value without the weight. None: no film can sum it, though it can sum the value.
+    ///
+    /// It is zero if the weight is zero, because such terms are not all traced.
+    pub fn unweighted(&self) -> Option<Spectrum> {
+        if self.term.weight == 0.0 {
+            return Some(Spectrum::ZERO);
+        }
+        Some(self.arriving(self.term.contribution)).filter(|&value| is_summable(value))
+    }
+
+    #[inline]
+    fn arriving(&self, value: Spectrum) -> Spectrum {
+        // Most terms are traced for certain, and a division is dear.
+        let traced = if self.prob < 1.0 {
+            value.map(|lane| (f64::from(lane) / self.prob) as f32)
+        } else {
+            value
+        };
+        traced * self.transmittance
+    }
+
     /// Returns true where it adds to an image.
     #[inline]
     pub fn is_added(&self) -> bool {
         self.fate == Fate::Added
     }
+}
 
-    /// Returns its place, if it adds to the light image.
-    #[inline]
-    pub fn splat_place(&self) -> Option<SplatPlace> {
-        match self.link {
-            Link::LightImage(_, place) => self.is_added().then_some(place),
-            Link::Walk | Link::Connection(_) => None,
-        }
-    }
+/// Returns the splats that add to the light image, with their places.
+pub(crate) fn splats(entries: &[Entry]) -> impl Iterator<Item = (&Entry, SplatPlace)> {
+    let added = entries.iter().filter(|entry| entry.is_added());
+    added.filter_map(|entry| match entry.link {
+        Link::LightImage(_, place) => Some((entry, place)),
+        Link::Walk | Link::Connection(_) => None,
+    })
 }
 
 /// Counts a term of sample number `number` that is certain to take part, and adds its entry, untraced, to `entries`.

@@ -19,6 +19,7 @@ mod stages;
 
 pub use batch::{Batch, Candidates, Sample, Walked, Worker};
 pub(crate) use cache::connectable;
+pub(crate) use journal::splats;
 pub use journal::{Entry, Fate, Link};
 pub use list::{List, Lists};
 pub use lvc::*;

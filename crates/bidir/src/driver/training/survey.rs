@@ -99,14 +99,13 @@ impl Survey {
             };
             let shares = batch.shares(job, entry, candidate, &mut densities, &mut parts)?;
             let (pixel, part) = landed?;
-            let mut term = SurveyTerm::new(job, number, &entry.contribution, pixel, part, shares);
+            let mut term = SurveyTerm::new(job, number, entry, pixel, part, shares);
             term.edge = edge;
             term.score = candidate.map_or(0.0, |candidate| candidate.score);
             self.luminance += term.of_mean_pixel(film);
             if entry.is_added() {
-                let made = &entry.contribution.term;
                 self.log
-                    .path(made, candidate, &parts, self.terms.len() as u32);
+                    .path(&entry.term, candidate, &parts, self.terms.len() as u32);
             }
             self.terms.push(term);
             Some(())

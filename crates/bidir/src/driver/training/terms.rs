@@ -1,8 +1,8 @@
 //! The terms of the survey, and the knowledge of them that estimators learn.
 
 use super::counts::Counts;
-use crate::contribution::Contribution;
 use crate::film::FilmSettings;
+use crate::integrator::Entry;
 use crate::path::{Job, Shares};
 use crate::strategy::Strategy;
 
@@ -33,7 +33,7 @@ impl SurveyTerm {
     pub(super) fn new(
         job: &Job<'_>,
         sample: u64,
-        contribution: &Contribution,
+        entry: &Entry,
         pixel: usize,
         part: f32,
         shares: Shares,
@@ -41,12 +41,12 @@ impl SurveyTerm {
         Self {
             sample: sample as u32,
             pixel: pixel as u32,
-            strategy: contribution.term.strategy,
-            light: contribution.term.light,
-            value: job.lanes.luminance(contribution.value()) * part,
+            strategy: entry.term.strategy,
+            light: entry.term.light,
+            value: job.lanes.luminance(entry.value()) * part,
             score: 0.0,
             edge: None,
-            is_next_event: usize::from(contribution.term.strategy.s)
+            is_next_event: usize::from(entry.term.strategy.s)
                 < job.settings.light_point.first_walked(),
             shares,
         }

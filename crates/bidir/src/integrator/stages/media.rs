@@ -59,7 +59,7 @@ impl TracedShadow {
         }
         match edge {
             Some(edge) => {
-                entry.contribution.term.contribution *= edge.transmittance;
+                entry.term.contribution *= edge.transmittance;
                 entry.arrive(1.0, stats);
             }
             None => entry.arrive(0.0, stats),
@@ -96,6 +96,6 @@ pub(super) fn trace_chosen_through_media(
             next_event: None,
         };
         path.pass(edge);
-        entry.contribution.term.weight = weights.connection(job, &path, &sums);
+        entry.term.weight = weights.connection(job, &path, &sums);
     }
 }

@@ -2,7 +2,6 @@
 
 use super::super::{Candidates, Entry, Fate, Link, Walked, Worker};
 use super::media::trace_chosen_through_media;
-use crate::contribution::Contribution;
 use crate::path::Job;
 use crate::scene::ShadowRayBuffers;
 use crate::select::{Chosen, Draws, Selector};
@@ -40,11 +39,9 @@ pub(in super::super) fn select(
         let of = &offered[candidate];
         entries.push(Entry {
             sample: number as u32,
-            contribution: Contribution {
-                term: of.term,
-                prob,
-                transmittance: 1.0,
-            },
+            term: of.term,
+            prob,
+            transmittance: 1.0,
             link: Link::Connection(of.ends(light, camera)),
             fate: Fate::NotTraced,
         });
