@@ -79,8 +79,8 @@ DIFFUSE_ENDS = [
     (
         "light points of diffuse vertices without the walk that hits the light",
         DIFFUSE,
-        "let hit = start.is_hit * start.hit_over_next_event(to_light);",
-        "let hit = 0.0 * start.hit_over_next_event(to_light);",
+        "let hit = start.is_hit * (to_light / start.e);",
+        "let hit = 0.0 * (to_light / start.e);",
         RUNNING,
     ),
     (
@@ -100,8 +100,8 @@ DIFFUSE_ENDS = [
     (
         "light points of lights that no ray can hit, weighed against hits",
         DIFFUSE,
-        "let hit = start.is_hit * start.hit_over_next_event(to_light);",
-        "let hit = start.hit_over_next_event(to_light);",
+        "let hit = start.is_hit * (to_light / start.e);",
+        "let hit = to_light / start.e;",
         RUNNING,
     ),
     (
@@ -121,7 +121,7 @@ DIFFUSE_ENDS = [
     (
         "light points as likely for light subpaths as for next-event estimation",
         DIFFUSE,
-        "let drawn = start.walk_over_next_event() * a1;",
+        "let drawn = start.a0 / start.e * a1;",
         "let drawn = a1;",
         RUNNING,
     ),

@@ -57,8 +57,8 @@ MATERIALS = [
     (
         "a Dirac lobe of a walk not told to weights",
         "crates/bidir/src/path/densities.rs",
-        "                from_camera: drawn,\n                is_delta: x.went_by_delta,",
-        "                from_camera: drawn,\n                is_delta: false,",
+        "is_delta: x.went_by_delta,",
+        "is_delta: false,",
         RUNNING,
     ),
     (

@@ -72,8 +72,8 @@ PATHS = [
     (
         "forward and reverse density swapped",
         "crates/bidir/src/path/densities.rs",
-        "from_light: drawn,\n                from_camera: back,",
-        "from_light: back,\n                from_camera: drawn,",
+        "VertexDensities::new(x, drawn, back)",
+        "VertexDensities::new(x, back, drawn)",
         PATH,
     ),
     (
@@ -121,7 +121,7 @@ PATHS = [
     (
         "running sums without the next-event density",
         "crates/bidir/src/path/running.rs",
-        "1 => h(start.next_event_over_walk(a)),",
+        "1 => h(start.e / start.a0 / a),",
         "1 => h(1.0 / a),",
         RUNNING,
     ),

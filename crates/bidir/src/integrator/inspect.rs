@@ -62,7 +62,7 @@ impl Batch {
         let mut gather_connection = |[light, camera]: [&[Vertex]; 2]| {
             let mut path = JoinedPath::new(light, camera);
             if let Some(edge) = shadow.as_ref().and_then(TracedShadow::edge) {
-                path.pass(edge);
+                path.segment.pass(edge);
             }
             densities.gather_connection(job, &path);
             path.camera_albedos()

@@ -7,7 +7,6 @@ use super::{Job, LightChoiceKind, PathDensities, ScatteringEvent, Segment, Verte
 use crate::bsdf::TransportMode;
 use crate::light::{ChosenEmitter, LightChoice, LightPoint, LightSample, Part};
 use crate::math::Vec2;
-use crate::scene::Edge;
 use crate::spectrum::Spectrum;
 
 /// A path that connects a light subpath and a camera subpath, of at least one vertex each, and how their
@@ -21,7 +20,7 @@ pub struct JoinedPath<'a> {
     /// From the last light vertex, z, to the last camera vertex, y.
     pub segment: Segment,
     /// z and y, each between the vertex before it and the other.
-    events: [ScatteringEvent<'a>; 2],
+    pub(super) events: [ScatteringEvent<'a>; 2],
 }
 
 impl<'a> JoinedPath<'a> {
@@ -47,12 +46,6 @@ impl<'a> JoinedPath<'a> {
         }
     }
 
-    /// Lets the segment between z and y pass media.
-    #[inline]
-    pub fn pass(&mut self, edge: &Edge) {
-        self.segment.pass(edge);
-    }
-
     /// Returns the last light vertex.
     #[inline]
     pub(crate) fn z(&self) -> &'a Vertex {
@@ -63,12 +56,6 @@ impl<'a> JoinedPath<'a> {
     #[inline]
     pub(crate) fn y(&self) -> &'a Vertex {
         &self.camera[self.camera.len() - 1]
-    }
-
-    /// Returns z and y, each between the vertex before it and the other.
-    #[inline]
-    pub(super) fn events(&self) -> &[ScatteringEvent<'a>; 2] {
-        &self.events
     }
 
     /// Returns x_i.
@@ -98,7 +85,7 @@ impl<'a> JoinedPath<'a> {
         if geometry_term == 0.0 || z.is_delta() || y.is_delta() {
             return Spectrum::ZERO;
         }
-        let [at_z, at_y] = self.events();
+        let [at_z, at_y] = &self.events;
         let at_light = at_z.scatter(job);
         if at_light.is_black() {
             return Spectrum::ZERO;
@@ -132,7 +119,8 @@ pub fn sample_next_event(
     let ChosenEmitter { light, part, prob } = match job.settings.light_choice {
         LightChoiceKind::Power => {
             let (light, prob) = scene.light_choice().sample(u_light)?;
-            chosen_as_a_whole(light as u32, prob)
+            let (light, part) = (light as u32, Part::Whole);
+            ChosenEmitter { light, part, prob }
         }
         LightChoiceKind::Tree => {
             let tree = scene.light_tree();
@@ -152,29 +140,17 @@ pub fn sample_next_event(
 #[inline]
 pub fn next_event_pdf(job: &Job<'_>, x1: &Vertex, light: u32, at: &LightPoint) -> f32 {
     let scene = job.scene;
-    let ChosenEmitter { part, prob, .. } = match job.settings.light_choice {
-        LightChoiceKind::Power => {
-            let prob = scene.light_choice().prob(light as usize);
-            chosen_as_a_whole(light, prob)
-        }
+    let (part, prob) = match job.settings.light_choice {
+        LightChoiceKind::Power => (Part::Whole, scene.light_choice().prob(light as usize)),
         LightChoiceKind::Tree => {
             let receiver = || x1.receiver(at.locus.direction_from(x1.locus.point));
-            scene.light_tree().find(receiver, light, at.primitive)
+            let found = scene.light_tree().find(receiver, light, at.primitive);
+            (found.part, found.prob)
         }
     };
     let lights = scene.light_context();
     let of_light = scene.light(light);
     prob * of_light.pdf_next_event(&lights, part, x1.locus.point, at)
-}
-
-/// Returns a light that was chosen as a whole.
-#[inline]
-fn chosen_as_a_whole(light: u32, prob: f32) -> ChosenEmitter {
-    ChosenEmitter {
-        light,
-        part: Part::Whole,
-        prob,
-    }
 }
 
 impl Job<'_> {

@@ -20,6 +20,19 @@ pub struct VertexDensities {
     pub cell: Cell,
 }
 
+impl VertexDensities {
+    /// Makes the densities of a vertex of a walk.
+    #[inline]
+    fn new(x: &Vertex, from_light: f32, from_camera: f32) -> Self {
+        Self {
+            from_light,
+            from_camera,
+            is_delta: x.went_by_delta,
+            cell: x.cell,
+        }
+    }
+}
+
 /// The densities of a whole path x_0 … x_{n-1}: all that weights depend on.
 #[derive(Clone, Debug, Default)]
 pub struct PathDensities {
@@ -40,13 +53,8 @@ impl PathDensities {
         let (s, n) = (path.light.len(), path.len());
         self.vertices.clear();
         let of_light = walked_densities(job, path.light, n).zip(path.light);
-        self.vertices
-            .extend(of_light.map(|([drawn, back], x)| VertexDensities {
-                from_light: drawn,
-                from_camera: back,
-                is_delta: x.went_by_delta,
-                cell: x.cell,
-            }));
+        let of_light = of_light.map(|([drawn, back], x)| VertexDensities::new(x, drawn, back));
+        self.vertices.extend(of_light);
         self.add_camera(job, path.camera, n);
         let Reversed { z, y, before } = path.reversed(job);
         let x = &mut self.vertices;
@@ -65,12 +73,8 @@ impl PathDensities {
     pub fn gather_hit(&mut self, job: &Job<'_>, path: &HitPath<'_>) {
         let (x0, camera) = (&path.x0, path.camera);
         self.vertices.clear();
-        self.vertices.push(VertexDensities {
-            from_light: x0.pdf_fwd,
-            from_camera: path.camera_pdf(job),
-            is_delta: false,
-            cell: x0.cell,
-        });
+        let of_light = VertexDensities::new(x0, x0.pdf_fwd, path.camera_pdf(job));
+        self.vertices.push(of_light);
         self.add_camera(job, camera, camera.len() + 1);
         self.vertices[1].from_light = path.light_pdf(job);
         self.describe_light(job, x0, path.y());
@@ -79,13 +83,8 @@ impl PathDensities {
     /// Adds the vertices of a camera subpath of a path of `n`, the last one first.
     fn add_camera(&mut self, job: &Job<'_>, camera: &[Vertex], n: usize) {
         let of_camera = walked_densities(job, camera, n).zip(camera).rev();
-        self.vertices
-            .extend(of_camera.map(|([drawn, back], x)| VertexDensities {
-                from_light: back,
-                from_camera: drawn,
-                is_delta: x.went_by_delta,
-                cell: x.cell,
-            }));
+        let of_camera = of_camera.map(|([drawn, back], x)| VertexDensities::new(x, back, drawn));
+        self.vertices.extend(of_camera);
     }
 
     /// Notes how next-event estimation would draw x_0 for x_1.
@@ -118,7 +117,7 @@ impl JoinedPath<'_> {
     pub(super) fn reversed(&self, job: &Job<'_>) -> Reversed {
         let (s, t) = (self.light.len(), self.camera.len());
         let (z, y, segment) = (self.z(), self.y(), &self.segment);
-        let [at_z, at_y] = self.events();
+        let [at_z, at_y] = &self.events;
         let a_s = at_z.pdf(job) * segment.to_b * factor(job, s, || z.albedo_fwd);
         let mut before = [0.0; 2];
         if s > 1 {
@@ -179,13 +178,6 @@ pub(super) fn factor(job: &Job<'_>, index: usize, albedo: impl FnOnce() -> f32) 
     }
 }
 
-/// Returns the density with which its walk drew the last vertex of a subpath.
-#[inline]
-fn drawn_density(job: &Job<'_>, subpath: &[Vertex]) -> f32 {
-    let (last, index) = (&subpath[subpath.len() - 1], subpath.len() - 1);
-    last.pdf_fwd * factor(job, index, || subpath[index - 1].albedo_fwd)
-}
-
 /// Returns the densities of a subpath's vertices as stored: by its own walk, and by one from the other end
 /// of a path of `n` vertices. The latter is not valid for the last two.
 pub(super) fn walked_densities(
@@ -194,9 +186,10 @@ pub(super) fn walked_densities(
     n: usize,
 ) -> impl DoubleEndedIterator<Item = [f32; 2]> + ExactSizeIterator {
     subpath.iter().enumerate().map(move |(i, vertex)| {
+        let before = || subpath[i - 1].albedo_fwd;
         let after = || subpath.get(i + 1).map_or(1.0, |next| next.albedo_rev);
         [
-            drawn_density(job, &subpath[..=i]),
+            vertex.pdf_fwd * factor(job, i, before),
             vertex.pdf_rev * factor(job, n - 1 - i, after),
         ]
     })

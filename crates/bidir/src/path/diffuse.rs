@@ -151,9 +151,9 @@ impl DiffuseEnd {
         let start = PathStart::new(job, x0, e);
         let to_light = f64::from(self.density * cos_s * segment.to_b);
         // r_0 / e, and (a_0 / e) r.
-        let hit = start.is_hit * start.hit_over_next_event(to_light);
+        let hit = start.is_hit * (to_light / start.e);
         let a1 = f64::from(x0.pdf_leaving(job, -segment.w) * segment.to_a);
-        let drawn = start.walk_over_next_event() * a1;
+        let drawn = start.a0 / start.e * a1;
         let n = job.count(1, t, [x0.cell, self.cell]);
         let others = hit + drawn * f64::from(self.others);
         Some((contribution, (n / (n + others)) as f32))

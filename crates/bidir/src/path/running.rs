@@ -80,7 +80,7 @@ impl EndSums {
     #[inline]
     fn at_start(job: &Job<'_>, start: &PathStart) -> Self {
         Self {
-            inverse_pdf: finite(job.settings.mis.apply(start.hit_over_next_event(1.0))),
+            inverse_pdf: finite(job.settings.mis.apply(1.0 / start.e)),
             links: [start.is_hit; 2],
             through_previous: 0.0,
             total: start.is_hit,
@@ -134,7 +134,7 @@ impl RunningSums {
             })
         };
         let inverse_pdf = |i: usize, a: f64| match i {
-            1 => h(start.next_event_over_walk(a)),
+            1 => h(start.e / start.a0 / a),
             _ => h(1.0 / a),
         };
         let first = EndSums::at_start(job, start);
@@ -273,9 +273,9 @@ impl EndSums {
         let count = h(job.count(1, t, [x0.cell, y.cell]));
         let links = count * start.is_drawn * possible(!y.went_by_delta);
         let a1 = f64::from(path.light_pdf(job));
-        let p2_over_p1 = h(start.walk_over_next_event() * a1) * self.inverse_pdf;
+        let p2_over_p1 = h(start.a0 / start.e * a1) * self.inverse_pdf;
         let from_next_event = chain(links, p2_over_p1, self.total);
-        let p1_over_p0 = h(start.next_event_over_hit(path.camera_pdf(job).into()));
+        let p1_over_p0 = h(start.e / f64::from(path.camera_pdf(job)));
         let mut others = chain(0.0, p1_over_p0, from_next_event);
         if t == 1 {
             others = job.settings.mis.cut_off_image(others, 1.0);
@@ -300,7 +300,7 @@ impl PathSums<'_> {
             let start = PathStart::new(job, path.z(), next_event);
             let sums = EndSums::at_start(job, &start);
             let fewer_light = sums.shares(depth, h(z), 0.0);
-            (fewer_light, start.walk_over_next_event() * y)
+            (fewer_light, start.a0 / start.e * y)
         } else {
             (self.light.shares(depth, h(z), before[0]), y)
         };

@@ -3,29 +3,12 @@
 
 use super::visible::on_side;
 use super::{Job, Scattering, Vertex};
-use crate::bsdf::{Bsdf, BsdfValue, TransportMode};
+use crate::bsdf::{Bsdf, BsdfSample, BsdfValue, TransportMode};
 use crate::light::LightPoint;
 use crate::math::{Frame, Vec2, Vec3};
 use crate::medium::MediumScattering;
 use crate::spectrum::Spectrum;
 use std::cell::Cell;
-
-/// A direction drawn at a vertex.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Scattered {
-    /// The unit direction.
-    pub(super) wi: Vec3,
-    /// Scattering times geometric cosine over density.
-    pub(super) weight: Spectrum,
-    /// The density of `wi`, or the coefficient of its Dirac factor. Measure: solid angle.
-    pub(super) pdf: f32,
-    /// The same of drawing `wo` by a walk that arrives along `wi`.
-    pub(super) pdf_reverse: f32,
-    /// The largest lane of the albedo that such a walk meets.
-    pub(super) albedo_reverse: f32,
-    /// True where a Dirac lobe was drawn.
-    pub(super) is_delta: bool,
-}
 
 /// A vertex with the directions towards both of its neighbours on a path.
 ///
@@ -33,7 +16,7 @@ pub(super) struct Scattered {
 /// value of the BSDF or the medium, which is evaluated for the first of them that needs it.
 #[derive(Clone, Debug)]
 pub struct ScatteringEvent<'a> {
-    vertex: &'a Vertex,
+    pub(crate) vertex: &'a Vertex,
     mode: TransportMode,
     wo: Side,
     wi: Side,
@@ -93,13 +76,7 @@ impl Side {
     }
 }
 
-impl<'a> ScatteringEvent<'a> {
-    /// Returns the vertex.
-    #[inline]
-    pub fn vertex(&self) -> &'a Vertex {
-        self.vertex
-    }
-
+impl ScatteringEvent<'_> {
     /// Returns the value of a surface or of a medium, f with the ratio of [`scatter`](Self::scatter); cameras and
     /// lights have none.
     #[inline]
@@ -251,14 +228,15 @@ impl Vertex {
         }
     }
 
-    /// Draws the next direction of a walk. None: nothing is scattered.
+    /// Draws the next direction of a walk, in world space; its weight has the geometric cosine. None: nothing is
+    /// scattered.
     #[inline(always)] // Into both kinds of walks.
     pub(super) fn sample_scatter(
         &self,
         mode: TransportMode,
         u_lobe: impl FnOnce() -> f32,
         u: Vec2,
-    ) -> Option<Scattered> {
+    ) -> Option<BsdfSample> {
         let bsdf = match &self.scattering {
             Scattering::Surface(bsdf) => bsdf,
             Scattering::Medium(medium) => return self.sample_phase(medium, u),
@@ -289,22 +267,19 @@ impl Vertex {
                 return self.finite_scattered(bsdf, wi, mode);
             }
         };
-        Some(Scattered {
+        Some(BsdfSample {
             wi: wi.world,
             weight,
-            pdf: sample.pdf,
-            pdf_reverse: sample.pdf_reverse,
-            albedo_reverse: sample.albedo_reverse,
-            is_delta: sample.is_delta,
+            ..sample
         })
     }
 
     /// Draws the next direction of a walk by the phase function. None: the medium only absorbs.
     #[inline(never)]
-    fn sample_phase(&self, medium: &MediumScattering, u: Vec2) -> Option<Scattered> {
+    fn sample_phase(&self, medium: &MediumScattering, u: Vec2) -> Option<BsdfSample> {
         let wi = medium.phase.sample(self.wo, u);
         let pdf = medium.phase.eval(self.wo, wi);
-        (!medium.coefficient.is_black()).then(|| Scattered {
+        (!medium.coefficient.is_black()).then(|| BsdfSample {
             wi,
             weight: medium.coefficient,
             pdf,

@@ -95,7 +95,7 @@ impl JoinedPath<'_> {
             // x_0 scatters nothing.
             _ if c + 1 >= self.len() => 1.0,
             _ if c < t => self.camera[c].albedo_fwd,
-            _ if c == t => self.events()[0].reversed().1,
+            _ if c == t => self.events[0].reversed().1,
             _ => self.vertex(self.len() - 1 - c).albedo_rev,
         }
     }

@@ -159,10 +159,10 @@ impl PathDensities {
 /// How x_0 is drawn: what the ratios of s = 0, 1 and 2 take from it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PathStart {
-    /// a_0.
-    emission: f64,
-    /// e.
-    next_event: f64,
+    /// The density a_0 of x_0 as the start of a light walk.
+    pub(super) a0: f64,
+    /// The density e of x_0 as next-event estimation draws it.
+    pub(super) e: f64,
     /// 1 where s = 1 can draw x_0, else 0.
     pub(super) is_drawn: f64,
     /// 1 where s = 0 can hit it, else 0.
@@ -172,8 +172,8 @@ pub(super) struct PathStart {
 impl PathStart {
     /// The start of no path.
     pub(super) const NONE: Self = Self {
-        emission: 0.0,
-        next_event: 0.0,
+        a0: 0.0,
+        e: 0.0,
         is_drawn: 0.0,
         is_hit: 0.0,
     };
@@ -181,35 +181,11 @@ impl PathStart {
     #[inline]
     pub(super) fn new(job: &Job<'_>, x0: &Vertex, next_event: f32) -> Self {
         Self {
-            emission: f64::from(x0.pdf_fwd),
-            next_event: never_zero(next_event),
+            a0: f64::from(x0.pdf_fwd),
+            e: never_zero(next_event),
             is_drawn: f64::from(next_event > 0.0),
             is_hit: f64::from(!x0.is_on_delta_light(job)),
         }
-    }
-
-    /// Returns p_1 / p_0, where a camera walk draws x_0 with density `b0`.
-    #[inline]
-    pub(super) fn next_event_over_hit(&self, b0: f64) -> f64 {
-        self.next_event / b0
-    }
-
-    /// Returns p_0 / p_1, where a camera walk draws x_0 with density `b0`.
-    #[inline]
-    pub(super) fn hit_over_next_event(&self, b0: f64) -> f64 {
-        b0 / self.next_event
-    }
-
-    /// Returns the factor of a_1 / b_1 in p_2 / p_1.
-    #[inline]
-    pub(super) fn walk_over_next_event(&self) -> f64 {
-        self.emission / self.next_event
-    }
-
-    /// Returns the factor of b_1 in p_1 / p_2, where a light walk draws x_1 with density `a1`.
-    #[inline]
-    pub(super) fn next_event_over_walk(&self, a1: f64) -> f64 {
-        self.next_event / self.emission / a1
     }
 }
 

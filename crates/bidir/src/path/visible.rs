@@ -14,7 +14,7 @@
 //! o, and draw by S (docs/derivations/mis-weights.md#shading-normals).
 
 use super::Vertex;
-use super::scatter::{Scattered, Side};
+use super::scatter::Side;
 use crate::bsdf::{Bsdf, BsdfSample, BsdfValue, Layer, Lobes, TransportMode};
 use crate::math::{Frame, Vec2, Vec3};
 use crate::spectrum::Spectrum;
@@ -263,7 +263,7 @@ impl Vertex {
         mode: TransportMode,
         u_lobe: f32,
         u: Vec2,
-    ) -> Option<Scattered> {
+    ) -> Option<BsdfSample> {
         let plain = self.frames(bsdf);
         let frames = match mode {
             TransportMode::Radiance => self.frames_toward(bsdf, self.wo).unwrap_or(plain),
@@ -281,13 +281,10 @@ impl Vertex {
             Drawn::Dirac(sample) => sample,
         };
         // Walks from a light draw no Dirac lobe by a frame that they do not know.
-        (mode == TransportMode::Radiance && self.faces(&frames, sample.wi)).then(|| Scattered {
-            wi: sample.wi,
-            weight: sample.weight,
-            pdf: sample.pdf,
+        (mode == TransportMode::Radiance && self.faces(&frames, sample.wi)).then(|| BsdfSample {
             pdf_reverse: 0.0,
             albedo_reverse: self.albedo(sample.wi).max_lane(),
-            is_delta: true,
+            ..sample
         })
     }
 
@@ -300,10 +297,10 @@ impl Vertex {
         bsdf: &Bsdf,
         wi: Vec3,
         mode: TransportMode,
-    ) -> Option<Scattered> {
+    ) -> Option<BsdfSample> {
         let value = self.value_by_frames(bsdf, [self.wo, wi], mode);
         let cos_g = self.locus.n_g.dot(wi).abs();
-        (value.pdf > 0.0 && !value.f.is_black()).then(|| Scattered {
+        (value.pdf > 0.0 && !value.f.is_black()).then(|| BsdfSample {
             wi,
             weight: value.f * (cos_g / value.pdf),
             pdf: value.pdf,

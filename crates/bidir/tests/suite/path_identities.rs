@@ -234,7 +234,7 @@ fn strategies(job: &Job<'_>, path: &[Vertex]) -> Option<Vec<(usize, f32, Spectru
         }
         let edge = edge(job, &path[s - 1], &path[s])?;
         let mut joined = JoinedPath::new(&light, &camera);
-        joined.pass(&edge);
+        joined.segment.pass(&edge);
         let w = joined.weight(job, &mut densities);
         if s == 1 {
             let density = next_event_density(job, path);

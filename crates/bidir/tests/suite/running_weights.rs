@@ -101,7 +101,7 @@ impl Comparison {
         if let Some(edge) = edge
             && !path.contribution(job).is_black()
         {
-            path.pass(&edge);
+            path.segment.pass(&edge);
             self.compare(job, &path);
         }
     }

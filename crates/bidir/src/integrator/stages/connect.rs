@@ -138,7 +138,7 @@ impl<'a> Connector<'a> {
             } else {
                 scene.guessed_edge(a, b, lanes)
             };
-            path.pass(&edge);
+            path.segment.pass(&edge);
             score_factor *= self.job.lanes.mean(edge.transmittance);
         }
         Some(Connection {

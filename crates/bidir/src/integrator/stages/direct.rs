@@ -141,5 +141,5 @@ fn arriving(
     if emitted.is_black() {
         return Spectrum::ZERO;
     }
-    emitted * event.scatter(job) * event.vertex().beta * factor
+    emitted * event.scatter(job) * event.vertex.beta * factor
 }

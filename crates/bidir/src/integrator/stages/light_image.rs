@@ -152,7 +152,7 @@ impl<'a> LightImage<'a> {
         let mut term = self.term(job, path.contribution(job), 0.0)?;
         let shadow = TracedShadow::between(job, || self.ends(job));
         if let Some(edge) = shadow.edge() {
-            path.pass(edge);
+            path.segment.pass(edge);
         }
         if !shadow.is_blocked() {
             term.weight = weight(&path);

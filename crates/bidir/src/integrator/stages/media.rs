@@ -95,7 +95,7 @@ pub(super) fn trace_chosen_through_media(
             camera: walked.camera.sums.at(y),
             next_event: None,
         };
-        path.pass(edge);
+        path.segment.pass(edge);
         entry.term.weight = weights.connection(job, &path, &sums);
     }
 }
