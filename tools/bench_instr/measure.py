@@ -22,7 +22,7 @@ PROFILED = ("room-indirect", "bdpt")
 # The functions of each stage of `bdpt`, by the names of the stages in `--stats`.
 STAGES = {
     "walk": r"^bidir::integrator::stages::walk::(walk|sum)_(camera|light)$",
-    "hits": r"^bidir::integrator::stages::hits::hits$",
+    "hits": r"^bidir::integrator::stages::walk::hits$",
     "light_image": r"^bidir::integrator::stages::light_image::light_image$",
     "candidates": r"^bidir::integrator::stages::(light_ends::(next_events|own_light)|connect::connect)$",
     "select": r"^<bidir::select::\w+::\w+ as bidir::select::Selector>::select$",

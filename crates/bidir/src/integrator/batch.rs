@@ -1,8 +1,8 @@
 //! The samples in flight, and what each stage leaves for the next: arrays that the next batch uses again.
 
 use super::cache::LightCache;
-use super::ends::Ends;
 use super::journal::drop_term;
+use super::stages::LightEnds;
 use super::{Entry, Fate, Lists};
 use crate::contribution::is_summable;
 use crate::path::{Subpaths, Vertex, Weights};
@@ -99,7 +99,7 @@ pub struct Batch {
     /// The samples and their subpaths.
     pub walked: Walked,
     pub(super) cache: LightCache,
-    pub(super) ends: Ends,
+    pub(super) light_ends: LightEnds,
     /// The connections.
     pub candidates: Candidates,
     /// The terms for the samples' own pixels.
@@ -133,7 +133,7 @@ impl Batch {
         memory.extend(samples);
         camera.clear();
         light.forget_points();
-        self.ends.clear();
+        self.light_ends.clear();
         self.candidates.offered.clear();
         self.candidates.unoffered.clear();
         self.candidates.chosen.clear();
@@ -144,7 +144,7 @@ impl Batch {
     }
 
     /// Clears the light subpaths, with their sums and the cache.
-    pub(super) fn forget_light(&mut self) {
+    pub fn forget_light(&mut self) {
         self.walked.light.clear();
         self.cache.clear();
     }

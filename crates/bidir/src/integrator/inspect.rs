@@ -71,8 +71,11 @@ impl Batch {
             Some(candidate) => gather_connection(walked.subpaths(candidate)),
             None if s == 0 => {
                 let walk = walked.camera.get(number);
-                let arrival = Arrival::of(job.scene, &walk, t - 1, term.light)?;
-                let path = HitPath::new(job, &arrival, &walk.vertices[..t - 1]);
+                let mut arrivals = Arrival::all(job.scene, &walk);
+                let (before, arrival) = arrivals.find(|(before, arrival)| {
+                    before.len() + 1 == t && arrival.light == term.light
+                })?;
+                let path = HitPath::new(job, &arrival, before);
                 densities.gather_hit(job, &path);
                 path.camera_albedos()
             }

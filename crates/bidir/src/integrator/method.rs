@@ -58,7 +58,7 @@ impl Method {
     /// Computes the samples of `batch`: its entries, values and splats.
     ///
     /// A method that [shares light](Self::shares_light) uses the subpaths that [`walk_group`] added between
-    /// [`begin_group`] and [`end_group`].
+    /// [`Batch::forget_light`] and [`end_group`].
     pub fn run(&self, job: &Job<'_>, batch: &mut Batch) {
         if !self.shares_light() {
             batch.forget_light();
@@ -66,7 +66,7 @@ impl Method {
         let Batch {
             walked,
             cache,
-            ends,
+            light_ends,
             candidates,
             entries,
             splats,
@@ -91,9 +91,9 @@ impl Method {
                 sum_light(job, walked, worker);
                 hits(job, walked, entries, worker);
                 light_image(job, walked, splats, worker, Weighting::Combined);
-                next_events(job, walked, ends, CandidateCount::of(1));
-                own_light(job, walked, ends, worker);
-                connect(job, walked, ends, candidates, worker);
+                next_events(job, walked, light_ends, CandidateCount::of(1));
+                own_light(job, walked, light_ends, worker);
+                connect(job, walked, light_ends, candidates, worker);
                 select(&**selector, walked, candidates, entries, worker);
                 shadow_rays(job, walked, candidates, entries, worker);
             }
@@ -102,20 +102,15 @@ impl Method {
                 walk_camera(job, walked, worker);
                 sum_camera(job, walked, worker);
                 hits(job, walked, entries, worker);
-                next_events(job, walked, ends, lvc.next_events);
-                draw_cached(job, walked, cache, ends, lvc.candidates, worker);
-                connect(job, walked, ends, candidates, worker);
+                next_events(job, walked, light_ends, lvc.next_events);
+                draw_cached(job, walked, cache, light_ends, lvc.candidates, worker);
+                connect(job, walked, light_ends, candidates, worker);
                 select(&**selector, walked, candidates, entries, worker);
                 shadow_rays(job, walked, candidates, entries, worker);
             }
         }
         batch.sum_entries();
     }
-}
-
-/// Forgets the light subpaths of another group.
-pub fn begin_group(batch: &mut Batch) {
-    batch.forget_light();
 }
 
 /// Walks the light subpaths that the samples of `batch` bring to their group, and makes their light images.

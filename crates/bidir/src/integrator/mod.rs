@@ -9,7 +9,6 @@
 mod batch;
 mod cache;
 mod curve;
-mod ends;
 mod inspect;
 mod journal;
 mod list;
@@ -24,7 +23,7 @@ pub use journal::{Entry, Fate, Link};
 pub use list::{List, Lists};
 pub use lvc::*;
 pub(crate) use method::group_size;
-pub use method::{Method, begin_group, end_group, walk_group};
+pub use method::{Method, end_group, walk_group};
 pub(crate) use stages::camera_ray;
 
 use crate::names::named;

@@ -27,7 +27,7 @@ pub struct Arrival {
 impl Arrival {
     /// Returns the arrival at a vertex of the walk. None: it is on no light.
     #[inline]
-    pub fn at(vertex: &Vertex) -> Option<Self> {
+    pub(crate) fn at(vertex: &Vertex) -> Option<Self> {
         Some(Self {
             light: vertex.light?,
             at: vertex.light_point(),
@@ -38,9 +38,27 @@ impl Arrival {
         })
     }
 
+    /// Returns the arrivals of the walk `camera` at lights, on its vertices and where it escaped to those at infinity,
+    /// each with the vertices before it.
+    #[inline]
+    pub fn all<'a>(
+        scene: &'a Scene,
+        camera: &Subpath<'a>,
+    ) -> impl Iterator<Item = (&'a [Vertex], Self)> {
+        let Subpath {
+            vertices, escape, ..
+        } = *camera;
+        let met = move |i| Some((&vertices[..i], Self::at(&vertices[i])?));
+        let escaped = move |escape| Self::of_escape(scene, escape);
+        let at_infinity = escape.into_iter().flat_map(escaped);
+        (1..vertices.len())
+            .filter_map(met)
+            .chain(at_infinity.map(move |arrival| (vertices, arrival)))
+    }
+
     /// Returns the arrivals at the lights at infinity that the walk escaped to.
     #[inline]
-    pub fn of_escape(scene: &Scene, escape: Escape) -> impl Iterator<Item = Self> {
+    pub(crate) fn of_escape(scene: &Scene, escape: Escape) -> impl Iterator<Item = Self> {
         scene.environment().iter().map(move |&light| Self {
             light,
             at: LightPoint::at_infinity(escape.direction),
@@ -49,15 +67,6 @@ impl Arrival {
             pdf: escape.pdf_fwd,
             to_previous: escape.to_previous,
         })
-    }
-
-    /// Returns the arrival at `light` of a walk that hit it after its first `i` vertices, or left the scene there.
-    /// None: it did neither.
-    pub fn of(scene: &Scene, camera: &Subpath<'_>, i: usize, light: u32) -> Option<Self> {
-        match camera.vertices.get(i) {
-            Some(vertex) => Self::at(vertex),
-            None => Self::of_escape(scene, camera.escape?).find(|arrival| arrival.light == light),
-        }
     }
 
     /// Returns C = β L_e: the contribution before its weight.

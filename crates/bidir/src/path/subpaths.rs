@@ -60,15 +60,23 @@ impl Subpaths {
 
     /// Adds the sums along the walks from number `first` on, which follow those that have sums.
     pub(crate) fn add_sums(&mut self, job: &Job<'_>, first: usize) {
+        let mut sums = std::mem::take(&mut self.sums);
         for i in first..self.walks.len() {
-            self.sums.add(job, &subpath(&self.vertices, &self.walks, i));
+            sums.add(job, &self.get(i));
         }
+        self.sums = sums;
     }
 
     /// Returns walk number `i`.
     #[inline]
     pub fn get(&self, i: usize) -> Subpath<'_> {
-        subpath(&self.vertices, &self.walks, i)
+        let first = if i == 0 { 0 } else { self.walks[i - 1].end };
+        let Walk { end, escape } = self.walks[i];
+        Subpath {
+            first,
+            vertices: &self.vertices[first..end],
+            escape,
+        }
     }
 
     /// Returns all vertices, those of the single points last.
@@ -118,17 +126,5 @@ impl Subpaths {
     pub(super) fn end(&mut self, escape: Option<Escape>) {
         let end = self.vertices.len();
         self.walks.push(Walk { end, escape });
-    }
-}
-
-/// Returns number `i` of `walks` along `vertices`.
-#[inline]
-fn subpath<'a>(vertices: &'a [Vertex], walks: &[Walk], i: usize) -> Subpath<'a> {
-    let first = if i == 0 { 0 } else { walks[i - 1].end };
-    let Walk { end, escape } = walks[i];
-    Subpath {
-        first,
-        vertices: &vertices[first..end],
-        escape,
     }
 }

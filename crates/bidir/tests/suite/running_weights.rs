@@ -156,14 +156,8 @@ impl Comparison {
     }
 
     fn compare_hits(&mut self, job: &Job<'_>, camera: &Subpath<'_>) {
-        for (i, vertex) in camera.vertices.iter().enumerate().skip(1) {
-            if let Some(arrival) = Arrival::at(vertex) {
-                self.compare_hit(job, &arrival, &camera.vertices[..i]);
-            }
-        }
-        let Some(escape) = camera.escape else { return };
-        for arrival in Arrival::of_escape(job.scene, escape) {
-            self.compare_hit(job, &arrival, camera.vertices);
+        for (before, arrival) in Arrival::all(job.scene, camera) {
+            self.compare_hit(job, &arrival, before);
         }
     }
 

@@ -2,7 +2,7 @@
 //! first.
 
 use super::Session;
-use crate::integrator::{Batch, Entry, begin_group, end_group, group_size, walk_group};
+use crate::integrator::{Batch, Entry, end_group, group_size, walk_group};
 use crate::path::Job;
 use crate::spectrum::Lanes;
 use crate::stats::{Stage, Stats};
@@ -58,7 +58,7 @@ impl Session<'_> {
         size: usize,
         mut on_batch: impl FnMut(&mut Batch),
     ) {
-        begin_group(batch);
+        batch.forget_light();
         let mut owners = self.subpath_owners(places).peekable();
         while owners.peek().is_some() {
             batch.worker.stopwatch.begin_light();

@@ -3,9 +3,9 @@
 //! Any two vertices are connected by [`JoinedPath`], whose contribution and weight are the definition. Where both are
 //! diffuse, or one is and the other is a light point, `diffuse` finds the same numbers faster.
 
-use super::super::ends::{Ends, LightEnd, NextEvent};
 use super::super::journal::drop_term;
 use super::super::{Candidates, Sample, Walked, Worker};
+use super::light_ends::{LightEnd, LightEnds, NextEvent};
 use crate::contribution::is_summable;
 use crate::path::{DiffuseEnd, EndSums, Job, JoinedPath, PathSums, Subpath};
 use crate::select::Candidate;
@@ -17,7 +17,7 @@ use crate::stats::Stage;
 pub(in super::super) fn connect(
     job: &Job<'_>,
     walked: &Walked,
-    ends: &Ends,
+    ends: &LightEnds,
     candidates: &mut Candidates,
     worker: &mut Worker,
 ) {
@@ -34,10 +34,10 @@ pub(in super::super) fn connect(
             worker,
         };
         for t in 2..=connector.camera.vertices.len() {
-            for event in ends.next_events.get(list) {
+            for event in ends.points.get(list) {
                 connector.offer_next_event(t, event);
             }
-            connector.offer_walked(t, ends.walked.get(list));
+            connector.offer_walked(t, ends.vertices.get(list));
             list += 1;
         }
         connector.count();

@@ -1,8 +1,8 @@
 //! Connections of diffuse camera vertices, as `connect` finds those of any vertices: with light points one by one, with
 //! vertices of light subpaths four at a time.
 
-use super::super::ends::LightEnd;
 use super::connect::{Connection, Connector};
+use super::light_ends::LightEnd;
 use crate::guide::CellGuide;
 use crate::math::fixed::LARGEST_CONTRIBUTION;
 use crate::path::{Depth, DiffuseConnections, DiffuseEnd};

@@ -2,14 +2,79 @@
 //! sample's own light subpath or of a cache.
 
 use super::super::cache::{LightCache, Place};
-use super::super::ends::{Ends, LightEnd, NextEvent};
-use super::super::{CandidateCount, Sample, Walked, Worker};
+use super::super::{CandidateCount, Lists, Sample, Walked, Worker};
 use super::pairs::Pairs;
+use crate::contribution::Term;
 use crate::math::ONE_MINUS_EPSILON;
 use crate::path::{Job, LightPointChoice, Subpaths, Vertex, sample_next_event};
 use crate::sampler::{Dimension, Purpose, kronecker_number, kronecker_point};
+use crate::select::Candidate;
 use crate::spectrum::Spectrum;
 use crate::stats::Stage;
+use crate::strategy::Strategy;
+
+/// A light vertex that a camera vertex is connected with.
+#[derive(Clone, Copy, Debug, Default)]
+pub(in super::super) struct LightEnd {
+    /// Its place.
+    pub(in super::super) place: Place,
+    /// [`Candidate::light_vertex`].
+    pub(in super::super) number: u32,
+    /// The factor of the connection: 1/π(n) of `Pairs`, or 1 / (M N P) for a vertex of a cache. That of a light point is
+    /// in its β.
+    pub(in super::super) share: f32,
+}
+
+impl LightEnd {
+    /// Returns the term of its connection with camera vertex number `t`.
+    #[inline(always)]
+    pub(in super::super) fn term(&self, t: usize, contribution: Spectrum, weight: f32) -> Term {
+        Term {
+            strategy: Strategy::new(self.place.s.into(), t),
+            light: self.place.light,
+            contribution,
+            weight,
+        }
+    }
+
+    /// Returns the candidate that is such a `term`, with number `y` of all camera vertices.
+    #[inline(always)]
+    pub(in super::super) fn candidate(&self, term: Term, score: f32, y: u32) -> Candidate {
+        Candidate {
+            term,
+            score: Candidate::score(score),
+            vertices: [self.place.z, y],
+            light_vertex: self.number,
+        }
+    }
+}
+
+/// A light point of next-event estimation.
+#[derive(Clone, Copy, Debug, Default)]
+pub(in super::super) struct NextEvent {
+    /// The point as a light vertex.
+    pub(in super::super) end: LightEnd,
+    /// e, the density that it was drawn with.
+    pub(in super::super) pdf: f32,
+}
+
+/// The light vertices of each camera vertex from t = 2 on: a list for each, empty or not, in the order of samples and t.
+/// Where light points are shared, `points` has no lists at all.
+#[derive(Debug, Default)]
+pub(in super::super) struct LightEnds {
+    /// Its own light points.
+    pub(in super::super) points: Lists<NextEvent>,
+    /// Vertices of light subpaths.
+    pub(in super::super) vertices: Lists<LightEnd>,
+}
+
+impl LightEnds {
+    /// Forgets all, and keeps the memory.
+    pub(in super::super) fn clear(&mut self) {
+        self.points.clear();
+        self.vertices.clear();
+    }
+}
 
 /// Draws light points for each camera vertex, as many as `counts` says, and adds them behind the light subpaths. The
 /// choice of the light is stratified; points on lights follow a sequence that fills them evenly.
@@ -17,7 +82,7 @@ use crate::stats::Stage;
 pub(in super::super) fn next_events(
     job: &Job<'_>,
     walked: &mut Walked,
-    ends: &mut Ends,
+    ends: &mut LightEnds,
     counts: CandidateCount,
 ) {
     if job.settings.light_point != LightPointChoice::Fresh {
@@ -33,14 +98,14 @@ pub(in super::super) fn next_events(
         for (t, y) in (2..).zip(camera.get(index).vertices.iter().skip(1)) {
             if t <= longest && !y.is_delta() && job.takes(1, t) {
                 let count = counts.at(t);
-                ends.next_events.open().make_room(count.into());
+                ends.points.open().make_room(count.into());
                 for k in 0..count {
                     if let Some(event) = add_point(light, job, sample, t, y, [k, count]) {
-                        ends.next_events.open().write(event, 1);
+                        ends.points.open().write(event, 1);
                     }
                 }
             }
-            ends.next_events.close();
+            ends.points.close();
         }
     }
 }
@@ -64,8 +129,21 @@ fn add_point(
     let (number, drawn) = sample_next_event(job, y, u_light, point, u_depth)?;
     let mut x0 = Vertex::light(job, number, &drawn.at);
     x0.beta = Spectrum::splat(drawn.alpha / (drawn.pdf * f32::from(count)));
-    let z = light.add_point(&x0);
-    Some(NextEvent::new(z, number, drawn.pdf))
+    let place = Place {
+        z: light.add_point(&x0) as u32,
+        s: 1,
+        is_diffuse: false,
+        light: number,
+    };
+    let end = LightEnd {
+        place,
+        number: 0,
+        share: 1.0,
+    };
+    Some(NextEvent {
+        end,
+        pdf: drawn.pdf,
+    })
 }
 
 /// Lists for each camera vertex the vertices of the sample's own light subpath.
@@ -73,7 +151,7 @@ fn add_point(
 pub(in super::super) fn own_light(
     job: &Job<'_>,
     walked: &Walked,
-    ends: &mut Ends,
+    ends: &mut LightEnds,
     worker: &mut Worker,
 ) {
     let Walked {
@@ -92,7 +170,7 @@ pub(in super::super) fn own_light(
             } else {
                 subpath.vertices.len().min(settings.max_vertices() - t)
             };
-            let list = ends.walked.open();
+            let list = ends.vertices.open();
             list.make_room(longest);
             for s in settings.light_point.first_walked()..=longest {
                 // Every pair in turn, whatever becomes of it: each moves the pointer.
@@ -109,7 +187,7 @@ pub(in super::super) fn own_light(
                 };
                 list.write(end, usize::from(connects && job.takes(s, t)));
             }
-            ends.walked.close();
+            ends.vertices.close();
         }
     }
     worker.stopwatch.end(Stage::Candidates);
@@ -122,7 +200,7 @@ pub(in super::super) fn draw_cached(
     job: &Job<'_>,
     walked: &Walked,
     cache: &LightCache,
-    ends: &mut Ends,
+    ends: &mut LightEnds,
     counts: CandidateCount,
     worker: &mut Worker,
 ) {
@@ -139,7 +217,7 @@ pub(in super::super) fn draw_cached(
             if !y.is_delta() {
                 let u = (sample.camera).get_bits(Dimension::at(t - 1, Purpose::CachedVertex));
                 let (row, count) = (job.guide.of_camera(y.cell).row(), counts.at(t));
-                ends.walked.open().write_some(count.into(), |room| {
+                ends.vertices.open().write_some(count.into(), |room| {
                     let mut taken = 0;
                     cache.draw_all(row, count, u, |entry, place, share| {
                         let s = usize::from(place.s);
@@ -158,7 +236,7 @@ pub(in super::super) fn draw_cached(
                     taken
                 });
             }
-            ends.walked.close();
+            ends.vertices.close();
         }
     }
     worker.stopwatch.end(Stage::Candidates);

@@ -3,7 +3,6 @@
 mod connect;
 mod diffuse;
 mod direct;
-mod hits;
 mod light_ends;
 mod light_image;
 mod media;
@@ -13,10 +12,9 @@ mod walk;
 
 pub(super) use connect::connect;
 pub(super) use direct::direct;
-pub(super) use hits::hits;
-pub(super) use light_ends::{draw_cached, next_events, own_light};
+pub(super) use light_ends::{LightEnds, draw_cached, next_events, own_light};
 pub(super) use light_image::{Weighting, lens_vertex, light_image};
 pub(super) use media::TracedShadow;
 pub(super) use trace::{select, shadow_rays};
 pub(crate) use walk::camera_ray;
-pub(super) use walk::{sum_camera, sum_light, walk_camera, walk_light};
+pub(super) use walk::{hits, sum_camera, sum_light, walk_camera, walk_light};

@@ -1,11 +1,15 @@
-//! The subpaths of the samples, and sums along them.
+//! The subpaths of the samples, sums along them, and the lights that camera subpaths hit by themselves, s = 0.
 
-use super::super::{Sample, Walked, Worker};
+use super::super::journal::enter;
+use super::super::{Entry, Link, Sample, Walked, Worker};
 use crate::camera::CameraRay;
+use crate::contribution::Term;
 use crate::math::Vec2;
-use crate::path::{Job, camera_subpath, light_subpath};
+use crate::path::{Arrival, HitPath, Job, camera_subpath, light_subpath};
 use crate::sampler::{Dimension, Purpose};
+use crate::spectrum::Spectrum;
 use crate::stats::Stage;
+use crate::strategy::Strategy;
 
 /// Walks the camera subpath of each sample.
 #[inline(never)] // So that profiles show the stages, each of which is called once.
@@ -43,10 +47,42 @@ pub(in super::super) fn sum_camera(job: &Job<'_>, walked: &mut Walked, worker: &
 #[inline(never)]
 pub(in super::super) fn sum_light(job: &Job<'_>, walked: &mut Walked, worker: &mut Worker) {
     if worker.weights.uses_sums() {
-        let first = walked.first_light();
-        walked.light.add_sums(job, first);
+        walked.light.add_sums(job, walked.first_light());
     }
     worker.stopwatch.end(Stage::Walk);
+}
+
+/// Adds the light that camera subpaths hit, on their way or where they escape. No shadow rays.
+#[inline(never)]
+pub(in super::super) fn hits(
+    job: &Job<'_>,
+    walked: &Walked,
+    entries: &mut Vec<Entry>,
+    worker: &mut Worker,
+) {
+    let Worker { weights, stats, .. } = worker;
+    for (number, sample) in walked.samples.iter().enumerate() {
+        let walk = walked.camera.get(number);
+        for (before, arrival) in Arrival::all(job.scene, &walk) {
+            let t = before.len() + 1;
+            if !job.takes(0, t) {
+                continue;
+            }
+            let contribution = arrival.contribution(job);
+            if contribution == Spectrum::ZERO {
+                continue;
+            }
+            let sums = walked.camera.sums.at(walk.first + t - 2);
+            let term = Term {
+                strategy: Strategy::new(0, t),
+                light: arrival.light,
+                contribution,
+                weight: weights.hit(job, &HitPath::new(job, &arrival, before), sums),
+            };
+            enter(entries, stats, number, sample, term, Link::Walk);
+        }
+    }
+    worker.stopwatch.end(Stage::Hits);
 }
 
 /// Returns the ray of a camera sample, and the weight of its film position.
