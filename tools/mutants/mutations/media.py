@@ -82,8 +82,8 @@ MEDIA = [
     (
         "media that are foreseen, and let all light through",
         "crates/bidir/src/integrator/stages/connect.rs",
-        "term.contribution *= connection.transmittance;",
-        "term.contribution *= Spectrum::ONE;",
+        "let contribution = contribution * connection.transmittance;",
+        "let contribution = contribution * Spectrum::ONE;",
         FURNACE,
     ),
     (

@@ -21,7 +21,7 @@ PATHS = [
     (
         "area density without the cosine",
         "crates/bidir/src/path/segment.rs",
-        "                cos_b * inverse2\n",
+        "                cos * inverse2\n",
         "                inverse2\n",
         PATH,
     ),
@@ -178,21 +178,23 @@ PATHS = [
     (
         "sum of the group in place of C/pi",
         "crates/bidir/src/integrator/stages/trace.rs",
-        "            term: of.term,\n"
-        "            prob,\n",
-        "            // Right in every grey image, wrong in colour.\n"
-        "            term: {\n"
-        "                let candidates = offered.get(number);\n"
-        "                let all: f32 = candidates.iter().map(|c| c.score).sum();\n"
-        "                let values = candidates.iter().map(|c| c.term.value());\n"
-        "                let sum = values.fold(crate::spectrum::Spectrum::ZERO, |sum, v| sum + v);\n"
-        "                crate::contribution::Term {\n"
-        "                    contribution: sum * (of.score / prob as f32 / all),\n"
-        "                    weight: 1.0,\n"
-        "                    ..of.term\n"
-        "                }\n"
-        "            },\n"
-        "            prob: 1.0,\n",
+        "            prob,\n            ..Entry::certain(number, of.term, link)\n",
+        "            ..Entry::certain(\n"
+        "                number,\n"
+        "                // Right in every grey image, wrong in colour.\n"
+        "                {\n"
+        "                    let candidates = offered.get(number);\n"
+        "                    let all: f32 = candidates.iter().map(|c| c.score).sum();\n"
+        "                    let values = candidates.iter().map(|c| c.term.value());\n"
+        "                    let sum = values.fold(crate::spectrum::Spectrum::ZERO, |sum, v| sum + v);\n"
+        "                    crate::contribution::Term {\n"
+        "                        contribution: sum * (of.score / prob as f32 / all),\n"
+        "                        weight: 1.0,\n"
+        "                        ..of.term\n"
+        "                    }\n"
+        "                },\n"
+        "                link,\n"
+        "            )\n",
         estimators("every_choice_of_shadow_rays"),
     ),
     (
@@ -374,9 +376,9 @@ PATHS = [
     (
         "splats not weakened by what they pass",
         "crates/bidir/src/integrator/stages/light_image.rs",
-        "    trace(job, splats, shadow_rays, stats);\n",
-        "    trace(job, splats, shadow_rays, stats);\n"
-        "    let splats = splats.iter_mut().map(|splat| &mut splat.contribution.transmittance);\n"
+        "    trace(job, splats, &mut worker.shadow_rays, &mut worker.stats);\n",
+        "    trace(job, splats, &mut worker.shadow_rays, &mut worker.stats);\n"
+        "    let splats = splats.iter_mut().map(|splat| &mut splat.transmittance);\n"
         "    splats.for_each(|transmittance| *transmittance = transmittance.ceil());\n",
         coverage("a_half_transparent_plane"),
     ),

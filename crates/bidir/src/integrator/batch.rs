@@ -124,15 +124,10 @@ impl Batch {
 
     /// Replaces the samples, and clears the output of all stages but light subpaths.
     pub fn fill(&mut self, samples: impl IntoIterator<Item = Sample>) {
-        let Walked {
-            samples: memory,
-            camera,
-            light,
-        } = &mut self.walked;
-        memory.clear();
-        memory.extend(samples);
-        camera.clear();
-        light.forget_points();
+        self.walked.samples.clear();
+        self.walked.samples.extend(samples);
+        self.walked.camera.clear();
+        self.walked.light.forget_points();
         self.light_ends.clear();
         self.candidates.offered.clear();
         self.candidates.unoffered.clear();
@@ -140,7 +135,8 @@ impl Batch {
         self.entries.clear();
         self.splats.clear();
         self.values.clear();
-        self.values.resize(memory.len(), Spectrum::ZERO);
+        let count = self.walked.samples.len();
+        self.values.resize(count, Spectrum::ZERO);
     }
 
     /// Clears the light subpaths, with their sums and the cache.

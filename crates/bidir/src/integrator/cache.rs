@@ -75,17 +75,17 @@ pub(super) struct Place {
 }
 
 impl Place {
-    /// Returns the place of vertex number `i` of a light subpath, of which there are `sums`. None: the subpath begins
-    /// on no light.
+    /// Returns the place of vertex number `i` of a light subpath, of which there are `sums`.
     #[inline]
-    pub(super) fn new(subpath: &Subpath<'_>, i: usize, sums: &RunningSums) -> Option<Self> {
+    pub(super) fn new(subpath: &Subpath<'_>, i: usize, sums: &RunningSums) -> Self {
         let z = subpath.first + i;
-        Some(Self {
+        Self {
             z: z as u32,
             s: i as u16 + 1,
             is_diffuse: sums.diffuse(z).is_some(),
-            light: subpath.vertices[0].light?,
-        })
+            // It begins on a light.
+            light: subpath.vertices[0].light.unwrap_or_default(),
+        }
     }
 }
 
@@ -120,9 +120,7 @@ impl LightCache {
             let subpath = walks.get(subpath);
             let connectable = connectable(light_point, subpath.vertices);
             for i in connectable {
-                let Some(place) = Place::new(&subpath, i, &walks.sums) else {
-                    continue;
-                };
+                let place = Place::new(&subpath, i, &walks.sums);
                 let Vertex { cell, locus, .. } = subpath.vertices[i];
                 self.unsorted.push(CachedVertex { place, cell });
                 self.points.push(locus.point);

@@ -58,19 +58,18 @@ impl Segment {
     #[inline]
     fn with(a: &Locus, b: &Locus, w: Vec3, inverse2: f32) -> Self {
         let [cos_a, cos_b] = [a, b].map(|end| end.abs_cos(w));
+        let of = |end: &Locus, cos: f32| {
+            if end.is_infinite() {
+                1.0
+            } else {
+                cos * inverse2
+            }
+        };
         Self {
             w,
             geometry_term: cos_a * cos_b * inverse2,
-            to_b: if b.is_infinite() {
-                1.0
-            } else {
-                cos_b * inverse2
-            },
-            to_a: if a.is_infinite() {
-                1.0
-            } else {
-                cos_a * inverse2
-            },
+            to_b: of(b, cos_b),
+            to_a: of(a, cos_a),
         }
     }
 }

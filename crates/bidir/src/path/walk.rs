@@ -15,6 +15,7 @@ use crate::sampler::{Dimension, Purpose, SampleStream};
 use crate::scene::{Advance, Edge, Interaction, RayDraws, SurfaceHit, Transmittance};
 use crate::spectrum::Spectrum;
 use crate::stats::Stats;
+use std::ops::ControlFlow::{self, Break, Continue};
 
 /// The state of a walk between two vertices.
 struct Step {
@@ -26,15 +27,11 @@ struct Step {
     pdf_w: f32,
 }
 
-/// The end of a walk, with its escape if it left the scene.
-struct End(Option<Escape>);
-
 /// The data that a walk does not change.
 struct Walker<'a> {
     job: &'a Job<'a>,
     mode: TransportMode,
     stream: &'a SampleStream,
-    max_vertices: usize,
 }
 
 /// Walks a camera subpath that starts with `ray` and the weight `weight` of its film position, and adds it to
@@ -51,7 +48,6 @@ pub fn camera_subpath(
         job,
         mode: TransportMode::Radiance,
         stream,
-        max_vertices: job.settings.max_vertices(),
     };
     // Cameras draw rays in proportion to W_e |cosθ|, so that β begins with the filter's weight.
     let step = Step {
@@ -89,8 +85,6 @@ pub fn light_subpath(
         job,
         mode: TransportMode::Importance,
         stream,
-        // Each strategy has t ≥ 1: one vertex is left for the lens.
-        max_vertices: job.settings.max_vertices() - 1,
     };
     walker.walk(subpaths, &start, step, &mut stats.rays.light);
 }
@@ -139,21 +133,30 @@ impl Walker<'_> {
         rays: &mut u64,
     ) -> Option<Escape> {
         let start = magnitude(step.beta);
-        for count in 1..self.max_vertices {
+        // Each strategy has t ≥ 1: a light walk leaves one vertex for the lens.
+        let for_lens = usize::from(self.mode == TransportMode::Importance);
+        let most = self.job.settings.max_vertices() - for_lens;
+        for count in 1..most {
             *rays += 1;
-            if let Some(End(escape)) = self.advance(vertices, &step, count) {
+            if let Break(escape) = self.advance(vertices, &step, count) {
                 return escape;
             }
-            if count + 1 < self.max_vertices {
+            if count + 1 < most {
                 step = self.scatter(&mut vertices[first..], start)?;
             }
         }
         None
     }
 
-    /// Adds vertex number `index`, the surface or the point in a medium that `step` leads to.
+    /// Adds vertex number `index`, the surface or the point in a medium that `step` leads to. Break: the walk ends,
+    /// with its escape if it left the scene.
     #[inline(always)]
-    fn advance(&self, vertices: &mut Vec<Vertex>, step: &Step, index: usize) -> Option<End> {
+    fn advance(
+        &self,
+        vertices: &mut Vec<Vertex>,
+        step: &Step,
+        index: usize,
+    ) -> ControlFlow<Option<Escape>> {
         let scene = self.job.scene;
         if scene.has_media() {
             return self.advance_in_media(vertices, step, index);
@@ -161,7 +164,7 @@ impl Walker<'_> {
         let chances = RayDraws::new(self.stream, index).until(self.job.stop);
         let Some(hit) = scene.intersect(step.origin, step.direction, chances) else {
             let from = vertices[vertices.len() - 1].locus;
-            return Some(End(self.escape(&from, step, None)));
+            return Break(self.escape(&from, step, None));
         };
         vertices.push(self.surface(&hit, step, index));
         reach(vertices, step, None)
@@ -174,7 +177,7 @@ impl Walker<'_> {
         vertices: &mut Vec<Vertex>,
         step: &Step,
         index: usize,
-    ) -> Option<End> {
+    ) -> ControlFlow<Option<Escape>> {
         let from = vertices[vertices.len() - 1].locus;
         let chances = RayDraws::new(self.stream, index).until(self.job.stop);
         let (scene, lanes) = (self.job.scene, self.job.lanes);
@@ -185,7 +188,7 @@ impl Walker<'_> {
             transmittance,
         } = scene.advance(&ray, medium, chances, lanes);
         let vertex = match &interaction {
-            Interaction::Escape => return Some(End(self.escape(&from, step, Some(transmittance)))),
+            Interaction::Escape => return Break(self.escape(&from, step, Some(transmittance))),
             Interaction::Surface(hit, media) => {
                 let mut vertex = self.surface(hit, step, index);
                 vertex.locus.media = *media;
@@ -267,9 +270,13 @@ impl Walker<'_> {
 /// Sets the densities of the last of `vertices`, which `step` reached through the media of `edge`. Removes it and ends
 /// the walk where its density is 0: rounding put it on the vertex before, in a corner, or media let nothing through.
 #[inline(always)]
-fn reach(vertices: &mut Vec<Vertex>, step: &Step, edge: Option<&Edge>) -> Option<End> {
+fn reach(
+    vertices: &mut Vec<Vertex>,
+    step: &Step,
+    edge: Option<&Edge>,
+) -> ControlFlow<Option<Escape>> {
     let [.., from, vertex] = &mut vertices[..] else {
-        return Some(End(None));
+        return Break(None);
     };
     let mut segment = Segment::along(&from.locus, &vertex.locus, step.direction);
     if let Some(edge) = edge {
@@ -280,9 +287,9 @@ fn reach(vertices: &mut Vec<Vertex>, step: &Step, edge: Option<&Edge>) -> Option
     vertex.to_previous = segment.to_a;
     if vertex.pdf_fwd == 0.0 {
         vertices.pop();
-        return Some(End(None));
+        return Break(None);
     }
-    None
+    Continue(())
 }
 
 /// Returns the largest lane, whatever its sign: a filter may be negative. Never zero, so that throughput

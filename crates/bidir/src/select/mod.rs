@@ -46,12 +46,6 @@ pub struct Candidate {
 const _: () = assert!(size_of::<Candidate>() == 48);
 
 impl Candidate {
-    /// Raises an estimate to a positive minimum, so that every candidate may be chosen.
-    #[inline]
-    pub fn score(estimate: f32) -> f32 {
-        estimate.max(f32::MIN_POSITIVE)
-    }
-
     /// Returns the ends of its shadow ray; `light` and `camera` have its vertices.
     #[inline]
     pub(crate) fn ends(&self, light: &Subpaths, camera: &Subpaths) -> [Locus; 2] {
@@ -116,17 +110,23 @@ impl ShadowRays {
     /// The default threshold of `ray-roulette`, as a fraction of the mean luminance.
     pub const DEFAULT_ROULETTE: f32 = 0.1;
 
+    /// The rules that are written without a number.
+    const PLAIN: [(&'static str, Self); 5] = [
+        ("all", Self::All),
+        ("per-light-vertex", Self::PerLightVertex),
+        ("per-camera-vertex", Self::PerCameraVertex),
+        ("per-pair", Self::PerPair),
+        ("ray-roulette", Self::RayRoulette(Self::DEFAULT_ROULETTE)),
+    ];
+
     /// Makes the rule; it uses the image's mean luminance only if it [`needs_mean`](Self::needs_mean).
     pub fn selector(self, mean_luminance: f32) -> Box<dyn Selector> {
+        let one_per = |group| Box::new(OnePerGroup { group });
         match self {
             Self::All => Box::new(All),
-            Self::PerLightVertex => Box::new(OnePerGroup {
-                group: Group::LightVertex,
-            }),
-            Self::PerCameraVertex => Box::new(OnePerGroup {
-                group: Group::CameraVertex,
-            }),
-            Self::PerPair => Box::new(OnePerGroup { group: Group::Pair }),
+            Self::PerLightVertex => one_per(Group::LightVertex),
+            Self::PerCameraVertex => one_per(Group::CameraVertex),
+            Self::PerPair => one_per(Group::Pair),
             Self::RayRoulette(part) => Box::new(RayRoulette::new(part, mean_luminance)),
             Self::Budget(rays) => Box::new(Budget { rays }),
         }
@@ -152,12 +152,12 @@ as_text!(ShadowRays);
 impl fmt::Display for ShadowRays {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::All => write!(f, "all"),
-            Self::PerLightVertex => write!(f, "per-light-vertex"),
-            Self::PerCameraVertex => write!(f, "per-camera-vertex"),
-            Self::PerPair => write!(f, "per-pair"),
             Self::RayRoulette(part) => write!(f, "ray-roulette:{part}"),
             Self::Budget(rays) => write!(f, "budget:{rays}"),
+            plain => {
+                let named = Self::PLAIN.iter().find(|(_, rule)| rule == plain);
+                f.write_str(named.map_or("", |(name, _)| name))
+            }
         }
     }
 }
@@ -181,29 +181,19 @@ impl FromStr for ShadowRays {
     type Err = ShadowRaysError;
 
     fn from_str(text: &str) -> Result<Self, ShadowRaysError> {
-        let (name, value) = match text.split_once(':') {
-            Some((name, value)) => (name, Some(value)),
-            None => (text, None),
-        };
-        if (name, value) == ("budget", None) {
-            return Err(ShadowRaysError::NoBudget);
-        }
-        let rule = match (name, value) {
-            ("all", None) => Some(Self::All),
-            ("per-light-vertex", None) => Some(Self::PerLightVertex),
-            ("per-camera-vertex", None) => Some(Self::PerCameraVertex),
-            ("per-pair", None) => Some(Self::PerPair),
-            ("ray-roulette", None) => Some(Self::RayRoulette(Self::DEFAULT_ROULETTE)),
-            ("ray-roulette", Some(part)) => part
-                .parse()
-                .ok()
-                .filter(|part: &f32| part.is_finite() && *part > 0.0)
-                .map(Self::RayRoulette),
-            ("budget", Some(rays)) => rays
-                .parse()
-                .ok()
-                .filter(|&rays: &u32| rays > 0)
-                .map(Self::Budget),
+        let plain = Self::PLAIN.into_iter().find(|(name, _)| *name == text);
+        let rule = match (plain, text.split_once(':')) {
+            (Some((_, rule)), _) => Some(rule),
+            (None, None) if text == "budget" => return Err(ShadowRaysError::NoBudget),
+            (None, Some(("ray-roulette", part))) => {
+                let part = part.parse().ok();
+                let part = part.filter(|part: &f32| part.is_finite() && *part > 0.0);
+                part.map(Self::RayRoulette)
+            }
+            (None, Some(("budget", rays))) => {
+                let rays = rays.parse().ok().filter(|&rays: &u32| rays > 0);
+                rays.map(Self::Budget)
+            }
             _ => None,
         };
         rule.ok_or_else(|| ShadowRaysError::Unknown(text.to_owned()))

@@ -23,13 +23,12 @@ pub(in super::super) fn connect(
 ) {
     // Its lists in `ends`.
     let mut list = 0;
-    for (number, sample) in walked.samples.iter().enumerate() {
+    for (i, sample) in walked.samples.iter().enumerate() {
         let mut connector = Connector {
             job,
             sample,
             walked,
-            camera: walked.camera.get(number),
-            first: [candidates.offered.len(), candidates.unoffered.len()],
+            camera: walked.camera.get(i),
             candidates,
             worker,
         };
@@ -40,8 +39,11 @@ pub(in super::super) fn connect(
             connector.offer_walked(t, ends.vertices.get(list));
             list += 1;
         }
-        connector.count();
         candidates.offered.close();
+    }
+    for found in [&candidates.offered[..], &candidates.unoffered] {
+        let strategies = found.iter().map(|candidate| candidate.term.strategy);
+        worker.stats.count_connections(strategies);
     }
     worker.stopwatch.end(Stage::Candidates);
 }
@@ -64,8 +66,6 @@ pub(super) struct Connector<'a> {
     sample: &'a Sample,
     pub(super) walked: &'a Walked,
     pub(super) camera: Subpath<'a>,
-    /// Where its candidates begin in all offered ones, and in all others.
-    first: [usize; 2],
     pub(super) candidates: &'a mut Candidates,
     worker: &'a mut Worker,
 }
@@ -156,12 +156,12 @@ impl<'a> Connector<'a> {
         if connection.contribution.is_black() {
             return;
         }
-        let mut term = end.term(t, connection.contribution * end.share, connection.weight);
-        let value = term.value();
-        let mean = self.job.lanes.mean(value.map(f32::abs));
-        term.contribution *= connection.transmittance;
-        let y = (self.camera.first + t - 1) as u32;
-        let candidate = end.candidate(term, mean * connection.score_factor, y);
+        let contribution = connection.contribution * end.share;
+        let value = contribution * connection.weight;
+        let score = self.job.lanes.mean(value.map(f32::abs)) * connection.score_factor;
+        let contribution = contribution * connection.transmittance;
+        let numbers = [t, self.camera.first + t - 1];
+        let candidate = end.candidate(numbers, contribution, connection.weight, score);
         if is_summable(value) & !value.is_black() {
             self.candidates.offered.open().write(candidate, 1);
         } else {
@@ -175,19 +175,5 @@ impl<'a> Connector<'a> {
             drop_term(&mut self.worker.stats, self.sample, candidate.term.strategy);
         }
         self.candidates.unoffered.push(candidate);
-    }
-
-    /// Counts all that was found.
-    fn count(self) {
-        let [offered, others] = self.first;
-        let Candidates {
-            offered: all,
-            unoffered,
-            ..
-        } = self.candidates;
-        for found in [&all[offered..], &unoffered[others..]] {
-            let strategies = found.iter().map(|candidate| candidate.term.strategy);
-            self.worker.stats.count_connections(strategies);
-        }
     }
 }

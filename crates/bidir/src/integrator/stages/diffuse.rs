@@ -99,7 +99,7 @@ impl Connector<'_> {
         let means = values.abs_means(self.job.lanes);
         let scores = means * Vec4::from_array(root_visibility);
         let (contributions, weights) = (contributions.each(), connections.weights.to_array());
-        let y = (self.camera.first + t - 1) as u32;
+        let numbers = [t, self.camera.first + t - 1];
         // Half of all connections may be zero, at random: no branch tells them apart.
         let is_offered = is_offered.bitmask() as usize;
         self.candidates
@@ -109,8 +109,8 @@ impl Connector<'_> {
                 let mut offered = 0;
                 let is_there = |(_, end): &(usize, &LightEnd)| end.place.s > 0;
                 for (lane, end) in four.iter().enumerate().take_while(is_there) {
-                    let term = end.term(t, contributions[lane], weights[lane]);
-                    room[offered] = end.candidate(term, scores[lane], y);
+                    room[offered] =
+                        end.candidate(numbers, contributions[lane], weights[lane], scores[lane]);
                     offered += is_offered >> lane & 1;
                 }
                 offered

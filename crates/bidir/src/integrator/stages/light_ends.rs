@@ -15,35 +15,36 @@ use crate::strategy::Strategy;
 
 /// A light vertex that a camera vertex is connected with.
 #[derive(Clone, Copy, Debug, Default)]
-pub(in super::super) struct LightEnd {
+pub(super) struct LightEnd {
     /// Its place.
-    pub(in super::super) place: Place,
+    pub(super) place: Place,
     /// [`Candidate::light_vertex`].
-    pub(in super::super) number: u32,
+    pub(super) number: u32,
     /// The factor of the connection: 1/π(n) of `Pairs`, or 1 / (M N P) for a vertex of a cache. That of a light point is
     /// in its β.
-    pub(in super::super) share: f32,
+    pub(super) share: f32,
 }
 
 impl LightEnd {
-    /// Returns the term of its connection with camera vertex number `t`.
+    /// Returns the candidate that connects it with camera vertex number `t`, which is number `y` of a batch. The score
+    /// is raised to a positive minimum, so that every candidate may be chosen.
     #[inline(always)]
-    pub(in super::super) fn term(&self, t: usize, contribution: Spectrum, weight: f32) -> Term {
-        Term {
-            strategy: Strategy::new(self.place.s.into(), t),
-            light: self.place.light,
-            contribution,
-            weight,
-        }
-    }
-
-    /// Returns the candidate that is such a `term`, with number `y` of all camera vertices.
-    #[inline(always)]
-    pub(in super::super) fn candidate(&self, term: Term, score: f32, y: u32) -> Candidate {
+    pub(super) fn candidate(
+        &self,
+        [t, y]: [usize; 2],
+        contribution: Spectrum,
+        weight: f32,
+        score: f32,
+    ) -> Candidate {
         Candidate {
-            term,
-            score: Candidate::score(score),
-            vertices: [self.place.z, y],
+            term: Term {
+                strategy: Strategy::new(self.place.s.into(), t),
+                light: self.place.light,
+                contribution,
+                weight,
+            },
+            score: score.max(f32::MIN_POSITIVE),
+            vertices: [self.place.z, y as u32],
             light_vertex: self.number,
         }
     }
@@ -51,11 +52,11 @@ impl LightEnd {
 
 /// A light point of next-event estimation.
 #[derive(Clone, Copy, Debug, Default)]
-pub(in super::super) struct NextEvent {
+pub(super) struct NextEvent {
     /// The point as a light vertex.
-    pub(in super::super) end: LightEnd,
+    pub(super) end: LightEnd,
     /// e, the density that it was drawn with.
-    pub(in super::super) pdf: f32,
+    pub(super) pdf: f32,
 }
 
 /// The light vertices of each camera vertex from t = 2 on: a list for each, empty or not, in the order of samples and t.
@@ -63,9 +64,9 @@ pub(in super::super) struct NextEvent {
 #[derive(Debug, Default)]
 pub(in super::super) struct LightEnds {
     /// Its own light points.
-    pub(in super::super) points: Lists<NextEvent>,
+    pub(super) points: Lists<NextEvent>,
     /// Vertices of light subpaths.
-    pub(in super::super) vertices: Lists<LightEnd>,
+    pub(super) vertices: Lists<LightEnd>,
 }
 
 impl LightEnds {
@@ -88,19 +89,15 @@ pub(in super::super) fn next_events(
     if job.settings.light_point != LightPointChoice::Fresh {
         return;
     }
-    let Walked {
-        samples,
-        camera,
-        light,
-    } = walked;
     let longest = job.settings.max_vertices() - 1;
-    for (index, sample) in samples.iter().enumerate() {
-        for (t, y) in (2..).zip(camera.get(index).vertices.iter().skip(1)) {
+    for (i, sample) in walked.samples.iter().enumerate() {
+        for (t, y) in (2..).zip(walked.camera.get(i).vertices.iter().skip(1)) {
             if t <= longest && !y.is_delta() && job.takes(1, t) {
                 let count = counts.at(t);
                 ends.points.open().make_room(count.into());
                 for k in 0..count {
-                    if let Some(event) = add_point(light, job, sample, t, y, [k, count]) {
+                    if let Some(event) = add_point(&mut walked.light, job, sample, t, y, [k, count])
+                    {
                         ends.points.open().write(event, 1);
                     }
                 }
@@ -154,17 +151,11 @@ pub(in super::super) fn own_light(
     ends: &mut LightEnds,
     worker: &mut Worker,
 ) {
-    let Walked {
-        samples,
-        camera,
-        light,
-    } = walked;
-    let first = walked.first_light();
     let settings = job.settings;
-    for (number, sample) in samples.iter().enumerate() {
-        let subpath = light.get(first + number);
+    for (i, sample) in walked.samples.iter().enumerate() {
+        let subpath = walked.light.get(walked.first_light() + i);
         let mut pairs = Pairs::new(job, &sample.camera);
-        for (t, y) in (2..).zip(camera.get(number).vertices.iter().skip(1)) {
+        for (t, y) in (2..).zip(walked.camera.get(i).vertices.iter().skip(1)) {
             let longest = if y.is_delta() {
                 0
             } else {
@@ -174,11 +165,10 @@ pub(in super::super) fn own_light(
             list.make_room(longest);
             for s in settings.light_point.first_walked()..=longest {
                 // Every pair in turn, whatever becomes of it: each moves the pointer.
-                let share = pairs.take(s + t);
-                let place = Place::new(&subpath, s - 1, &light.sums);
-                let (Some(share), Some(place)) = (share, place) else {
+                let Some(share) = pairs.take(s + t) else {
                     continue;
                 };
+                let place = Place::new(&subpath, s - 1, &walked.light.sums);
                 let connects = place.is_diffuse || !subpath.vertices[s - 1].is_delta();
                 let end = LightEnd {
                     place,
@@ -204,14 +194,10 @@ pub(in super::super) fn draw_cached(
     counts: CandidateCount,
     worker: &mut Worker,
 ) {
-    let Walked {
-        samples,
-        camera,
-        light,
-    } = walked;
+    let light = &walked.light;
     let takes_all = job.settings.strategies.is_all();
-    for (number, sample) in samples.iter().enumerate() {
-        for (t, y) in (2..).zip(camera.get(number).vertices.iter().skip(1)) {
+    for (i, sample) in walked.samples.iter().enumerate() {
+        for (t, y) in (2..).zip(walked.camera.get(i).vertices.iter().skip(1)) {
             // s vertices at most.
             let longest = job.settings.max_vertices().saturating_sub(t);
             if !y.is_delta() {

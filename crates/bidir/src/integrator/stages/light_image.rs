@@ -37,12 +37,6 @@ pub(in super::super) fn light_image(
     weighting: Weighting,
 ) {
     let first = walked.first_light();
-    let Worker {
-        weights,
-        shadow_rays,
-        stats,
-        ..
-    } = worker;
     for (number, sample) in walked.samples.iter().enumerate() {
         let walk = walked.light.get(first + number);
         for s in 1..=walk.vertices.len() {
@@ -53,18 +47,16 @@ pub(in super::super) fn light_image(
             let Some(image) = LightImage::new(job, &walk.vertices[..s], &lens) else {
                 continue;
             };
-            let sums = match weighting {
-                Weighting::Alone => None,
-                Weighting::Combined => Some((&walked.light.sums, walk.first + s - 1)),
-            };
-            if let Some((term, shadow)) = image.weighted_term(job, sums, weights) {
-                let link = image.link(job, sample);
+            let sums = (&walked.light.sums, walk.first + s - 1);
+            let sums = (weighting == Weighting::Combined).then_some(sums);
+            if let Some((term, shadow)) = image.weighted_term(job, sums, &mut worker.weights) {
+                let (link, stats) = (image.link(job, sample), &mut worker.stats);
                 let entry = enter(splats, stats, number, sample, term, link);
                 shadow.apply(entry, stats);
             }
         }
     }
-    trace(job, splats, shadow_rays, stats);
+    trace(job, splats, &mut worker.shadow_rays, &mut worker.stats);
     worker.stopwatch.end(Stage::LightImage);
 }
 
@@ -79,6 +71,8 @@ pub(in super::super) fn lens_vertex(job: &Job<'_>, sample: &Sample, s: usize) ->
 /// A light vertex and the lens point that sees it, before visibility.
 struct LightImage<'a> {
     light: &'a [Vertex],
+    /// The last of `light`.
+    z: &'a Vertex,
     lens: &'a Vertex,
     /// From the light vertex to the lens.
     segment: Segment,
@@ -88,23 +82,24 @@ struct LightImage<'a> {
 impl<'a> LightImage<'a> {
     /// Returns the last vertex of a light subpath, as a lens point sees it. None: its image is not on the film.
     fn new(job: &Job<'_>, light: &'a [Vertex], lens: &'a Vertex) -> Option<Self> {
-        let end = light.last()?;
+        let z = light.last()?;
         // The image of a Dirac light itself would be a Dirac distribution: such lights are invisible.
-        if matches!(end.scattering, Scattering::Light) && end.is_on_delta_light(job) {
+        if matches!(z.scattering, Scattering::Light) && z.is_on_delta_light(job) {
             return None;
         }
-        if lens.locus.is_infinite() && end.locus.is_infinite() {
+        if lens.locus.is_infinite() && z.locus.is_infinite() {
             return None;
         }
-        let segment = end.segment_to(lens);
+        let segment = z.segment_to(lens);
         let on_ray = if lens.locus.is_infinite() {
-            end.locus.point
+            z.locus.point
         } else {
             lens.locus.point
         };
         let raster = job.view.camera().raster(on_ray, -segment.w)?;
         reaches_film(job, raster).then_some(Self {
             light,
+            z,
             lens,
             segment,
             raster,
@@ -126,8 +121,8 @@ impl<'a> LightImage<'a> {
         let light = sums.at(z);
         let is_plain = |end: &&DiffuseEnd| !end.is_turned(self.segment.w);
         if let Some(end) = sums.diffuse(z).filter(is_plain) {
-            let (s, z) = (self.light.len(), self.end());
-            let found = end.light_image(job, s, z, light, self.lens, &self.segment);
+            let s = self.light.len();
+            let found = end.light_image(job, s, self.z, light, self.lens, &self.segment);
             let (contribution, weight) = found?;
             let term = self.term(job, contribution, weight)?;
             // Diffuse ends are those whose rays go through no medium.
@@ -172,15 +167,15 @@ impl<'a> LightImage<'a> {
         })
     }
 
-    /// Returns the light vertex.
-    fn end(&self) -> &'a Vertex {
-        &self.light[self.light.len() - 1]
-    }
-
-    /// Returns the ends of its shadow ray.
+    /// Returns the ends of its shadow ray: the light vertex, and the lens point, or the place of a parallel ray on the
+    /// camera's plane, behind which nothing is in its way.
     fn ends(&self, job: &Job<'_>) -> [Locus; 2] {
-        let end = self.end();
-        [end.locus, camera_end(job, self.lens, end)]
+        let [z, lens] = [self.z.locus, self.lens.locus];
+        if !lens.is_infinite() {
+            return [z, lens];
+        }
+        let depth = job.view.camera().depth(z.point);
+        [z, Locus::in_space(z.point + lens.point * depth)]
     }
 
     /// Returns the link to the film, with the ends of its shadow ray.
@@ -192,16 +187,6 @@ impl<'a> LightImage<'a> {
         };
         Link::LightImage(self.ends(job), place)
     }
-}
-
-/// Returns the point that a camera sees the vertex `end` from: the lens point, or the place of a parallel ray on the
-/// camera's plane, behind which nothing is in its way.
-fn camera_end(job: &Job<'_>, lens: &Vertex, end: &Vertex) -> Locus {
-    if !lens.locus.is_infinite() {
-        return lens.locus;
-    }
-    let depth = job.view.camera().depth(end.locus.point);
-    Locus::in_space(end.locus.point + lens.locus.point * depth)
 }
 
 /// Returns true where the filter of some pixel of the crop may reach `raster`.

@@ -1,6 +1,6 @@
 //! Choosing connections, and the shadow rays of those that were chosen.
 
-use super::super::{Candidates, Entry, Fate, Link, Walked, Worker};
+use super::super::{Candidates, Entry, Link, Walked, Worker};
 use super::media::trace_chosen_through_media;
 use crate::path::Job;
 use crate::scene::ShadowRayBuffers;
@@ -37,13 +37,10 @@ pub(in super::super) fn select(
             number += 1;
         }
         let of = &offered[candidate];
+        let link = Link::Connection(of.ends(light, camera));
         entries.push(Entry {
-            sample: number as u32,
-            term: of.term,
             prob,
-            transmittance: 1.0,
-            link: Link::Connection(of.ends(light, camera)),
-            fate: Fate::NotTraced,
+            ..Entry::certain(number, of.term, link)
         });
     }
     worker.stopwatch.end(Stage::Select);
