@@ -129,17 +129,6 @@ impl Stats {
         }
     }
 
-    /// Counts the square of the luminance that one sample added to the weighted image of `strategy`.
-    #[inline]
-    pub fn add_square(&mut self, strategy: Strategy, luminance: f64) {
-        self.strategy_images.of(strategy).add_square(luminance);
-    }
-
-    /// Counts a value that is missing in the raw image of `strategy`.
-    pub fn drop_raw(&mut self, strategy: Strategy) {
-        self.strategy_images.of(strategy).raw_dropped += 1;
-    }
-
     /// Counts a contribution that was dropped.
     pub fn drop_contribution(&mut self, dropped: Dropped) {
         self.dropped += 1;

@@ -84,7 +84,7 @@ impl Deposit<'_> {
             self.add_luminance(entry, sums);
         }
         for ((_, strategy), luminance) in sums.drain(..) {
-            stats.add_square(strategy, luminance);
+            stats.strategy_images.of(strategy).add_square(luminance);
         }
     }
 
@@ -106,17 +106,17 @@ impl Deposit<'_> {
 
     /// Adds a splat to its strategy's raw image, and counts its square, if it reaches the film.
     fn splat_raw(&self, entry: &Entry, place: SplatPlace, stats: &mut Stats) {
-        let (film, strategy) = (self.job.view.film(), entry.term.strategy);
-        let Some((_, weight)) = film.pick_pixel(place) else {
+        let strategy = entry.term.strategy;
+        let Some((pixel, weight)) = self.job.view.film().pick_pixel(place) else {
             return;
         };
         // A light subpath has one splat by each strategy.
         if self.layers.weighted_part(strategy).is_some() {
             let luminance = self.luminance(entry) * f64::from(weight);
-            stats.add_square(strategy, luminance);
+            stats.strategy_images.of(strategy).add_square(luminance);
         }
         if let Some((part, value)) = self.raw(entry, stats) {
-            self.buffer.splat_to_part(film, place, value, part);
+            self.buffer.splat_to_part(pixel, part, value, weight);
         }
     }
 
@@ -129,7 +129,7 @@ impl Deposit<'_> {
     fn raw(&self, entry: &Entry, stats: &mut Stats) -> Option<(usize, Rgb)> {
         let part = self.layers.raw_part(entry.term.strategy)?;
         let Some(value) = entry.unweighted() else {
-            stats.drop_raw(entry.term.strategy);
+            stats.strategy_images.of(entry.term.strategy).raw_dropped += 1;
             return None;
         };
         Some((part, self.rgb(value)))

@@ -146,18 +146,10 @@ impl PassBuffer {
         add(std::iter::once(&self.light[i]).chain(parts), value, weight);
     }
 
-    /// Adds a splat only to one part, of the pixel that [`Self::splat`] draws at the same `place`.
-    pub fn splat_to_part(
-        &self,
-        settings: &FilmSettings,
-        place: SplatPlace,
-        value: Rgb,
-        part: usize,
-    ) {
-        if let Some((i, weight)) = settings.pick_pixel(place) {
-            let cells = &self.part_light[i * self.layers[1] + part];
-            add(std::iter::once(cells), value, weight);
-        }
+    /// Adds a splat of `value` times the filter's `weight` only to one part of pixel `i`.
+    pub fn splat_to_part(&self, i: usize, part: usize, value: Rgb, weight: f32) {
+        let cells = &self.part_light[i * self.layers[1] + part];
+        add(std::iter::once(cells), value, weight);
     }
 
     /// Returns the camera sample and the sum of splats of pixel `i`. Unit: [`fixed::VALUE_SCALE`].

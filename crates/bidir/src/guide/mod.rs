@@ -28,7 +28,7 @@ impl<'a> Guide<'a> {
     /// Returns the cell of a vertex with the unit normal `n`; without proposals it is the default.
     #[inline]
     pub(crate) fn cell(&self, point: Vec3, n: Vec3) -> Cell {
-        let cell = |all: &LightProposals| all.cells().of(point, n);
+        let cell = |all: &LightProposals| all.cells.of(point, n);
         self.proposals.map_or(Cell::default(), cell)
     }
 

@@ -54,7 +54,7 @@ const _: () = assert!(
 /// The proposals of cached light vertices to camera vertices.
 #[derive(Clone, Debug)]
 pub struct LightProposals {
-    cells: Cells,
+    pub(super) cells: Cells,
     /// One row for each cell of camera vertices.
     rows: Vec<ProposalRow>,
     /// For each cell of light vertices, κ / κ_c times a unit of (1 - ε) Γ; 0 if κ_c is 0.
@@ -94,11 +94,6 @@ impl PairSums {
             squares: vec![0.0; Cells::COUNT * Cells::COUNT],
             arrived: vec![[0; 2]; Cells::COUNT * Cells::COUNT],
         }
-    }
-
-    /// Adds `square` to Σ X² of pair number `pair`.
-    pub(crate) fn add(&mut self, pair: usize, square: f64) {
-        self.squares[pair] += square;
     }
 
     /// Counts a traced connection of pair number `pair`.
@@ -207,12 +202,6 @@ impl LightProposals {
                 kappa.get(cell).map_or(0.0, |&kappa| count_factor(kappa))
             }),
         }
-    }
-
-    /// Returns the division into cells.
-    #[inline]
-    pub(super) fn cells(&self) -> &Cells {
-        &self.cells
     }
 
     /// Returns n κ / M of a light vertex in the cell `light` for a camera vertex with the proposals `row`.
@@ -349,7 +338,7 @@ mod tests {
         let cells = Cells::new(&mut []);
         let mut sums = PairSums::uniform(vec![1.0; Cells::COUNT]);
         let [z, y] = [3, 5].map(Cells::cell);
-        sums.add(Cells::pair(y, y), 1.0);
+        sums.squares[Cells::pair(y, y)] += 1.0;
         let before = LightProposals::new(cells.clone(), &sums);
         for i in 0..99 {
             sums.see(Cells::pair(z, y), i % 4 == 0);
@@ -376,7 +365,7 @@ mod tests {
         let mut sums = PairSums::uniform((0..Cells::COUNT).map(kappa).collect());
         let y = Cells::cell(5);
         for z in (0..Cells::COUNT).step_by(3) {
-            sums.add(Cells::pair(Cells::cell(z), y), (z % 11) as f64);
+            sums.squares[Cells::pair(Cells::cell(z), y)] += f64::from(z as u32 % 11);
         }
         let all: f64 = sums.light_vertices.iter().sum();
         let proposals = LightProposals::new(Cells::new(&mut []), &sums);
@@ -394,7 +383,7 @@ mod tests {
         let mut sums = PairSums::uniform(vec![1.0; Cells::COUNT]);
         for light in (0..Cells::COUNT).filter(|light| light % 11 > 2) {
             let square = (light % 7 * light % 11) as f64;
-            sums.add(Cells::pair(Cells::cell(light), Cells::cell(5)), square);
+            sums.squares[Cells::pair(Cells::cell(light), Cells::cell(5))] += square;
         }
         LightProposals::new(Cells::new(&mut []), &sums)
     }
@@ -466,11 +455,11 @@ mod tests {
         let (own, pair) = (5.0, Cells::pair(z, y));
         for (pair, square, has_arrived) in [(pair, 2.0, true), (Cells::pair(other, y), 3.0, false)]
         {
-            sums.add(pair, square);
+            sums.squares[pair] += square;
             sums.see(pair, has_arrived);
         }
         let before = LightProposals::new(cells.clone(), &sums);
-        sums.add(pair, own);
+        sums.squares[pair] += own;
         sums.see(pair, false);
         let all = [Cells::COUNT as f64, sums.roots()[y.index()]];
         for light in [z, other] {

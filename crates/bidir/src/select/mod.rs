@@ -17,6 +17,7 @@ mod grouped;
 mod simple;
 
 pub use budget::Budget;
+pub(crate) use budget::threshold;
 pub use grouped::{Group, OnePerGroup};
 pub use simple::{All, RayRoulette};
 

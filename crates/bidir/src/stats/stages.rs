@@ -108,12 +108,7 @@ impl Stopwatch {
 
     /// Begins the light subpaths of a batch, which are measured as often as batches of samples.
     #[inline]
-    pub(crate) fn begin_light(&mut self) {
-        self.begin();
-    }
-
-    #[inline]
-    fn begin(&mut self) {
+    pub(crate) fn begin(&mut self) {
         let Some(clock) = self.clock else { return };
         self.waited += 1;
         self.last = None;

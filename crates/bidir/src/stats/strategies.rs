@@ -39,7 +39,7 @@ pub struct LayerCounts {
 impl LayerCounts {
     /// Counts the luminance that one sample added.
     #[inline]
-    pub(super) fn add_square(&mut self, luminance: f64) {
+    pub(crate) fn add_square(&mut self, luminance: f64) {
         let square = fixed::from_f64(luminance * luminance, MOMENT_SCALE);
         // Squares are positive, so that stopping at the top depends on no order.
         self.squares = self.squares.saturating_add(square);
@@ -74,13 +74,10 @@ pub struct StrategyTable<T = StrategyCounts> {
 impl<T: Copy + Default + PartialEq> StrategyTable<T> {
     /// Returns the counts of a strategy for an increment.
     #[inline]
-    pub(super) fn of(&mut self, strategy: Strategy) -> &mut T {
-        let (s, t) = (usize::from(strategy.s), usize::from(strategy.t));
-        let n = s + t;
-        if n > MAX_ROW {
+    pub(crate) fn of(&mut self, strategy: Strategy) -> &mut T {
+        let Some(i) = index(strategy) else {
             return &mut self.longer;
-        }
-        let i = n * n.saturating_sub(1) / 2 + s;
+        };
         if i >= self.rows.len() {
             self.rows.resize(i + 1, T::default());
         }
@@ -89,13 +86,9 @@ impl<T: Copy + Default + PartialEq> StrategyTable<T> {
 
     /// Returns the counts of a strategy; for a path too long for counts of its own, those of all such paths.
     pub fn get(&self, strategy: Strategy) -> T {
-        let (s, t) = (usize::from(strategy.s), usize::from(strategy.t));
-        let n = s + t;
-        if n > MAX_ROW {
-            return self.longer;
-        }
-        let i = n * n.saturating_sub(1) / 2 + s;
-        self.rows.get(i).copied().unwrap_or_default()
+        index(strategy).map_or(self.longer, |i| {
+            self.rows.get(i).copied().unwrap_or_default()
+        })
     }
 
     /// Returns every strategy with its counts if there are any, shorter paths first.
@@ -119,6 +112,16 @@ impl<T: AddAssign + Copy + Default + PartialEq> AddAssign<&Self> for StrategyTab
         }
         self.longer += other.longer;
     }
+}
+
+/// Returns the place of a strategy in the rows. None: its paths are too long for counts of their own.
+#[inline]
+fn index(strategy: Strategy) -> Option<usize> {
+    let (s, n) = (
+        usize::from(strategy.s),
+        usize::from(strategy.s + strategy.t),
+    );
+    (n <= MAX_ROW).then(|| n * n.saturating_sub(1) / 2 + s)
 }
 
 #[cfg(test)]

@@ -61,7 +61,7 @@ impl Session<'_> {
         batch.forget_light();
         let mut owners = self.subpath_owners(places).peekable();
         while owners.peek().is_some() {
-            batch.worker.stopwatch.begin_light();
+            batch.worker.stopwatch.begin();
             let places = owners.by_ref().take(size);
             batch.fill(places.map(|place| self.sample(place, pass)));
             walk_group(job, batch);

@@ -41,7 +41,7 @@ impl<'a> Judge<'a> {
         if let Some(lessons) = lessons {
             let counts = judge.counts(typical);
             judge.learned = Some(survey.known(input.view.film(), &lessons, &counts));
-            judge.light_vertices = lessons.light_vertices();
+            judge.light_vertices = lessons.light_vertices;
         }
         judge
     }
@@ -80,8 +80,8 @@ impl Survey {
             .as_ref()
             .map_or(0.0, |draws| 1.0 / draws.subpaths);
         let connections = self.connections(film, &lessons.cells, counts);
-        let (traced, possible) = connections.split_at(self.log.traced().len());
-        for (possible, connection) in self.log.possible().iter().zip(possible) {
+        let (traced, possible) = connections.split_at(self.log.traced.len());
+        for (possible, connection) in self.log.possible.iter().zip(possible) {
             let [factor, crowded] = [0.0, one].map(|more| lessons.factor_without(connection, more));
             let of_term = &mut parts[possible.term as usize][usize::from(possible.strategy.t > 2)];
             let part = f64::from(possible.part);

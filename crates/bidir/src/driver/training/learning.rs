@@ -26,9 +26,9 @@ impl Survey {
             cells: self.log.cells_of(cells, ends),
             evidence,
         };
-        let traced = (self.log.traced().iter())
+        let traced = (self.log.traced.iter())
             .map(|&(ends, arrived)| connection(ends, Evidence::Traced(arrived)));
-        let possible = self.log.possible().iter().map(|possible| {
+        let possible = self.log.possible.iter().map(|possible| {
             let value = self.terms[possible.term as usize].value_by(film, counts);
             let count = counts.of_connection(possible.strategy);
             let square = count * value * value * f64::from(possible.part);
@@ -56,8 +56,8 @@ pub(super) struct Lessons {
     pub(super) light_start: Option<LightChoice>,
     /// Σ_c √(κ_c Σ X²) for each cell of camera vertices.
     roots: Vec<f64>,
-    /// κ.
-    light_vertices: f64,
+    /// κ for light subpaths that begin by the learned choice.
+    pub(super) light_vertices: f64,
 }
 
 impl Lessons {
@@ -94,7 +94,7 @@ impl Lessons {
                     Evidence::Traced(has_arrived) => sums.see(pair, has_arrived),
                     // If a light begins g times as many subpaths, each of them contributes 1/g.
                     Evidence::Square(square) => {
-                        sums.add(pair, square / connection.light.map_or(1.0, gain));
+                        sums.squares[pair] += square / connection.light.map_or(1.0, gain);
                     }
                 }
             }
@@ -109,11 +109,6 @@ impl Lessons {
             roots,
             light_vertices,
         })
-    }
-
-    /// Returns κ for light subpaths that begin by the learned choice.
-    pub(super) fn light_vertices(&self) -> f64 {
-        self.light_vertices
     }
 
     /// Returns the factor by which more light subpaths begin on `light` than by power.

@@ -36,12 +36,13 @@ pub(super) struct ConnectionLog {
     /// The point and the normal of each vertex.
     vertices: Vec<[Vec3; 2]>,
     /// The numbers of the light vertices that can be connected, each with the light that its subpath begins on.
-    light: Vec<(u32, u32)>,
+    pub(super) light: Vec<(u32, u32)>,
     /// The numbers of the camera vertices that can be connected.
     camera: Vec<u32>,
     /// The connections that were traced, each with true if it is visible.
-    traced: Vec<(Ends, bool)>,
-    possible: Vec<Possible>,
+    pub(super) traced: Vec<(Ends, bool)>,
+    /// The connections that could have made paths.
+    pub(super) possible: Vec<Possible>,
     /// The first vertices of the sample that was begun last.
     sample: FirstVertices,
 }
@@ -167,21 +168,6 @@ impl ConnectionLog {
             possible.ends.vertices[0] < count && possible.part > 0.0 && possible.part.is_finite()
         };
         self.possible.extend(possible.filter(exists));
-    }
-
-    /// Returns the connections that were traced, each with true if it is visible.
-    pub(super) fn traced(&self) -> &[(Ends, bool)] {
-        &self.traced
-    }
-
-    /// Returns the connections that could have made paths.
-    pub(super) fn possible(&self) -> &[Possible] {
-        &self.possible
-    }
-
-    /// Returns the number of light vertices that can be connected.
-    pub(super) fn light_vertex_count(&self) -> usize {
-        self.light.len()
     }
 
     /// Returns the cell and the light of each light vertex that can be connected.

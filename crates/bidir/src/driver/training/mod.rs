@@ -137,7 +137,7 @@ impl Training {
         let Some(lessons) = Lessons::of(input, settings, survey, cells) else {
             return;
         };
-        self.light_vertices = lessons.light_vertices();
+        self.light_vertices = lessons.light_vertices;
         if settings.lvc.proposal == ProposalKind::Learned {
             self.proposals = Some(LightProposals::new(lessons.cells, &lessons.sums));
         }

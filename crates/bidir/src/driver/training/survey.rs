@@ -65,11 +65,11 @@ impl Survey {
 
     /// Returns κ, the mean number of connectable vertices of a light subpath.
     pub(super) fn light_vertices(&self) -> f64 {
-        self.log.light_vertex_count() as f64 / self.samples()
+        self.log.light.len() as f64 / self.samples()
     }
 
     fn add(&mut self, more: Self) {
-        let traced = self.log.traced().len() as u32;
+        let traced = self.log.traced.len() as u32;
         let terms = more.terms.iter().map(|term| SurveyTerm {
             edge: term.edge.map(|edge| edge + traced),
             ..*term
