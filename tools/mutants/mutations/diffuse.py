@@ -93,8 +93,8 @@ DIFFUSE_ENDS = [
     (
         "light images of diffuse vertices with the counts of longer paths",
         DIFFUSE,
-        "sums.per_density(Depth::First, self.before(vertex))",
-        "sums.per_density(Depth::Deeper, self.before(vertex))",
+        "sums.per_density(Bounce::First, self.before(vertex))",
+        "sums.per_density(Bounce::Deeper, self.before(vertex))",
         RUNNING,
     ),
     (

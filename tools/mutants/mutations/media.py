@@ -82,8 +82,8 @@ MEDIA = [
     (
         "media that are foreseen, and let all light through",
         "crates/bidir/src/integrator/stages/connect.rs",
-        "let contribution = contribution * connection.transmittance;",
-        "let contribution = contribution * Spectrum::ONE;",
+        "let contribution = in_vacuum * connection.transmittance;",
+        "let contribution = in_vacuum * Spectrum::ONE;",
         FURNACE,
     ),
     (

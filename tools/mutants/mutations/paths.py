@@ -36,14 +36,14 @@ PATHS = [
     (
         "light subpaths with the lanes of another group",
         "crates/bidir/src/driver/session.rs",
-        "self.walk_light(&job, places.clone(), pass, batch, BATCH, |batch| {",
-        "self.walk_light(&self.job(0, job.stop), places.clone(), pass, batch, BATCH, |batch| {",
+        "self.walk_light(&job, slots.clone(), pass, batch, BATCH, |batch| {",
+        "self.walk_light(&self.job(0, job.stop), slots.clone(), pass, batch, BATCH, |batch| {",
         unit("groups_may_have_lanes"),
     ),
     (
         "a sample made again with the lanes of another group",
         "crates/bidir/src/driver/session.rs",
-        "self.job(place, Stop::NEVER)",
+        "self.job(slot, Stop::NEVER)",
         "self.job(0, Stop::NEVER)",
         unit("replays_have_the_lanes"),
     ),
@@ -99,21 +99,21 @@ PATHS = [
     ),
     (
         "s = 1 ratio without the emission density",
-        "crates/bidir/src/path/technique.rs",
+        "crates/bidir/src/path/strategy_class.rs",
         "1 => f64::from(self.vertices[0].from_light) / next_event * (a / b),",
         "1 => a / b,",
         unit("path::mis"),
     ),
     (
         "connections counted at Dirac vertices",
-        "crates/bidir/src/path/technique.rs",
+        "crates/bidir/src/path/strategy_class.rs",
         "j => !x[j - 1].is_delta && !x[j].is_delta,",
         "j => !x[j].is_delta,",
         RUNNING,
     ),
     (
         "Dirac lights counted as if they could be hit",
-        "crates/bidir/src/path/technique.rs",
+        "crates/bidir/src/path/strategy_class.rs",
         "0 => !self.light_is_delta,",
         "0 => true,",
         RUNNING,
@@ -141,9 +141,9 @@ PATHS = [
     ),
     (
         "n_j of the light image is one",
-        "crates/bidir/src/path/technique.rs",
-        "Technique::LightImage => self.counts.light_subpaths,",
-        "Technique::LightImage => 1.0,",
+        "crates/bidir/src/path/strategy_class.rs",
+        "StrategyClass::LightImage => self.counts.light_subpaths,",
+        "StrategyClass::LightImage => 1.0,",
         PATH,
     ),
     (
@@ -178,12 +178,12 @@ PATHS = [
     (
         "sum of the group in place of C/pi",
         "crates/bidir/src/integrator/stages/trace.rs",
-        "            prob,\n            ..Entry::certain(number, of.term, link)\n",
+        "            prob,\n            ..Entry::certain(index, of.term, link)\n",
         "            ..Entry::certain(\n"
-        "                number,\n"
+        "                index,\n"
         "                // Right in every grey image, wrong in colour.\n"
         "                {\n"
-        "                    let candidates = offered.get(number);\n"
+        "                    let candidates = offered.get(index);\n"
         "                    let all: f32 = candidates.iter().map(|c| c.score).sum();\n"
         "                    let values = candidates.iter().map(|c| c.term.value());\n"
         "                    let sum = values.fold(crate::spectrum::Spectrum::ZERO, |sum, v| sum + v);\n"
@@ -234,9 +234,9 @@ PATHS = [
     ),
     (
         "weights that know the proposal the other way round",
-        "crates/bidir/src/path/technique.rs",
-        "self.count_of(Technique::of(self.settings.light_point, s, t), cells)",
-        "self.count_of(Technique::of(self.settings.light_point, s, t), if s > t { [cells[1], cells[0]] } else { cells })",
+        "crates/bidir/src/path/strategy_class.rs",
+        "self.count_of(StrategyClass::of(self.settings.light_point, s, t), cells)",
+        "self.count_of(StrategyClass::of(self.settings.light_point, s, t), if s > t { [cells[1], cells[0]] } else { cells })",
         RUNNING,
     ),
     (
@@ -255,8 +255,8 @@ PATHS = [
     ),
     (
         "the first vertex's light points counted for those behind it",
-        "crates/bidir/src/path/technique.rs",
-        "self.counts.next_events[depth.index()]",
+        "crates/bidir/src/path/strategy_class.rs",
+        "self.counts.next_events[bounce as usize]",
         "self.counts.next_events[0]",
         PATH,
     ),
@@ -284,8 +284,8 @@ PATHS = [
     (
         "shared light subpaths counted as one in sums",
         "crates/bidir/src/path/running.rs",
-        "is_there * h(job.count_of(technique, [before.cell, z.cell]))",
-        "is_there * h(job.count_of(technique, [before.cell, z.cell]).signum())",
+        "is_there * h(job.count_of(class, [before.cell, z.cell]))",
+        "is_there * h(job.count_of(class, [before.cell, z.cell]).signum())",
         RUNNING,
     ),
     (

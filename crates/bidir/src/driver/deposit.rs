@@ -17,7 +17,7 @@ pub(super) struct Deposit<'a> {
 impl Deposit<'_> {
     /// Adds the samples of `batch` to the pass.
     pub(super) fn take(&self, batch: &mut Batch) {
-        for (sample, &value) in batch.walked.samples.iter().zip(&batch.values) {
+        for (sample, &value) in batch.walks.samples.iter().zip(&batch.values) {
             if let Some(pixel) = self.pixel(sample) {
                 self.buffer.set_camera_sample(pixel, self.rgb(value));
             }
@@ -43,7 +43,7 @@ impl Deposit<'_> {
 
     /// Adds the features of the one sample of `batch`.
     pub(super) fn take_features(&self, batch: &Batch, features: &Features) {
-        if let Some(pixel) = self.pixel(&batch.walked.samples[0]) {
+        if let Some(pixel) = self.pixel(&batch.walks.samples[0]) {
             let values = features.values(self.layers);
             self.buffer.set_features(pixel, values);
         }
@@ -71,7 +71,7 @@ impl Deposit<'_> {
     fn take_parts(&self, batch: &mut Batch) {
         let (stats, sums) = (&mut batch.worker.stats, &mut batch.luminances);
         for entry in batch.entries.iter().filter(|entry| entry.is_added()) {
-            let Some(pixel) = self.pixel(&batch.walked.samples[entry.sample as usize]) else {
+            let Some(pixel) = self.pixel(&batch.walks.samples[entry.sample as usize]) else {
                 continue;
             };
             let value = self.rgb(entry.value());

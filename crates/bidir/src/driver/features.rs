@@ -90,10 +90,10 @@ impl Features {
 impl FirstSurface {
     /// Finds the first surface of the one sample of `batch`. None: the ray escapes.
     fn find(job: &Job<'_>, batch: &mut Batch) -> Option<Self> {
-        let sample = &batch.walked.samples[0];
+        let sample = &batch.walks.samples[0];
         // A walk in a medium may scatter before it reaches a surface.
-        if batch.walked.camera.count() > 0 && !job.scene.has_media() {
-            let surface = batch.walked.camera.get(0).vertices.get(1)?;
+        if batch.walks.camera.count() > 0 && !job.scene.has_media() {
+            let surface = batch.walks.camera.get(0).vertices.get(1)?;
             return Some(Self::new(job, surface));
         }
         let (ray, _) = camera_ray(job, sample);
@@ -109,7 +109,7 @@ impl FirstSurface {
     fn new(job: &Job<'_>, surface: &Vertex) -> Self {
         let wo = surface.wo;
         let space = job.scene.space();
-        let [_, n_s] = surface.place();
+        let [_, n_s] = surface.point_and_normal();
         let albedo = surface.albedo(wo);
         let toward_camera = |n: Vec3| if n.dot(wo) < 0.0 { -n } else { n };
         Self {

@@ -120,14 +120,14 @@ impl Replay {
 
     /// Returns the light subpath of the sample; empty if the sample uses that of another, or none was walked.
     pub fn light(&self) -> Subpath<'_> {
-        let light = self.light.map(|number| self.batch.walked.light.get(number));
+        let light = self.light.map(|number| self.batch.walks.light.get(number));
         light.unwrap_or_default()
     }
 
     /// Returns the camera subpath of the sample; empty where none was walked.
     pub fn camera(&self) -> Subpath<'_> {
-        let is_walked = self.batch.walked.camera.count() > 0;
-        let camera = is_walked.then(|| self.batch.walked.camera.get(0));
+        let is_walked = self.batch.walks.camera.count() > 0;
+        let camera = is_walked.then(|| self.batch.walks.camera.get(0));
         camera.unwrap_or_default()
     }
 

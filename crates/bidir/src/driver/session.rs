@@ -243,17 +243,17 @@ impl<'a> Session<'a> {
             if begin >= pixels {
                 return true;
             }
-            let places = self.group(begin);
+            let slots = self.group(begin);
             let job = self.job(begin, progress.stop());
             if self.method.shares_light() {
-                self.walk_light(&job, places.clone(), pass, batch, BATCH, |batch| {
+                self.walk_light(&job, slots.clone(), pass, batch, BATCH, |batch| {
                     self.deposit(&job).take_splats(batch);
                 });
             }
-            if !self.render_group(&job, places.clone(), pass, batch, progress) {
+            if !self.render_group(&job, slots.clone(), pass, batch, progress) {
                 return false;
             }
-            progress.advance(places.end - places.start);
+            progress.advance(slots.end - slots.start);
         }
     }
 
@@ -266,12 +266,12 @@ impl<'a> Session<'a> {
         }
     }
 
-    /// Returns the job that all samples of the group of `place` share.
-    fn job<'j>(&'j self, place: u64, stop: Stop<'j>) -> Job<'j> {
+    /// Returns the job that all samples of the group of `slot` share.
+    fn job<'j>(&'j self, slot: u64, stop: Stop<'j>) -> Job<'j> {
         Job {
             scene: &self.scene,
             view: &self.view,
-            lanes: self.lanes(place),
+            lanes: self.lanes(slot),
             settings: &self.settings.path,
             counts: self.counts(),
             guide: self.guide(),
@@ -298,12 +298,12 @@ impl<'a> Session<'a> {
         training.filter(|_| self.settings.integrator == IntegratorKind::Lvc)
     }
 
-    /// Renders the samples at `places` batch by batch, and adds them to the pass. False: the host asked to stop, and
+    /// Renders the samples at `slots` batch by batch, and adds them to the pass. False: the host asked to stop, and
     /// the pass is to be given up.
     fn render_group(
         &self,
         job: &Job<'_>,
-        mut places: Range<u64>,
+        mut slots: Range<u64>,
         pass: u64,
         batch: &mut Batch,
         progress: &dyn Progress,
@@ -311,10 +311,10 @@ impl<'a> Session<'a> {
         let layers = self.film.layers();
         // The cost of a sample is measured for a batch of one.
         let size = if layers.features() > 0 { 1 } else { BATCH };
-        while !places.is_empty() {
-            let samples = places.by_ref().take(size);
-            batch.fill(samples.map(|place| self.sample(place, pass)));
-            let count = batch.walked.samples.len();
+        while !slots.is_empty() {
+            let samples = slots.by_ref().take(size);
+            batch.fill(samples.map(|slot| self.sample(slot, pass)));
+            let count = batch.walks.samples.len();
             batch.worker.stopwatch.begin_samples(count);
             let before = Meter::read(layers, batch, progress);
             self.method.run(job, batch);
@@ -333,27 +333,27 @@ impl<'a> Session<'a> {
         true
     }
 
-    /// Returns the sample at `place` in the order of a pass, with the light path that goes with it.
-    fn sample(&self, place: u64, pass: u64) -> Sample {
+    /// Returns the sample at `slot` in the order of a pass, with the light path that goes with it.
+    fn sample(&self, slot: u64, pass: u64) -> Sample {
         let film = self.view.film();
         let sampler = Sampler::new(self.settings.sampler, self.settings.seed);
-        let [x, y] = film.crop.pixel(self.order.pixel(place));
+        let [x, y] = film.crop.pixel(self.order.pixel(slot));
         let stream = u64::from(y) * u64::from(film.resolution[0]) + u64::from(x);
         let camera = sampler.stream(Domain::Camera, stream, pass);
-        let light = sampler.member(Domain::Light, place / self.samples_per_subpath(), pass);
+        let light = sampler.member(Domain::Light, slot / self.samples_per_subpath(), pass);
         Sample::new(pass, [x, y], camera, light)
     }
 
     /// Repeats the sample of `pixel` in `pass`. None: the pixel is outside the crop.
     pub fn replay(&self, pixel: [u32; 2], pass: u64) -> Option<Replay> {
         let [x, y] = pixel.map(i64::from);
-        let place = self.order.place(self.view.film().crop.index(x, y)?);
-        let (job, mut batch) = (self.job(place, Stop::NEVER), Batch::default());
+        let slot = self.order.slot(self.view.film().crop.index(x, y)?);
+        let (job, mut batch) = (self.job(slot, Stop::NEVER), Batch::default());
         let shared = self.method.shares_light();
-        let brought = shared.then(|| self.replay_light(&job, place, pass, &mut batch));
-        batch.fill([self.sample(place, pass)]);
+        let brought = shared.then(|| self.replay_light(&job, slot, pass, &mut batch));
+        batch.fill([self.sample(slot, pass)]);
         self.method.run(&job, &mut batch);
-        let mut light = (!shared && batch.walked.light.count() > 0).then_some(0);
+        let mut light = (!shared && batch.walks.light.count() > 0).then_some(0);
         if let Some((number, splats)) = brought.flatten() {
             (light, batch.splats) = (Some(number), splats);
         }

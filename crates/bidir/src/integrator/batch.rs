@@ -45,7 +45,7 @@ impl Sample {
 
 /// The samples, and the subpaths that were walked for them.
 #[derive(Debug, Default)]
-pub struct Walked {
+pub struct Walks {
     /// The samples.
     pub samples: Vec<Sample>,
     /// The camera subpath of each sample.
@@ -54,7 +54,7 @@ pub struct Walked {
     pub light: Subpaths,
 }
 
-impl Walked {
+impl Walks {
     /// Returns the number of the first sample's light subpath. The samples' walks must be the last ones.
     pub(super) fn first_light(&self) -> usize {
         self.light.count() - self.samples.len()
@@ -63,7 +63,7 @@ impl Walked {
     /// Returns the vertices of a `connection`, those of its light subpath and those of its camera subpath.
     pub(super) fn subpaths(&self, connection: &Candidate) -> [&[Vertex]; 2] {
         let Strategy { s, t } = connection.term.strategy;
-        let [z, y] = connection.vertices.map(|number| number as usize);
+        let [z, y] = connection.vertices.map(|vertex| vertex as usize);
         [
             &self.light.vertices()[z + 1 - usize::from(s)..=z],
             &self.camera.vertices()[y + 1 - usize::from(t)..=y],
@@ -97,7 +97,7 @@ pub struct Worker {
 #[derive(Debug, Default)]
 pub struct Batch {
     /// The samples and their subpaths.
-    pub walked: Walked,
+    pub walks: Walks,
     pub(super) cache: LightCache,
     pub(super) light_ends: LightEnds,
     /// The connections.
@@ -124,10 +124,10 @@ impl Batch {
 
     /// Replaces the samples, and clears the output of all stages but light subpaths.
     pub fn fill(&mut self, samples: impl IntoIterator<Item = Sample>) {
-        self.walked.samples.clear();
-        self.walked.samples.extend(samples);
-        self.walked.camera.clear();
-        self.walked.light.forget_points();
+        self.walks.samples.clear();
+        self.walks.samples.extend(samples);
+        self.walks.camera.clear();
+        self.walks.light.forget_points();
         self.light_ends.clear();
         self.candidates.offered.clear();
         self.candidates.unoffered.clear();
@@ -135,13 +135,13 @@ impl Batch {
         self.entries.clear();
         self.splats.clear();
         self.values.clear();
-        let count = self.walked.samples.len();
+        let count = self.walks.samples.len();
         self.values.resize(count, Spectrum::ZERO);
     }
 
     /// Clears the light subpaths, with their sums and the cache.
     pub fn forget_light(&mut self) {
-        self.walked.light.clear();
+        self.walks.light.clear();
         self.cache.clear();
     }
 
@@ -156,7 +156,7 @@ impl Batch {
                 self.values[entry.sample as usize] += value;
             } else {
                 entry.fate = Fate::Dropped;
-                let sample = &self.walked.samples[entry.sample as usize];
+                let sample = &self.walks.samples[entry.sample as usize];
                 let strategy = entry.term.strategy;
                 drop_term(&mut self.worker.stats, sample, strategy);
             }

@@ -21,7 +21,7 @@ pub(super) struct LightCache {
     cells: CellTable,
 }
 
-/// The bits of the number of an entry, below those of its place on the curve and of its cell.
+/// The bits of the number of an entry, below those of its position on the curve and of its cell.
 const INDEX_BITS: u32 = 26;
 const _: () = assert!(u8::BITS + Curve::BITS + INDEX_BITS == u64::BITS);
 
@@ -57,13 +57,13 @@ impl CellTable {
 /// A vertex that can be connected.
 #[derive(Clone, Copy, Debug, Default)]
 struct CachedVertex {
-    place: Place,
+    vertex: LightVertexRef,
     cell: Cell,
 }
 
-/// The place of a light vertex.
+/// A light vertex of a batch.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Place {
+pub(super) struct LightVertexRef {
     /// Its number among all light vertices.
     pub(super) z: u32,
     /// The number of vertices of the subpath up to it.
@@ -74,8 +74,8 @@ pub(super) struct Place {
     pub(super) light: u32,
 }
 
-impl Place {
-    /// Returns the place of vertex number `i` of a light subpath, of which there are `sums`.
+impl LightVertexRef {
+    /// Returns vertex number `i` of a light subpath, of which there are `sums`.
     #[inline]
     pub(super) fn new(subpath: &Subpath<'_>, i: usize, sums: &RunningSums) -> Self {
         let z = subpath.first + i;
@@ -120,9 +120,9 @@ impl LightCache {
             let subpath = walks.get(subpath);
             let connectable = connectable(light_point, subpath.vertices);
             for i in connectable {
-                let place = Place::new(&subpath, i, &walks.sums);
+                let vertex = LightVertexRef::new(&subpath, i, &walks.sums);
                 let Vertex { cell, locus, .. } = subpath.vertices[i];
-                self.unsorted.push(CachedVertex { place, cell });
+                self.unsorted.push(CachedVertex { vertex, cell });
                 self.points.push(locus.point);
             }
         }
@@ -140,7 +140,7 @@ impl LightCache {
         self.keys.clear();
         self.keys.extend(of_entry.map(|((entry, &point), i)| {
             let cell = entry.cell.index() as u64;
-            (cell << Curve::BITS | curve.place(point)) << INDEX_BITS | i
+            (cell << Curve::BITS | curve.position(point)) << INDEX_BITS | i
         }));
         self.keys.sort_unstable();
         self.entries.clear();
@@ -157,7 +157,7 @@ impl LightCache {
     }
 
     /// Draws `count` vertices for a camera vertex with the proposals `row`, one of each of as many parts of the
-    /// proposals, at the part `u` / 2^32 of each. Calls `found` with their numbers and places, and how much each
+    /// proposals, at the part `u` / 2^32 of each. Calls `found` with their numbers and vertices, and how much each
     /// counts, 1 / (`count` N P) with N subpaths. A part in which there is no vertex counts as a draw that finds
     /// nothing.
     #[inline]
@@ -166,7 +166,7 @@ impl LightCache {
         row: Option<&ProposalRow>,
         count: u16,
         u: u32,
-        mut found: impl FnMut(usize, &Place, f32),
+        mut found: impl FnMut(usize, &LightVertexRef, f32),
     ) {
         let of_draw = 1.0 / (self.subpaths as f32 * f32::from(count));
         for number in numbers(count, u) {
@@ -174,8 +174,8 @@ impl LightCache {
                 Some(row) => self.draw_learned(row, number),
                 None => self.draw_any(number),
             };
-            if let Some((place, draw)) = draw {
-                found(draw.entry, place, draw.inverse_prob * of_draw);
+            if let Some((vertex, draw)) = draw {
+                found(draw.entry, vertex, draw.inverse_prob * of_draw);
             }
         }
     }
@@ -183,21 +183,21 @@ impl LightCache {
     /// Draws a vertex by `number`, one of 2^32, each as likely as others. None: there is none, and the draw counts as
     /// one that finds nothing.
     #[inline]
-    fn draw_any(&self, number: u32) -> Option<(&Place, Draw)> {
+    fn draw_any(&self, number: u32) -> Option<(&LightVertexRef, Draw)> {
         let all = self.entries.len() as u32;
         let entry = Part::of_all(number).pick(all);
         let inverse_prob = all as f32;
-        let place = &self.entries.get(entry)?.place;
+        let vertex = &self.entries.get(entry)?.vertex;
         let draw = Draw {
             entry,
             inverse_prob,
         };
-        Some((place, draw))
+        Some((vertex, draw))
     }
 
     /// The same for a camera vertex with the proposals `row`.
     #[inline]
-    fn draw_learned(&self, row: &ProposalRow, number: u32) -> Option<(&Place, Draw)> {
+    fn draw_learned(&self, row: &ProposalRow, number: u32) -> Option<(&LightVertexRef, Draw)> {
         let all = self.entries.len() as u32;
         let (entry, units, count) = match row.draw(number) {
             CellDraw::All(part) => {
@@ -213,12 +213,12 @@ impl LightCache {
                 (first as usize + part.pick(count), units, count)
             }
         };
-        let place = &self.entries.get(entry)?.place;
+        let vertex = &self.entries.get(entry)?.vertex;
         let draw = Draw {
             entry,
             inverse_prob: inverse_prob(units, [all, count]),
         };
-        Some((place, draw))
+        Some((vertex, draw))
     }
 }
 
@@ -236,7 +236,7 @@ pub(crate) fn connectable(
     light_point: LightPointChoice,
     subpath: &[Vertex],
 ) -> impl Iterator<Item = usize> {
-    let first = light_point.first_walked() - 1;
+    let first = light_point.min_subpath_s() - 1;
     (first..subpath.len()).filter(move |&i| !subpath[i].is_delta())
 }
 

@@ -14,7 +14,7 @@ pub(super) struct Curve {
 }
 
 impl Curve {
-    /// The bits of a place.
+    /// The bits of a position.
     pub(super) const BITS: u32 = 3 * DIGITS;
 
     /// Returns the curve in the box around `points`.
@@ -29,9 +29,9 @@ impl Curve {
         }
     }
 
-    /// Returns the place of a point on the curve.
+    /// Returns the position of a point on the curve.
     #[inline]
-    pub(super) fn place(&self, point: Vec3) -> u64 {
+    pub(super) fn position(&self, point: Vec3) -> u64 {
         let [x, y, z] = ((point - self.low) * self.scale).to_array().map(apart);
         x << 2 | y << 1 | z
     }
@@ -57,19 +57,19 @@ mod tests {
         let low = Vec3::new(-3.0, 5.0, 1e3);
         let points: Vec<_> = (0..8).map(|i| low + 4.0 * corner(i)).collect();
         let curve = Curve::around(&points);
-        assert_eq!(curve.place(points[0]), 0);
-        assert_eq!(curve.place(points[7]), (1 << Curve::BITS) - 1);
+        assert_eq!(curve.position(points[0]), 0);
+        assert_eq!(curve.position(points[7]), (1 << Curve::BITS) - 1);
         for (i, j) in (0..8).flat_map(|i| (0..8).map(move |j| (i, j))) {
-            let place = curve.place(low + 2.0 * corner(i) + corner(j) + 0.5);
-            assert_eq!(place >> 24, u64::from(8 * i + j));
+            let position = curve.position(low + 2.0 * corner(i) + corner(j) + 0.5);
+            assert_eq!(position >> 24, u64::from(8 * i + j));
         }
     }
 
     #[test]
-    fn points_of_a_plane_have_places() {
+    fn points_of_a_plane_have_positions() {
         let points = [Vec3::ZERO, Vec3::X];
         let curve = Curve::around(&points);
-        assert!(curve.place(points[0]) < curve.place(points[1]));
-        assert_eq!(Curve::around(&points[..1]).place(points[0]), 0);
+        assert!(curve.position(points[0]) < curve.position(points[1]));
+        assert_eq!(Curve::around(&points[..1]).position(points[0]), 0);
     }
 }

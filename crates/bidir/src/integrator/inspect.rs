@@ -12,8 +12,8 @@ use std::slice;
 impl Batch {
     /// Returns true if a connection is evaluated together with others: both of its vertices are diffuse.
     pub(crate) fn is_diffuse(&self, connection: &Candidate) -> bool {
-        let [z, y] = connection.vertices.map(|number| number as usize);
-        let [light, camera] = [&self.walked.light, &self.walked.camera];
+        let [z, y] = connection.vertices.map(|vertex| vertex as usize);
+        let [light, camera] = [&self.walks.light, &self.walks.camera];
         light.sums.diffuse(z).is_some() && camera.sums.diffuse(y).is_some()
     }
 
@@ -37,7 +37,7 @@ impl Batch {
         } else {
             Fate::Dropped
         };
-        let link = Link::Connection(candidate.ends(&self.walked.light, &self.walked.camera));
+        let link = Link::Connection(candidate.ends(&self.walks.light, &self.walks.camera));
         let entry = Entry::certain(0, candidate.term, link);
         Entry { fate, ..entry }
     }
@@ -52,9 +52,9 @@ impl Batch {
         densities: &mut PathDensities,
         parts: &mut Vec<ConnectionPart>,
     ) -> Option<Shares> {
-        let (number, term) = (entry.sample as usize, &entry.term);
+        let (index, term) = (entry.sample as usize, &entry.term);
         let (s, t) = (usize::from(term.strategy.s), usize::from(term.strategy.t));
-        let walked = &self.walked;
+        let walks = &self.walks;
         let shadow = entry
             .link
             .ends()
@@ -68,9 +68,9 @@ impl Batch {
             path.camera_albedos()
         };
         let albedos = match candidate {
-            Some(candidate) => gather_connection(walked.subpaths(candidate)),
+            Some(candidate) => gather_connection(walks.subpaths(candidate)),
             None if s == 0 => {
-                let walk = walked.camera.get(number);
+                let walk = walks.camera.get(index);
                 let mut arrivals = Arrival::all(job.scene, &walk);
                 let (before, arrival) = arrivals.find(|(before, arrival)| {
                     before.len() + 1 == t && arrival.light == term.light
@@ -80,8 +80,8 @@ impl Batch {
                 path.camera_albedos()
             }
             None => {
-                let lens = lens_vertex(job, &walked.samples[number], s);
-                let light = walked.light.get(walked.first_light() + number);
+                let lens = lens_vertex(job, &walks.samples[index], s);
+                let light = walks.light.get(walks.first_light() + index);
                 gather_connection([&light.vertices[..s], slice::from_ref(&lens)])
             }
         };

@@ -147,14 +147,14 @@ pub(crate) fn splats(entries: &[Entry]) -> impl Iterator<Item = (&Entry, SplatPl
 pub(super) fn enter<'e>(
     entries: &'e mut Vec<Entry>,
     stats: &mut Stats,
-    number: usize,
+    index: usize,
     sample: &Sample,
     term: Term,
     link: Link,
 ) -> &'e mut Entry {
     stats.count_candidate(term.strategy);
     let last = entries.len();
-    entries.push(Entry::certain(number, term, link));
+    entries.push(Entry::certain(index, term, link));
     let entry = &mut entries[last];
     if !is_summable(term.value()) {
         drop_term(stats, sample, term.strategy);

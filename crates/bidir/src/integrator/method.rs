@@ -64,7 +64,7 @@ impl Method {
             batch.forget_light();
         }
         let Batch {
-            walked,
+            walks,
             cache,
             light_ends,
             candidates,
@@ -73,40 +73,40 @@ impl Method {
             worker,
             ..
         } = batch;
-        worker.stats.samples += walked.samples.len() as u64;
+        worker.stats.samples += walks.samples.len() as u64;
         worker.weights.set(job.settings);
         match self {
             Self::Path => {
-                walk_camera(job, walked, worker);
-                direct(job, walked, entries, worker);
+                walk_camera(job, walks, worker);
+                direct(job, walks, entries, worker);
             }
             Self::Light => {
-                walk_light(job, walked, worker);
-                light_image(job, walked, splats, worker, Weighting::Alone);
+                walk_light(job, walks, worker);
+                light_image(job, walks, splats, worker, Weighting::Alone);
             }
             Self::Bdpt(selector) => {
-                walk_camera(job, walked, worker);
-                walk_light(job, walked, worker);
-                sum_camera(job, walked, worker);
-                sum_light(job, walked, worker);
-                hits(job, walked, entries, worker);
-                light_image(job, walked, splats, worker, Weighting::Combined);
-                next_events(job, walked, light_ends, CandidateCount::of(1));
-                own_light(job, walked, light_ends, worker);
-                connect(job, walked, light_ends, candidates, worker);
-                select(&**selector, walked, candidates, entries, worker);
-                shadow_rays(job, walked, candidates, entries, worker);
+                walk_camera(job, walks, worker);
+                walk_light(job, walks, worker);
+                sum_camera(job, walks, worker);
+                sum_light(job, walks, worker);
+                hits(job, walks, entries, worker);
+                light_image(job, walks, splats, worker, Weighting::Combined);
+                next_events(job, walks, light_ends, CandidateCount::of(1));
+                own_light(job, walks, light_ends, worker);
+                connect(job, walks, light_ends, candidates, worker);
+                select(&**selector, walks, candidates, entries, worker);
+                shadow_rays(job, walks, candidates, entries, worker);
             }
             Self::Lvc(selector, lvc) => {
                 // `walk_group` has walked the light subpaths and made the light image.
-                walk_camera(job, walked, worker);
-                sum_camera(job, walked, worker);
-                hits(job, walked, entries, worker);
-                next_events(job, walked, light_ends, lvc.next_events);
-                draw_cached(job, walked, cache, light_ends, lvc.candidates, worker);
-                connect(job, walked, light_ends, candidates, worker);
-                select(&**selector, walked, candidates, entries, worker);
-                shadow_rays(job, walked, candidates, entries, worker);
+                walk_camera(job, walks, worker);
+                sum_camera(job, walks, worker);
+                hits(job, walks, entries, worker);
+                next_events(job, walks, light_ends, lvc.next_events);
+                draw_cached(job, walks, cache, light_ends, lvc.candidates, worker);
+                connect(job, walks, light_ends, candidates, worker);
+                select(&**selector, walks, candidates, entries, worker);
+                shadow_rays(job, walks, candidates, entries, worker);
             }
         }
         batch.sum_entries();
@@ -116,15 +116,15 @@ impl Method {
 /// Walks the light subpaths that the samples of `batch` bring to their group, and makes their light images.
 pub fn walk_group(job: &Job<'_>, batch: &mut Batch) {
     let Batch {
-        walked,
+        walks,
         splats,
         worker,
         ..
     } = batch;
     worker.weights.set(job.settings);
-    walk_light(job, walked, worker);
-    sum_light(job, walked, worker);
-    light_image(job, walked, splats, worker, Weighting::Combined);
+    walk_light(job, walks, worker);
+    sum_light(job, walks, worker);
+    light_image(job, walks, splats, worker, Weighting::Combined);
 }
 
 /// Makes ready what the samples of a group share, when all of it is walked.
@@ -132,5 +132,5 @@ pub fn end_group(job: &Job<'_>, batch: &mut Batch) {
     let proposals = job.guide.proposals;
     batch
         .cache
-        .index(&batch.walked.light, job.settings.light_point, proposals);
+        .index(&batch.walks.light, job.settings.light_point, proposals);
 }

@@ -16,7 +16,7 @@ mod lvc;
 mod method;
 mod stages;
 
-pub use batch::{Batch, Candidates, Sample, Walked, Worker};
+pub use batch::{Batch, Candidates, Sample, Walks, Worker};
 pub(crate) use cache::connectable;
 pub(crate) use journal::splats;
 pub use journal::{Entry, Fate, Link};

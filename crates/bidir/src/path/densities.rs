@@ -52,7 +52,7 @@ impl PathDensities {
     pub fn gather_connection(&mut self, job: &Job<'_>, path: &JoinedPath<'_>) {
         let (s, n) = (path.light.len(), path.len());
         self.vertices.clear();
-        let of_light = walked_densities(job, path.light, n).zip(path.light);
+        let of_light = stored_densities(job, path.light, n).zip(path.light);
         let of_light = of_light.map(|([drawn, back], x)| VertexDensities::new(x, drawn, back));
         self.vertices.extend(of_light);
         self.add_camera(job, path.camera, n);
@@ -82,7 +82,7 @@ impl PathDensities {
 
     /// Adds the vertices of a camera subpath of a path of `n`, the last one first.
     fn add_camera(&mut self, job: &Job<'_>, camera: &[Vertex], n: usize) {
-        let of_camera = walked_densities(job, camera, n).zip(camera).rev();
+        let of_camera = stored_densities(job, camera, n).zip(camera).rev();
         let of_camera = of_camera.map(|([drawn, back], x)| VertexDensities::new(x, back, drawn));
         self.vertices.extend(of_camera);
     }
@@ -180,7 +180,7 @@ pub(super) fn factor(job: &Job<'_>, index: usize, albedo: impl FnOnce() -> f32) 
 
 /// Returns the densities of a subpath's vertices as stored: by its own walk, and by one from the other end
 /// of a path of `n` vertices. The latter is not valid for the last two.
-pub(super) fn walked_densities(
+pub(super) fn stored_densities(
     job: &Job<'_>,
     subpath: &[Vertex],
     n: usize,

@@ -29,7 +29,7 @@
 
 use super::densities::factor;
 use super::running::EndSums;
-use super::technique::{Depth, PathStart};
+use super::strategy_class::{Bounce, PathStart};
 use super::visible::{LEAST_PART, MOST_LEAST, least_cosine};
 use super::{Job, MisHeuristic, Scattering, Segment, Vertex};
 use crate::bsdf::{Bsdf, TransportMode};
@@ -106,7 +106,7 @@ impl DiffuseEnd {
                     is_diffuse: true,
                     flux: vertex.beta * (bsdf.reflectance * (INV_PI * ratio)),
                 };
-                let others = sums.per_density(Depth::Deeper, end.before(vertex));
+                let others = sums.per_density(Bounce::Deeper, end.before(vertex));
                 Self {
                     others: others.min(f64::from(f32::MAX)) as f32,
                     ..end
@@ -182,7 +182,7 @@ impl DiffuseEnd {
         let contribution = self.contribution(job, lens, segment, cos_g)?;
         let drawn = f64::from(lens.pdf_leaving(job, -segment.w) * segment.to_a);
         let n = job.count(s, 1, [self.cell, lens.cell]);
-        let others = drawn * sums.per_density(Depth::First, self.before(vertex));
+        let others = drawn * sums.per_density(Bounce::First, self.before(vertex));
         Some((contribution, (n / (n + others)) as f32))
     }
 

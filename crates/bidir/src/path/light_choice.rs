@@ -20,7 +20,7 @@ named!(LightPointChoice {
 impl LightPointChoice {
     /// Returns the fewest light vertices of connections that use a light subpath.
     #[inline]
-    pub fn first_walked(self) -> usize {
+    pub fn min_subpath_s(self) -> usize {
         match self {
             Self::Fresh => 2,
             Self::Shared => 1,

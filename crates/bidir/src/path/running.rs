@@ -9,8 +9,8 @@
 //! four densities that change at the junction (docs/derivations/mis-weights.md). It is the number that
 //! [`mis_weight`](super::mis_weight) finds, but for rounding.
 
-use super::densities::{Reversed, next_event_density, walked_densities};
-use super::technique::{Depth, PathStart, Technique};
+use super::densities::{Reversed, next_event_density, stored_densities};
+use super::strategy_class::{Bounce, PathStart, StrategyClass};
 use super::{DiffuseEnd, HitPath, Job, JoinedPath, PathDensities, PathSettings, Subpath, Vertex};
 use crate::bsdf::TransportMode;
 use std::slice;
@@ -30,11 +30,21 @@ pub struct RunningSums {
 /// Let a be the density with which the walk drew the last vertex, r its density when drawn from the other end of the
 /// path, and r' that of the vertex before it, which are known when the path is joined. Relative to the strategy that
 /// links the last vertex, these strategies sum to h(r / a) · (`links` + h(r') · `through_previous`).
+///
+/// **Example**, two light vertices under the balance heuristic. Beside s = 2, which connects x_1, there are s = 1, which
+/// links x_0 with x_1 and takes n_1 samples, and s = 0, which takes one. p_1 / p_2 = e b_1 / (a_0 a_1) and p_0 / p_1 =
+/// b_0 / e, so that
+///
+/// (n_1 p_1 + p_0) / p_2 = e / (a_0 a_1) · b_1 · (n_1 + b_0 · 1 / e).
+///
+/// At x_1, `inverse_pdf` is e / (a_0 a_1), `links` is n_1, and `through_previous` is 1 / e times the sum at x_0, which is
+/// 1; r is b_1, and r' is b_0. With e = 2, a_0 = 0.5, a_1 = 0.1, b_1 = 0.2, b_0 = 0.4 and n_1 = 1, both sides are
+/// 40 · 0.2 · (1 + 0.4 / 2) = 9.6.
 #[derive(Clone, Copy, Debug)]
 pub struct EndSums {
     /// h(1 / a); h(1 / e) at x_0 and h(e / (a_0 a_1)) at x_1.
     inverse_pdf: f64,
-    /// The share of the strategy that links the vertex with the one before it, by the [`Depth`] at which it does.
+    /// The share of the strategy that links the vertex with the one before it, by the [`Bounce`] at which it does.
     links: [f64; 2],
     /// h(1 / a') of the vertex before it, times the sum up to there.
     through_previous: f64,
@@ -88,18 +98,18 @@ impl EndSums {
     }
 
     /// Returns the share of these strategies, relative to one that links this vertex with the rest of the path, where
-    /// h(r) is `end` and h(r') is `before`. The strategy that links it with the vertex before it does so at `depth`.
+    /// h(r) is `end` and h(r') is `before`. The strategy that links it with the vertex before it does so at `bounce`.
     #[inline]
-    fn shares(&self, depth: Depth, end: f64, before: f64) -> f64 {
-        let links = self.links[depth.index()];
+    fn shares(&self, bounce: Bounce, end: f64, before: f64) -> f64 {
+        let links = self.links[bounce as usize];
         let sum = chain(links, before, self.through_previous);
         chain(0.0, self.inverse_pdf * end, sum)
     }
 
     /// Returns the factor of r in the share of these strategies under the balance heuristic, where r' is `before`.
     #[inline]
-    pub(super) fn per_density(&self, depth: Depth, before: f64) -> f64 {
-        self.shares(depth, 1.0, before)
+    pub(super) fn per_density(&self, bounce: Bounce, before: f64) -> f64 {
+        self.shares(bounce, 1.0, before)
     }
 }
 
@@ -129,8 +139,8 @@ impl RunningSums {
             let is_there = if s == 1 { start.is_drawn } else { 1.0 };
             // As a camera vertex, z is the first behind the lens if one vertex follows, else a deeper one.
             [2, 3].map(|t| {
-                let technique = Technique::of(job.settings.light_point, s, t);
-                is_there * h(job.count_of(technique, [before.cell, z.cell]))
+                let class = StrategyClass::of(job.settings.light_point, s, t);
+                is_there * h(job.count_of(class, [before.cell, z.cell]))
             })
         };
         let inverse_pdf = |i: usize, a: f64| match i {
@@ -145,11 +155,11 @@ impl RunningSums {
     fn add_camera(&mut self, job: &Job<'_>, walk: &Subpath<'_>, lens: &Vertex) {
         let h = |ratio| job.settings.mis.apply(ratio);
         let links = |t: usize, [before, y]: [&Vertex; 2]| {
-            let technique = match t {
-                1 => Technique::LightImage,
-                _ => Technique::Connection(Depth::of(t)),
+            let class = match t {
+                1 => StrategyClass::LightImage,
+                _ => StrategyClass::Connection(Bounce::of(t)),
             };
-            [h(job.count_of(technique, [y.cell, before.cell])); 2]
+            [h(job.count_of(class, [y.cell, before.cell])); 2]
         };
         let inverse_pdf = |_: usize, b: f64| h(1.0 / b);
         let first = EndSums {
@@ -174,7 +184,7 @@ impl RunningSums {
     ) {
         let h = |ratio| job.settings.mis.apply(ratio);
         let (mut last, mut back) = (first, 0.0);
-        for (i, [drawn, reverse]) in walked_densities(job, walk.vertices, FAR).enumerate() {
+        for (i, [drawn, reverse]) in stored_densities(job, walk.vertices, FAR).enumerate() {
             let vertex = &walk.vertices[i];
             if i > 0 {
                 let before = &walk.vertices[i - 1];
@@ -293,19 +303,19 @@ impl PathSums<'_> {
         let [z, y] = [z, y].map(f64::from);
         let before = before.map(|density| h(density.into()));
         // Strategy s - 1 links z as camera vertex t + 1.
-        let depth = Depth::of(t + 1);
+        let bounce = Bounce::of(t + 1);
         let (fewer_light, y) = if s == 1 {
             let next_event = || next_event_density(job, path.z(), path.y());
             let next_event = self.next_event.unwrap_or_else(next_event);
             let start = PathStart::new(job, path.z(), next_event);
             let sums = EndSums::at_start(job, &start);
-            let fewer_light = sums.shares(depth, h(z), 0.0);
+            let fewer_light = sums.shares(bounce, h(z), 0.0);
             (fewer_light, start.a0 / start.e * y)
         } else {
-            (self.light.shares(depth, h(z), before[0]), y)
+            (self.light.shares(bounce, h(z), before[0]), y)
         };
-        // Links of camera walks are the same at any depth.
-        let fewer_camera = self.camera.shares(depth, h(y), before[1]);
+        // Links of camera walks are the same at any bounce.
+        let fewer_camera = self.camera.shares(bounce, h(y), before[1]);
         let mut own = h(job.count(s, t, [path.z().cell, path.y().cell]));
         if s + t == 2 {
             own = job.settings.mis.cut_off_image(own, fewer_light);
@@ -334,4 +344,28 @@ fn finite(number: f64) -> f64 {
 #[inline]
 fn possible(is_possible: bool) -> f64 {
     f64::from(is_possible)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::check_near;
+
+    #[test]
+    fn two_light_vertices_sum_to_the_example() {
+        let x0 = PathStart {
+            a0: 0.5,
+            e: 2.0,
+            is_drawn: 1.0,
+            is_hit: 1.0,
+        };
+        let (a1, b1, b0) = (0.1, 0.2, 0.4);
+        let sums = EndSums {
+            inverse_pdf: x0.e / x0.a0 / a1,
+            links: [x0.is_drawn; 2],
+            through_previous: chain(0.0, 1.0 / x0.e, x0.is_hit),
+            total: 0.0,
+        };
+        check_near(sums.shares(Bounce::First, b1, b0), 9.6, 1e-12, "the sum");
+    }
 }

@@ -3,7 +3,7 @@
 //! other (docs/derivations/choosing-a-plan.md).
 
 use super::mis::for_each_other;
-use super::technique::Technique;
+use super::strategy_class::StrategyClass;
 use super::{HitPath, Job, JoinedPath, MisHeuristic, PathDensities};
 
 /// The number of light vertices of a connection with a vertex of a light walk, and its part of D.
@@ -43,13 +43,13 @@ impl PathDensities {
         let [mut next_events, mut connections] = [[0.0; 2]; 2];
         let mut add = |j: usize, ratio: f64| {
             let samples = self.count(job, j) * ratio;
-            *match Technique::of(job.settings.light_point, j, n - j) {
-                Technique::Hit => &mut hits,
-                Technique::LightImage => &mut light_images,
-                Technique::NextEvent(depth) => &mut next_events[depth.index()],
-                Technique::Connection(depth) => {
+            *match StrategyClass::of(job.settings.light_point, j, n - j) {
+                StrategyClass::Hit => &mut hits,
+                StrategyClass::LightImage => &mut light_images,
+                StrategyClass::NextEvent(bounce) => &mut next_events[bounce as usize],
+                StrategyClass::Connection(bounce) => {
                     parts.push((j as u16, samples as f32));
-                    &mut connections[depth.index()]
+                    &mut connections[bounce as usize]
                 }
             } += samples;
         };

@@ -99,7 +99,7 @@ impl Subpaths {
 
     /// Returns the number of vertices of walks, behind which the single points are.
     #[inline]
-    pub(crate) fn walked(&self) -> usize {
+    pub(crate) fn walk_vertices(&self) -> usize {
         self.walks.last().map_or(0, |walk| walk.end)
     }
 
@@ -112,7 +112,7 @@ impl Subpaths {
 
     /// Forgets the single points.
     pub(crate) fn forget_points(&mut self) {
-        self.vertices.truncate(self.walked());
+        self.vertices.truncate(self.walk_vertices());
     }
 
     /// Adds a walk of these vertices.

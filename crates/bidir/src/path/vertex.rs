@@ -199,7 +199,7 @@ impl Vertex {
     }
 
     /// Returns its point and its unit normal: that of the shading frame where there is one.
-    pub(crate) fn place(&self) -> [Vec3; 2] {
+    pub(crate) fn point_and_normal(&self) -> [Vec3; 2] {
         let n = match &self.scattering {
             Scattering::Surface(_) => self.frame.z,
             Scattering::Camera | Scattering::Light | Scattering::Medium(_) => self.locus.n_g,

@@ -17,6 +17,9 @@ use crate::spectrum::Spectrum;
 use crate::stats::Stats;
 use std::ops::ControlFlow::{self, Break, Continue};
 
+/// Break: the walk ends, with its escape if it left the scene.
+type Flow = ControlFlow<Option<Escape>>;
+
 /// The state of a walk between two vertices.
 struct Step {
     /// The origin of its ray.
@@ -148,15 +151,9 @@ impl Walker<'_> {
         None
     }
 
-    /// Adds vertex number `index`, the surface or the point in a medium that `step` leads to. Break: the walk ends,
-    /// with its escape if it left the scene.
+    /// Adds vertex number `index`, the surface or the point in a medium that `step` leads to.
     #[inline(always)]
-    fn advance(
-        &self,
-        vertices: &mut Vec<Vertex>,
-        step: &Step,
-        index: usize,
-    ) -> ControlFlow<Option<Escape>> {
+    fn advance(&self, vertices: &mut Vec<Vertex>, step: &Step, index: usize) -> Flow {
         let scene = self.job.scene;
         if scene.has_media() {
             return self.advance_in_media(vertices, step, index);
@@ -172,12 +169,7 @@ impl Walker<'_> {
 
     /// The same where media are in the scene.
     #[inline(never)]
-    fn advance_in_media(
-        &self,
-        vertices: &mut Vec<Vertex>,
-        step: &Step,
-        index: usize,
-    ) -> ControlFlow<Option<Escape>> {
+    fn advance_in_media(&self, vertices: &mut Vec<Vertex>, step: &Step, index: usize) -> Flow {
         let from = vertices[vertices.len() - 1].locus;
         let chances = RayDraws::new(self.stream, index).until(self.job.stop);
         let (scene, lanes) = (self.job.scene, self.job.lanes);
@@ -224,7 +216,7 @@ impl Walker<'_> {
             let job = self.job;
             let edge = job.scene.edge_of(transmittance, [from, &to], job.lanes);
             segment.pass(&edge);
-            beta *= edge.walked();
+            beta *= edge.throughput();
         }
         (segment.to_b > 0.0).then_some(Escape {
             direction: step.direction,
@@ -270,18 +262,14 @@ impl Walker<'_> {
 /// Sets the densities of the last of `vertices`, which `step` reached through the media of `edge`. Removes it and ends
 /// the walk where its density is 0: rounding put it on the vertex before, in a corner, or media let nothing through.
 #[inline(always)]
-fn reach(
-    vertices: &mut Vec<Vertex>,
-    step: &Step,
-    edge: Option<&Edge>,
-) -> ControlFlow<Option<Escape>> {
+fn reach(vertices: &mut Vec<Vertex>, step: &Step, edge: Option<&Edge>) -> Flow {
     let [.., from, vertex] = &mut vertices[..] else {
         return Break(None);
     };
     let mut segment = Segment::along(&from.locus, &vertex.locus, step.direction);
     if let Some(edge) = edge {
         segment.pass(edge);
-        vertex.beta *= edge.walked();
+        vertex.beta *= edge.throughput();
     }
     vertex.pdf_fwd = step.pdf_w * segment.to_b;
     vertex.to_previous = segment.to_a;

@@ -54,7 +54,7 @@ impl Edge {
     /// Returns T / p, with p the factor of media in the density of b: the factor in the throughput of a walk from a
     /// that drew its distance. Zero if a walk cannot reach b.
     #[inline]
-    pub(crate) fn walked(&self) -> Spectrum {
+    pub(crate) fn throughput(&self) -> Spectrum {
         if self.to_b > 0.0 {
             self.transmittance * (1.0 / self.to_b)
         } else {

@@ -21,9 +21,9 @@ impl Session<'_> {
         }
     }
 
-    /// Returns the meaning of lanes in the group of `place`.
-    pub(super) fn lanes(&self, place: u64) -> Lanes {
-        let group = place / self.group_size();
+    /// Returns the meaning of lanes in the group of `slot`.
+    pub(super) fn lanes(&self, slot: u64) -> Lanes {
+        let group = slot / self.group_size();
         self.lanes[(group % self.lanes.len() as u64) as usize]
     }
 
@@ -36,34 +36,34 @@ impl Session<'_> {
         }
     }
 
-    /// Returns the range of places of the group of `place`.
-    pub(super) fn group(&self, place: u64) -> Range<u64> {
+    /// Returns the range of slots of the group of `slot`.
+    pub(super) fn group(&self, slot: u64) -> Range<u64> {
         let size = self.group_size();
-        let begin = place / size * size;
+        let begin = slot / size * size;
         begin..(begin + size).min(self.view.film().crop.area())
     }
 
-    /// Returns every k-th of `places`, the range of a group: the places whose samples own a light subpath.
-    fn subpath_owners(&self, places: Range<u64>) -> impl Iterator<Item = u64> {
-        places.step_by(usize::from(self.settings.lvc.samples_per_subpath.get()))
+    /// Returns every k-th of `slots`, the range of a group: the slots whose samples own a light subpath.
+    fn subpath_owners(&self, slots: Range<u64>) -> impl Iterator<Item = u64> {
+        slots.step_by(usize::from(self.settings.lvc.samples_per_subpath.get()))
     }
 
-    /// Walks the light subpaths of the group at `places`, `size` at a time, and calls `on_batch` after each batch.
+    /// Walks the light subpaths of the group at `slots`, `size` at a time, and calls `on_batch` after each batch.
     pub(super) fn walk_light(
         &self,
         job: &Job<'_>,
-        places: Range<u64>,
+        slots: Range<u64>,
         pass: u64,
         batch: &mut Batch,
         size: usize,
         mut on_batch: impl FnMut(&mut Batch),
     ) {
         batch.forget_light();
-        let mut owners = self.subpath_owners(places).peekable();
+        let mut owners = self.subpath_owners(slots).peekable();
         while owners.peek().is_some() {
             batch.worker.stopwatch.begin();
-            let places = owners.by_ref().take(size);
-            batch.fill(places.map(|place| self.sample(place, pass)));
+            let slots = owners.by_ref().take(size);
+            batch.fill(slots.map(|slot| self.sample(slot, pass)));
             walk_group(job, batch);
             on_batch(batch);
             batch.worker.stopwatch.end(Stage::Film);
@@ -77,24 +77,24 @@ impl Session<'_> {
         pixels.div_ceil(self.samples_per_subpath())
     }
 
-    /// Walks the light subpaths of the group of `place` again. Returns the number and the splats of the one that the
-    /// sample at `place` owns; the counters are those of this subpath only. None: another sample owns the subpath
+    /// Walks the light subpaths of the group of `slot` again. Returns the number and the splats of the one that the
+    /// sample at `slot` owns; the counters are those of this subpath only. None: another sample owns the subpath
     /// that this one uses.
     pub(super) fn replay_light(
         &self,
         job: &Job<'_>,
-        place: u64,
+        slot: u64,
         pass: u64,
         batch: &mut Batch,
     ) -> Option<(usize, Vec<Entry>)> {
-        let group = self.group(place);
-        let pixel = self.sample(place, pass).pixel;
+        let group = self.group(slot);
+        let pixel = self.sample(slot, pass).pixel;
         let (mut own, mut own_stats) = (None, Stats::default());
         self.walk_light(job, group, pass, batch, 1, |batch| {
             let stats = std::mem::take(&mut batch.worker.stats);
-            if batch.walked.samples[0].pixel == pixel {
+            if batch.walks.samples[0].pixel == pixel {
                 own = Some((
-                    batch.walked.light.count() - 1,
+                    batch.walks.light.count() - 1,
                     std::mem::take(&mut batch.splats),
                 ));
                 own_stats = stats;

@@ -4,14 +4,14 @@ use super::super::spread;
 use crate::film::PixelRect;
 use crate::integrator::Method;
 
-/// The pixel of each place, where places number the samples of a pass in the order of rendering.
+/// The pixel of each slot, where slots number the samples of a pass in the order of rendering.
 ///
-/// Samples at neighbouring places share light subpaths if the method shares any, and so part of their error. If they
+/// Samples at neighbouring slots share light subpaths if the method shares any, and so part of their error. If they
 /// were neighbours on the film, too, their common error would show as streaks: their pixels are spread over the film.
 pub(super) enum Order {
     /// Row order of the crop.
     Rows,
-    /// The pixel at each place of the order, by its index in row order.
+    /// The pixel of each slot, by its index in row order.
     Spread(Vec<u32>),
 }
 
@@ -26,21 +26,21 @@ impl Order {
         }
     }
 
-    /// Returns the index in row order of the pixel at `place`.
+    /// Returns the index in row order of the pixel at `slot`.
     #[inline]
-    pub(super) fn pixel(&self, place: u64) -> usize {
+    pub(super) fn pixel(&self, slot: u64) -> usize {
         match self {
-            Self::Rows => place as usize,
-            Self::Spread(pixels) => pixels[place as usize] as usize,
+            Self::Rows => slot as usize,
+            Self::Spread(pixels) => pixels[slot as usize] as usize,
         }
     }
 
-    /// Returns the place of a pixel by its index in row order. Takes a linear search.
-    pub(super) fn place(&self, pixel: usize) -> u64 {
-        let place = match self {
+    /// Returns the slot of a pixel by its index in row order. Takes a linear search.
+    pub(super) fn slot(&self, pixel: usize) -> u64 {
+        let slot = match self {
             Self::Rows => Some(pixel),
             Self::Spread(pixels) => pixels.iter().position(|&other| other as usize == pixel),
         };
-        place.unwrap_or(pixel) as u64
+        slot.unwrap_or(pixel) as u64
     }
 }

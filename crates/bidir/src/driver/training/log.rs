@@ -102,15 +102,15 @@ impl ConnectionLog {
     /// Adds the vertices of the one sample of `batch`. The connections that are added next belong to this sample.
     pub(super) fn begin(&mut self, job: &Job<'_>, batch: &Batch) {
         let [walk, camera] =
-            [&batch.walked.light, &batch.walked.camera].map(|walks| walks.get(0).vertices);
-        let light = batch.walked.light.vertices();
+            [&batch.walks.light, &batch.walks.camera].map(|walks| walks.get(0).vertices);
+        let light = batch.walks.light.vertices();
         let first = self.vertices.len() as u32;
         self.sample = FirstVertices {
             light: first,
             camera: first + light.len() as u32,
         };
         let all = light.iter().chain(camera);
-        self.vertices.extend(all.map(Vertex::place));
+        self.vertices.extend(all.map(Vertex::point_and_normal));
         let [z, y] = self.sample.of([0; 2]);
         let light_vertex = |i: usize| Some((z + i as u32, walk[0].light?));
         let connectable = connectable(job.settings.light_point, walk);
@@ -127,10 +127,10 @@ impl ConnectionLog {
         has_arrived: bool,
     ) -> Option<u32> {
         let z = candidate.vertices[0] as usize;
-        if batch.walked.light.vertices()[z].locus.is_infinite() {
+        if batch.walks.light.vertices()[z].locus.is_infinite() {
             return None;
         }
-        let is_walked = z < batch.walked.light.get(0).vertices.len();
+        let is_walked = z < batch.walks.light.get(0).vertices.len();
         let ends = Ends {
             vertices: self.sample.of(candidate.vertices),
             light: is_walked.then_some(candidate.term.light),

@@ -84,7 +84,7 @@ impl Survey {
 
     /// Records the results of sample number `number`, the only one of `batch`.
     fn record(&mut self, job: &Job<'_>, number: u64, batch: &Batch) {
-        let sample = &batch.walked.samples[0];
+        let sample = &batch.walks.samples[0];
         let film = job.view.film();
         let [x, y] = sample.pixel.map(i64::from);
         let own = film.crop.index(x, y).map(|pixel| (pixel, 1.0));

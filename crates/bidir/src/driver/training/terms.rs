@@ -47,7 +47,7 @@ impl SurveyTerm {
             score: 0.0,
             edge: None,
             is_next_event: usize::from(entry.term.strategy.s)
-                < job.settings.light_point.first_walked(),
+                < job.settings.light_point.min_subpath_s(),
             shares,
         }
     }

@@ -25,7 +25,7 @@ pub(super) struct WorkCounts {
 impl WorkCounts {
     /// Adds the one sample of `batch`.
     pub(super) fn add(&mut self, job: &Job<'_>, batch: &Batch) {
-        let walk = batch.walked.camera.get(0);
+        let walk = batch.walks.camera.get(0);
         let rays = walk.vertices.len() - 1 + usize::from(walk.escape.is_some());
         let albedo = |i: usize| walk.vertices.get(i).map_or(1.0, |vertex| vertex.albedo_fwd);
         let longer = longer([albedo(1), albedo(2)]);
@@ -38,7 +38,7 @@ impl WorkCounts {
             let Strategy { s, t } = candidate.term.strategy;
             let (s, t) = (usize::from(s), usize::from(t));
             let deeper = usize::from(t > 2);
-            if s < job.settings.light_point.first_walked() {
+            if s < job.settings.light_point.min_subpath_s() {
                 for (start, next_events) in self.next_events.iter_mut().enumerate() {
                     next_events[deeper] += longer[(t - 2).min(start)];
                 }

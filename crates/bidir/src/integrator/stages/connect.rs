@@ -4,7 +4,7 @@
 //! diffuse, or one is and the other is a light point, `diffuse` finds the same numbers faster.
 
 use super::super::journal::drop_term;
-use super::super::{Candidates, Sample, Walked, Worker};
+use super::super::{Candidates, Sample, Walks, Worker};
 use super::light_ends::{LightEnd, LightEnds, NextEvent};
 use crate::contribution::is_summable;
 use crate::path::{DiffuseEnd, EndSums, Job, JoinedPath, PathSums, Subpath};
@@ -16,19 +16,19 @@ use crate::stats::Stage;
 #[inline(never)]
 pub(in super::super) fn connect(
     job: &Job<'_>,
-    walked: &Walked,
+    walks: &Walks,
     ends: &LightEnds,
     candidates: &mut Candidates,
     worker: &mut Worker,
 ) {
     // Its lists in `ends`.
     let mut list = 0;
-    for (i, sample) in walked.samples.iter().enumerate() {
+    for (i, sample) in walks.samples.iter().enumerate() {
         let mut connector = Connector {
             job,
             sample,
-            walked,
-            camera: walked.camera.get(i),
+            walks,
+            camera: walks.camera.get(i),
             candidates,
             worker,
         };
@@ -36,7 +36,7 @@ pub(in super::super) fn connect(
             for event in ends.points.get(list) {
                 connector.offer_next_event(t, event);
             }
-            connector.offer_walked(t, ends.vertices.get(list));
+            connector.offer_vertices(t, ends.vertices.get(list));
             list += 1;
         }
         candidates.offered.close();
@@ -64,7 +64,7 @@ pub(super) struct Connection {
 pub(super) struct Connector<'a> {
     pub(super) job: &'a Job<'a>,
     sample: &'a Sample,
-    pub(super) walked: &'a Walked,
+    pub(super) walks: &'a Walks,
     pub(super) camera: Subpath<'a>,
     pub(super) candidates: &'a mut Candidates,
     worker: &'a mut Worker,
@@ -72,7 +72,7 @@ pub(super) struct Connector<'a> {
 
 impl<'a> Connector<'a> {
     /// Connects camera vertex number `t` with vertices of light subpaths.
-    fn offer_walked(&mut self, t: usize, ends: &[LightEnd]) {
+    fn offer_vertices(&mut self, t: usize, ends: &[LightEnd]) {
         self.candidates.offered.open().make_room(ends.len());
         if let Some(y) = self.diffuse(t) {
             self.offer_diffuse(t, y, ends);
@@ -85,7 +85,7 @@ impl<'a> Connector<'a> {
 
     /// Returns camera vertex number `t` for connections with diffuse ones. None: it is no diffuse one.
     fn diffuse(&self, t: usize) -> Option<&'a DiffuseEnd> {
-        self.walked.camera.sums.diffuse(self.camera.first + t - 1)
+        self.walks.camera.sums.diffuse(self.camera.first + t - 1)
     }
 
     /// Connects camera vertex number `t` with a light point that was drawn for it.
@@ -110,8 +110,8 @@ impl<'a> Connector<'a> {
     /// Returns the connection of any two vertices; `next_event` is the density of a light point that was drawn for the
     /// camera vertex. None: it is zero. The weight takes a guess of media, unless the scene foresees them.
     fn general(&mut self, t: usize, end: &LightEnd, next_event: Option<f32>) -> Option<Connection> {
-        let (z, s) = (end.place.z as usize, usize::from(end.place.s));
-        let light = &self.walked.light.vertices()[z + 1 - s..=z];
+        let (z, s) = (end.vertex.z as usize, usize::from(end.vertex.s));
+        let light = &self.walks.light.vertices()[z + 1 - s..=z];
         let mut path = JoinedPath::new(light, &self.camera.vertices[..t]);
         let contribution = path.contribution(self.job);
         if contribution == Spectrum::ZERO {
@@ -120,9 +120,9 @@ impl<'a> Connector<'a> {
         let sums = PathSums {
             light: match next_event {
                 Some(_) => &EndSums::NONE,
-                None => self.walked.light.sums.at(z),
+                None => self.walks.light.sums.at(z),
             },
-            camera: self.walked.camera.sums.at(self.camera.first + t - 1),
+            camera: self.walks.camera.sums.at(self.camera.first + t - 1),
             next_event,
         };
         let (z, y) = (path.z(), path.y());
@@ -156,10 +156,10 @@ impl<'a> Connector<'a> {
         if connection.contribution.is_black() {
             return;
         }
-        let contribution = connection.contribution * end.share;
-        let value = contribution * connection.weight;
+        let in_vacuum = connection.contribution * end.share;
+        let value = in_vacuum * connection.weight;
         let score = self.job.lanes.mean(value.map(f32::abs)) * connection.score_factor;
-        let contribution = contribution * connection.transmittance;
+        let contribution = in_vacuum * connection.transmittance;
         let numbers = [t, self.camera.first + t - 1];
         let candidate = end.candidate(numbers, contribution, connection.weight, score);
         if is_summable(value) & !value.is_black() {

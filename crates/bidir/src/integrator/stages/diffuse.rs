@@ -5,7 +5,7 @@ use super::connect::{Connection, Connector};
 use super::light_ends::LightEnd;
 use crate::guide::CellGuide;
 use crate::math::fixed::LARGEST_CONTRIBUTION;
-use crate::path::{Depth, DiffuseConnections, DiffuseEnd};
+use crate::path::{Bounce, DiffuseConnections, DiffuseEnd};
 use crate::spectrum::Spectrum;
 use glam::Vec4;
 use std::array::from_fn;
@@ -21,7 +21,7 @@ impl Connector<'_> {
         pdf: f32,
     ) -> Option<Connection> {
         let (vertex, job) = (&self.camera.vertices[t - 1], self.job);
-        let x0 = &self.walked.light.vertices()[end.place.z as usize];
+        let x0 = &self.walks.light.vertices()[end.vertex.z as usize];
         let segment = vertex.segment_to(x0);
         let (contribution, weight) = y.next_event(job, t, x0, pdf, &segment)?;
         Some(Connection {
@@ -55,11 +55,11 @@ impl Connector<'_> {
         of_camera: CellGuide<'_>,
         four: &[LightEnd; 4],
     ) {
-        let light_sums = &self.walked.light.sums;
+        let light_sums = &self.walks.light.sums;
         let z = |lane: usize| {
-            let place = &four[lane].place;
-            let z = light_sums.diffuse_or_none(place.z as usize);
-            if place.is_diffuse {
+            let vertex = &four[lane].vertex;
+            let z = light_sums.diffuse_or_none(vertex.z as usize);
+            if vertex.is_diffuse {
                 z
             } else {
                 &DiffuseEnd::NONE
@@ -67,11 +67,11 @@ impl Connector<'_> {
         };
         // Written out, so that lanes stay in registers.
         let z = [z(0), z(1), z(2), z(3)];
-        let depth = Depth::of(t);
-        let count = |lane: usize| self.job.count_from(depth, of_camera, z[lane].cell()) as f32;
+        let bounce = Bounce::of(t);
+        let count = |lane: usize| self.job.count_from(bounce, of_camera, z[lane].cell()) as f32;
         let connections = y.connect(z, [count(0), count(1), count(2), count(3)]);
         let root_visibility = z.map(|z| of_camera.root_visibility(z.cell()));
-        let is_plain = |end: &LightEnd| end.place.is_diffuse || end.place.s == 0;
+        let is_plain = |end: &LightEnd| end.vertex.is_diffuse || end.vertex.s == 0;
         if four.iter().all(is_plain) && connections.turned == 0 {
             self.offer_plain(t, four, &connections, root_visibility);
         } else {
@@ -107,7 +107,7 @@ impl Connector<'_> {
             .open()
             .write_some(four.len(), |room| {
                 let mut offered = 0;
-                let is_there = |(_, end): &(usize, &LightEnd)| end.place.s > 0;
+                let is_there = |(_, end): &(usize, &LightEnd)| end.vertex.s > 0;
                 for (lane, end) in four.iter().enumerate().take_while(is_there) {
                     room[offered] =
                         end.candidate(numbers, contributions[lane], weights[lane], scores[lane]);
@@ -127,7 +127,7 @@ impl Connector<'_> {
         root_visibility: [f32; 4],
     ) {
         for (lane, end) in four.iter().enumerate() {
-            let connection = connections.get(lane).filter(|_| end.place.is_diffuse);
+            let connection = connections.get(lane).filter(|_| end.vertex.is_diffuse);
             if let Some((contribution, weight)) = connection {
                 let connection = Connection {
                     contribution,
@@ -136,7 +136,7 @@ impl Connector<'_> {
                     score_factor: root_visibility[lane],
                 };
                 self.offer(t, end, connection);
-            } else if end.place.s > 0 {
+            } else if end.vertex.s > 0 {
                 self.offer_general(t, end);
             }
         }

@@ -5,7 +5,7 @@
 //! density p by scattering at x_1 and q by next-event estimation, in the same measure, area or solid angle.
 
 use super::super::journal::enter;
-use super::super::{Entry, Link, Sample, Walked, Worker};
+use super::super::{Entry, Link, Sample, Walks, Worker};
 use super::media::TracedShadow;
 use super::trace::trace;
 use crate::bsdf::TransportMode;
@@ -25,33 +25,33 @@ use crate::strategy::Strategy;
 #[inline(never)]
 pub(in super::super) fn direct(
     job: &Job<'_>,
-    walked: &Walked,
+    walks: &Walks,
     entries: &mut Vec<Entry>,
     worker: &mut Worker,
 ) {
     let Worker {
         shadow_rays, stats, ..
     } = worker;
-    for (number, sample) in walked.samples.iter().enumerate() {
-        let walk = walked.camera.get(number);
+    for (index, sample) in walks.samples.iter().enumerate() {
+        let walk = walks.camera.get(index);
         for (i, vertex) in walk.vertices.iter().enumerate().skip(1) {
             if let Some(arrival) = Arrival::at(vertex)
                 && let Some(term) = hit(job, &walk.vertices[..i], &arrival)
             {
-                enter(entries, stats, number, sample, term, Link::Walk);
+                enter(entries, stats, index, sample, term, Link::Walk);
             }
             let connects = i + 2 <= job.settings.max_vertices() && !vertex.is_delta();
             if connects && let Some(found) = next_event(job, sample, vertex, i) {
                 let (term, ends, shadow) = found;
                 let link = Link::Connection(ends);
-                let entry = enter(entries, stats, number, sample, term, link);
+                let entry = enter(entries, stats, index, sample, term, link);
                 shadow.apply(entry, stats);
             }
         }
         let escape = walk.escape.into_iter();
         for arrival in escape.flat_map(|escape| Arrival::of_escape(job.scene, escape)) {
             if let Some(term) = hit(job, walk.vertices, &arrival) {
-                enter(entries, stats, number, sample, term, Link::Walk);
+                enter(entries, stats, index, sample, term, Link::Walk);
             }
         }
     }

@@ -1,8 +1,8 @@
 //! The light vertices that camera vertices are connected with: light points of their own (s = 1), and vertices of the
 //! sample's own light subpath or of a cache.
 
-use super::super::cache::{LightCache, Place};
-use super::super::{CandidateCount, Lists, Sample, Walked, Worker};
+use super::super::cache::{LightCache, LightVertexRef};
+use super::super::{CandidateCount, Lists, Sample, Walks, Worker};
 use super::pairs::Pairs;
 use crate::contribution::Term;
 use crate::math::ONE_MINUS_EPSILON;
@@ -16,10 +16,10 @@ use crate::strategy::Strategy;
 /// A light vertex that a camera vertex is connected with.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct LightEnd {
-    /// Its place.
-    pub(super) place: Place,
+    /// The vertex.
+    pub(super) vertex: LightVertexRef,
     /// [`Candidate::light_vertex`].
-    pub(super) number: u32,
+    pub(super) light_vertex: u32,
     /// The factor of the connection: 1/π(n) of `Pairs`, or 1 / (M N P) for a vertex of a cache. That of a light point is
     /// in its β.
     pub(super) share: f32,
@@ -38,14 +38,14 @@ impl LightEnd {
     ) -> Candidate {
         Candidate {
             term: Term {
-                strategy: Strategy::new(self.place.s.into(), t),
-                light: self.place.light,
+                strategy: Strategy::new(self.vertex.s.into(), t),
+                light: self.vertex.light,
                 contribution,
                 weight,
             },
             score: score.max(f32::MIN_POSITIVE),
-            vertices: [self.place.z, y as u32],
-            light_vertex: self.number,
+            vertices: [self.vertex.z, y as u32],
+            light_vertex: self.light_vertex,
         }
     }
 }
@@ -82,7 +82,7 @@ impl LightEnds {
 #[inline(never)]
 pub(in super::super) fn next_events(
     job: &Job<'_>,
-    walked: &mut Walked,
+    walks: &mut Walks,
     ends: &mut LightEnds,
     counts: CandidateCount,
 ) {
@@ -90,13 +90,13 @@ pub(in super::super) fn next_events(
         return;
     }
     let longest = job.settings.max_vertices() - 1;
-    for (i, sample) in walked.samples.iter().enumerate() {
-        for (t, y) in (2..).zip(walked.camera.get(i).vertices.iter().skip(1)) {
+    for (i, sample) in walks.samples.iter().enumerate() {
+        for (t, y) in (2..).zip(walks.camera.get(i).vertices.iter().skip(1)) {
             if t <= longest && !y.is_delta() && job.takes(1, t) {
                 let count = counts.at(t);
                 ends.points.open().make_room(count.into());
                 for k in 0..count {
-                    if let Some(event) = add_point(&mut walked.light, job, sample, t, y, [k, count])
+                    if let Some(event) = add_point(&mut walks.light, job, sample, t, y, [k, count])
                     {
                         ends.points.open().write(event, 1);
                     }
@@ -123,18 +123,18 @@ fn add_point(
     let u = sample.points.get_2d(at(Purpose::NextEventPosition));
     let u_depth = || kronecker_number(sample.points.get_1d(at(Purpose::NextEventDepth)), k);
     let point = kronecker_point(u, k);
-    let (number, drawn) = sample_next_event(job, y, u_light, point, u_depth)?;
-    let mut x0 = Vertex::light(job, number, &drawn.at);
+    let (light_index, drawn) = sample_next_event(job, y, u_light, point, u_depth)?;
+    let mut x0 = Vertex::light(job, light_index, &drawn.at);
     x0.beta = Spectrum::splat(drawn.alpha / (drawn.pdf * f32::from(count)));
-    let place = Place {
+    let vertex = LightVertexRef {
         z: light.add_point(&x0) as u32,
         s: 1,
         is_diffuse: false,
-        light: number,
+        light: light_index,
     };
     let end = LightEnd {
-        place,
-        number: 0,
+        vertex,
+        light_vertex: 0,
         share: 1.0,
     };
     Some(NextEvent {
@@ -147,15 +147,15 @@ fn add_point(
 #[inline(never)]
 pub(in super::super) fn own_light(
     job: &Job<'_>,
-    walked: &Walked,
+    walks: &Walks,
     ends: &mut LightEnds,
     worker: &mut Worker,
 ) {
     let settings = job.settings;
-    for (i, sample) in walked.samples.iter().enumerate() {
-        let subpath = walked.light.get(walked.first_light() + i);
+    for (i, sample) in walks.samples.iter().enumerate() {
+        let subpath = walks.light.get(walks.first_light() + i);
         let mut pairs = Pairs::new(job, &sample.camera);
-        for (t, y) in (2..).zip(walked.camera.get(i).vertices.iter().skip(1)) {
+        for (t, y) in (2..).zip(walks.camera.get(i).vertices.iter().skip(1)) {
             let longest = if y.is_delta() {
                 0
             } else {
@@ -163,16 +163,16 @@ pub(in super::super) fn own_light(
             };
             let list = ends.vertices.open();
             list.make_room(longest);
-            for s in settings.light_point.first_walked()..=longest {
+            for s in settings.light_point.min_subpath_s()..=longest {
                 // Every pair in turn, whatever becomes of it: each moves the pointer.
                 let Some(share) = pairs.take(s + t) else {
                     continue;
                 };
-                let place = Place::new(&subpath, s - 1, &walked.light.sums);
-                let connects = place.is_diffuse || !subpath.vertices[s - 1].is_delta();
+                let vertex = LightVertexRef::new(&subpath, s - 1, &walks.light.sums);
+                let connects = vertex.is_diffuse || !subpath.vertices[s - 1].is_delta();
                 let end = LightEnd {
-                    place,
-                    number: s as u32 - 1,
+                    vertex,
+                    light_vertex: s as u32 - 1,
                     share,
                 };
                 list.write(end, usize::from(connects && job.takes(s, t)));
@@ -188,16 +188,16 @@ pub(in super::super) fn own_light(
 #[inline(never)]
 pub(in super::super) fn draw_cached(
     job: &Job<'_>,
-    walked: &Walked,
+    walks: &Walks,
     cache: &LightCache,
     ends: &mut LightEnds,
     counts: CandidateCount,
     worker: &mut Worker,
 ) {
-    let light = &walked.light;
+    let light = &walks.light;
     let takes_all = job.settings.strategies.is_all();
-    for (i, sample) in walked.samples.iter().enumerate() {
-        for (t, y) in (2..).zip(walked.camera.get(i).vertices.iter().skip(1)) {
+    for (i, sample) in walks.samples.iter().enumerate() {
+        for (t, y) in (2..).zip(walks.camera.get(i).vertices.iter().skip(1)) {
             // s vertices at most.
             let longest = job.settings.max_vertices().saturating_sub(t);
             if !y.is_delta() {
@@ -205,16 +205,16 @@ pub(in super::super) fn draw_cached(
                 let (row, count) = (job.guide.of_camera(y.cell).row(), counts.at(t));
                 ends.vertices.open().write_some(count.into(), |room| {
                     let mut taken = 0;
-                    cache.draw_all(row, count, u, |entry, place, share| {
-                        let s = usize::from(place.s);
-                        if place.is_diffuse {
-                            light.sums.load_ahead(place.z as usize);
+                    cache.draw_all(row, count, u, |entry, vertex, share| {
+                        let s = usize::from(vertex.s);
+                        if vertex.is_diffuse {
+                            light.sums.load_ahead(vertex.z as usize);
                         } else {
-                            light.load_ahead(place.z as usize);
+                            light.load_ahead(vertex.z as usize);
                         }
                         room[taken] = LightEnd {
-                            place: *place,
-                            number: entry as u32 + 1,
+                            vertex: *vertex,
+                            light_vertex: entry as u32 + 1,
                             share,
                         };
                         taken += usize::from(s <= longest && (takes_all || job.takes(s, t)));

@@ -2,7 +2,7 @@
 //! sees it. The film divides by its number of pixels; where there are fewer light subpaths, each counts more.
 
 use super::super::journal::enter;
-use super::super::{Entry, Link, Sample, Walked, Worker};
+use super::super::{Entry, Link, Sample, Walks, Worker};
 use super::media::TracedShadow;
 use super::trace::trace;
 use crate::contribution::Term;
@@ -31,14 +31,14 @@ pub(in super::super) enum Weighting {
 #[inline(never)]
 pub(in super::super) fn light_image(
     job: &Job<'_>,
-    walked: &Walked,
+    walks: &Walks,
     splats: &mut Vec<Entry>,
     worker: &mut Worker,
     weighting: Weighting,
 ) {
-    let first = walked.first_light();
-    for (number, sample) in walked.samples.iter().enumerate() {
-        let walk = walked.light.get(first + number);
+    let first = walks.first_light();
+    for (index, sample) in walks.samples.iter().enumerate() {
+        let walk = walks.light.get(first + index);
         for s in 1..=walk.vertices.len() {
             if weighting == Weighting::Combined && !job.takes(s, 1) {
                 continue;
@@ -47,11 +47,11 @@ pub(in super::super) fn light_image(
             let Some(image) = LightImage::new(job, &walk.vertices[..s], &lens) else {
                 continue;
             };
-            let sums = (&walked.light.sums, walk.first + s - 1);
+            let sums = (&walks.light.sums, walk.first + s - 1);
             let sums = (weighting == Weighting::Combined).then_some(sums);
             if let Some((term, shadow)) = image.weighted_term(job, sums, &mut worker.weights) {
                 let (link, stats) = (image.link(job, sample), &mut worker.stats);
-                let entry = enter(splats, stats, number, sample, term, link);
+                let entry = enter(splats, stats, index, sample, term, link);
                 shadow.apply(entry, stats);
             }
         }

@@ -5,7 +5,7 @@
 //! guesses, and the estimate remains unbiased if the weight is computed again from the media that the ray went through
 //! (docs/derivations/media.md). Where the guess was right, it is kept.
 
-use super::super::{Candidates, Entry, Fate, Walked, Worker};
+use super::super::{Candidates, Entry, Fate, Walks, Worker};
 use crate::locus::Locus;
 use crate::path::{Job, JoinedPath, PathSums};
 use crate::scene::Edge;
@@ -70,7 +70,7 @@ impl TracedShadow {
 /// Traces the shadow rays of the chosen candidates that may go through media, one by one, and weighs their terms again.
 pub(super) fn trace_chosen_through_media(
     job: &Job<'_>,
-    walked: &Walked,
+    walks: &Walks,
     candidates: &Candidates,
     entries: &mut [Entry],
     worker: &mut Worker,
@@ -88,11 +88,11 @@ pub(super) fn trace_chosen_through_media(
         };
         let candidate = &candidates.offered[chosen.candidate as usize];
         let [z, y] = candidate.vertices.map(|i| i as usize);
-        let [light, camera] = walked.subpaths(candidate);
+        let [light, camera] = walks.subpaths(candidate);
         let mut path = JoinedPath::new(light, camera);
         let sums = PathSums {
-            light: walked.light.sums.at(z),
-            camera: walked.camera.sums.at(y),
+            light: walks.light.sums.at(z),
+            camera: walks.camera.sums.at(y),
             next_event: None,
         };
         path.segment.pass(edge);

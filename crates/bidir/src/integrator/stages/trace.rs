@@ -1,6 +1,6 @@
 //! Choosing connections, and the shadow rays of those that were chosen.
 
-use super::super::{Candidates, Entry, Link, Walked, Worker};
+use super::super::{Candidates, Entry, Link, Walks, Worker};
 use super::media::trace_chosen_through_media;
 use crate::path::Job;
 use crate::scene::ShadowRayBuffers;
@@ -10,7 +10,7 @@ use crate::stats::{Stage, Stats};
 /// Has `rule` choose among the candidates of each sample, and adds the entries of those that are chosen.
 pub(in super::super) fn select(
     rule: &dyn Selector,
-    walked: &Walked,
+    walks: &Walks,
     candidates: &mut Candidates,
     entries: &mut Vec<Entry>,
     worker: &mut Worker,
@@ -18,11 +18,11 @@ pub(in super::super) fn select(
     let Candidates {
         offered, chosen, ..
     } = candidates;
-    let Walked { light, camera, .. } = walked;
-    for (number, sample) in walked.samples.iter().enumerate() {
+    let Walks { light, camera, .. } = walks;
+    for (index, sample) in walks.samples.iter().enumerate() {
         let first = chosen.len();
-        rule.select(offered.get(number), Draws(&sample.camera), chosen);
-        let begin = offered.begin(number);
+        rule.select(offered.get(index), Draws(&sample.camera), chosen);
+        let begin = offered.begin(index);
         for Chosen { candidate, .. } in &mut chosen[first..] {
             *candidate += begin as u32;
             let [z, _] = offered[*candidate as usize].vertices;
@@ -30,17 +30,17 @@ pub(in super::super) fn select(
         }
     }
     // In a second loop, so that what the first began to load has arrived.
-    let mut number = 0;
+    let mut index = 0;
     for &Chosen { candidate, prob } in &*chosen {
         let candidate = candidate as usize;
-        while candidate >= offered.begin(number + 1) {
-            number += 1;
+        while candidate >= offered.begin(index + 1) {
+            index += 1;
         }
         let of = &offered[candidate];
         let link = Link::Connection(of.ends(light, camera));
         entries.push(Entry {
             prob,
-            ..Entry::certain(number, of.term, link)
+            ..Entry::certain(index, of.term, link)
         });
     }
     worker.stopwatch.end(Stage::Select);
@@ -50,13 +50,13 @@ pub(in super::super) fn select(
 #[inline(never)]
 pub(in super::super) fn shadow_rays(
     job: &Job<'_>,
-    walked: &Walked,
+    walks: &Walks,
     candidates: &Candidates,
     entries: &mut [Entry],
     worker: &mut Worker,
 ) {
     if job.scene.has_media() && !job.scene.foresees_media() {
-        trace_chosen_through_media(job, walked, candidates, entries, worker);
+        trace_chosen_through_media(job, walks, candidates, entries, worker);
     }
     trace(job, entries, &mut worker.shadow_rays, &mut worker.stats);
     worker.stopwatch.end(Stage::Shadow);

@@ -1,7 +1,7 @@
 //! The subpaths of the samples, sums along them, and the lights that camera subpaths hit by themselves, s = 0.
 
 use super::super::journal::enter;
-use super::super::{Entry, Link, Sample, Walked, Worker};
+use super::super::{Entry, Link, Sample, Walks, Worker};
 use crate::camera::CameraRay;
 use crate::contribution::Term;
 use crate::math::Vec2;
@@ -13,10 +13,10 @@ use crate::strategy::Strategy;
 
 /// Walks the camera subpath of each sample.
 #[inline(never)] // So that profiles show the stages, each of which is called once.
-pub(in super::super) fn walk_camera(job: &Job<'_>, walked: &mut Walked, worker: &mut Worker) {
-    let Walked {
+pub(in super::super) fn walk_camera(job: &Job<'_>, walks: &mut Walks, worker: &mut Worker) {
+    let Walks {
         samples, camera, ..
-    } = walked;
+    } = walks;
     for sample in &*samples {
         let (ray, weight) = camera_ray(job, sample);
         camera_subpath(job, &sample.camera, &ray, weight, camera, &mut worker.stats);
@@ -26,8 +26,8 @@ pub(in super::super) fn walk_camera(job: &Job<'_>, walked: &mut Walked, worker: 
 
 /// Walks the light subpath of each sample, and adds it to those that are there.
 #[inline(never)]
-pub(in super::super) fn walk_light(job: &Job<'_>, walked: &mut Walked, worker: &mut Worker) {
-    let Walked { samples, light, .. } = walked;
+pub(in super::super) fn walk_light(job: &Job<'_>, walks: &mut Walks, worker: &mut Worker) {
+    let Walks { samples, light, .. } = walks;
     for sample in &*samples {
         light_subpath(job, &sample.light, light, &mut worker.stats);
     }
@@ -36,18 +36,18 @@ pub(in super::super) fn walk_light(job: &Job<'_>, walked: &mut Walked, worker: &
 
 /// Prepares the weights of paths with the camera subpaths.
 #[inline(never)]
-pub(in super::super) fn sum_camera(job: &Job<'_>, walked: &mut Walked, worker: &mut Worker) {
+pub(in super::super) fn sum_camera(job: &Job<'_>, walks: &mut Walks, worker: &mut Worker) {
     if worker.weights.uses_sums() {
-        walked.camera.add_sums(job, 0);
+        walks.camera.add_sums(job, 0);
     }
     worker.stopwatch.end(Stage::Walk);
 }
 
 /// Prepares the weights of paths with the samples' light subpaths.
 #[inline(never)]
-pub(in super::super) fn sum_light(job: &Job<'_>, walked: &mut Walked, worker: &mut Worker) {
+pub(in super::super) fn sum_light(job: &Job<'_>, walks: &mut Walks, worker: &mut Worker) {
     if worker.weights.uses_sums() {
-        walked.light.add_sums(job, walked.first_light());
+        walks.light.add_sums(job, walks.first_light());
     }
     worker.stopwatch.end(Stage::Walk);
 }
@@ -56,13 +56,13 @@ pub(in super::super) fn sum_light(job: &Job<'_>, walked: &mut Walked, worker: &m
 #[inline(never)]
 pub(in super::super) fn hits(
     job: &Job<'_>,
-    walked: &Walked,
+    walks: &Walks,
     entries: &mut Vec<Entry>,
     worker: &mut Worker,
 ) {
     let Worker { weights, stats, .. } = worker;
-    for (number, sample) in walked.samples.iter().enumerate() {
-        let walk = walked.camera.get(number);
+    for (index, sample) in walks.samples.iter().enumerate() {
+        let walk = walks.camera.get(index);
         for (before, arrival) in Arrival::all(job.scene, &walk) {
             let t = before.len() + 1;
             if !job.takes(0, t) {
@@ -72,14 +72,14 @@ pub(in super::super) fn hits(
             if contribution == Spectrum::ZERO {
                 continue;
             }
-            let sums = walked.camera.sums.at(walk.first + t - 2);
+            let sums = walks.camera.sums.at(walk.first + t - 2);
             let term = Term {
                 strategy: Strategy::new(0, t),
                 light: arrival.light,
                 contribution,
                 weight: weights.hit(job, &HitPath::new(job, &arrival, before), sums),
             };
-            enter(entries, stats, number, sample, term, Link::Walk);
+            enter(entries, stats, index, sample, term, Link::Walk);
         }
     }
     worker.stopwatch.end(Stage::Hits);

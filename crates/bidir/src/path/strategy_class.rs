@@ -1,6 +1,6 @@
 //! Classes of strategies, by how they come to a path. All that weights ask of one is here: how many samples it takes
 //! (n_j), whether it can make a path, its ratio to the next (p_{j+1} / p_j), and how running sums tell it from others
-//! ([`Depth`]).
+//! ([`Bounce`]).
 //!
 //! **n_j** is the number of samples that strategy j takes of a path in a pass: the only way in which numbers of samples
 //! enter a weight. Estimates are unbiased with any n_j that is a function of the path, whichever strategy made it
@@ -18,49 +18,43 @@ use crate::guide::{Cell, CellGuide};
 
 /// A class of strategies that take the same number of samples of paths.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Technique {
+pub(crate) enum StrategyClass {
     /// s = 0: the camera walk comes upon the light by itself.
     Hit,
     /// t = 1: a light vertex is connected with a lens point.
     LightImage,
     /// s = 1, where camera vertices have light points of their own.
-    NextEvent(Depth),
+    NextEvent(Bounce),
     /// A vertex of a light walk is connected with one of a camera walk.
-    Connection(Depth),
+    Connection(Bounce),
 }
 
-/// The camera vertex that a technique links, as far as its number of samples depends on it.
+/// The camera vertex that a class links, as far as its number of samples depends on it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Depth {
+pub(crate) enum Bounce {
     /// The first behind the lens, t = 2.
     First,
     /// Any behind that.
     Deeper,
 }
 
-impl Depth {
-    /// Returns the depth of camera vertex number `t` ≥ 2.
+impl Bounce {
+    /// Returns the bounce of camera vertex number `t` ≥ 2.
     #[inline]
     pub(crate) fn of(t: usize) -> Self {
         if t > 2 { Self::Deeper } else { Self::First }
     }
-
-    /// Returns its index in tables.
-    #[inline]
-    pub(crate) fn index(self) -> usize {
-        self as usize
-    }
 }
 
-impl Technique {
-    /// Returns the technique of strategy (s, t).
+impl StrategyClass {
+    /// Returns the class of strategy (s, t).
     #[inline]
     pub(crate) fn of(light_point: LightPointChoice, s: usize, t: usize) -> Self {
         match (s, t) {
             (0, _) => Self::Hit,
             (_, 1) => Self::LightImage,
-            _ if s < light_point.first_walked() => Self::NextEvent(Depth::of(t)),
-            _ => Self::Connection(Depth::of(t)),
+            _ if s < light_point.min_subpath_s() => Self::NextEvent(Bounce::of(t)),
+            _ => Self::Connection(Bounce::of(t)),
         }
     }
 }
@@ -95,28 +89,30 @@ impl Job<'_> {
     #[inline]
     pub fn count(&self, s: usize, t: usize, cells: [Cell; 2]) -> f64 {
         if self.takes(s, t) {
-            self.count_of(Technique::of(self.settings.light_point, s, t), cells)
+            self.count_of(StrategyClass::of(self.settings.light_point, s, t), cells)
         } else {
             0.0
         }
     }
 
-    /// Returns n_j of a technique that takes part. Camera densities count per pixel, so that all that begin at the camera
+    /// Returns n_j of a class that takes part. Camera densities count per pixel, so that all that begin at the camera
     /// take one sample; the light image takes one per light subpath.
     #[inline]
-    pub(crate) fn count_of(&self, technique: Technique, [z, y]: [Cell; 2]) -> f64 {
-        match technique {
-            Technique::Hit => 1.0,
-            Technique::LightImage => self.counts.light_subpaths,
-            Technique::NextEvent(depth) => self.counts.next_events[depth.index()],
-            Technique::Connection(depth) => self.count_from(depth, self.guide.of_camera(y), z),
+    pub(crate) fn count_of(&self, class: StrategyClass, [z, y]: [Cell; 2]) -> f64 {
+        match class {
+            StrategyClass::Hit => 1.0,
+            StrategyClass::LightImage => self.counts.light_subpaths,
+            StrategyClass::NextEvent(bounce) => self.counts.next_events[bounce as usize],
+            StrategyClass::Connection(bounce) => {
+                self.count_from(bounce, self.guide.of_camera(y), z)
+            }
         }
     }
 
     /// Returns n_j of connections, where it is known what the guide knows of the camera vertex.
     #[inline(always)]
-    pub(crate) fn count_from(&self, depth: Depth, of_camera: CellGuide<'_>, z: Cell) -> f64 {
-        self.counts.connections[depth.index()] * of_camera.count_factor(z)
+    pub(crate) fn count_from(&self, bounce: Bounce, of_camera: CellGuide<'_>, z: Cell) -> f64 {
+        self.counts.connections[bounce as usize] * of_camera.count_factor(z)
     }
 }
 
