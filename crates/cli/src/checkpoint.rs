@@ -5,6 +5,7 @@ use crate::exit::{Exit, Failure};
 use crate::film;
 use crate::lock::{self, FilmLock};
 use crate::scene_io::{self, FilmFile};
+use crate::signals::Signals;
 use formats::film::{OpenError, Render};
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
@@ -93,9 +94,21 @@ pub(crate) fn mismatch(args: &LongArgs, error: &OpenError) -> Failure {
     Failure::new(Exit::FilmMismatch, message).with_hint(hint)
 }
 
+/// Ends a command that a signal stopped. Returns a message, with the way to continue if `folder` has finished passes,
+/// and the exit. `without` is a flag that would start over.
+pub(crate) fn stopped(folder: &Path, without: Option<&str>, signals: &Signals) -> (String, Exit) {
+    if !has_passes(folder) {
+        return ("stopped before the first pass".to_owned(), signals.ended());
+    }
+    let without = without.map(|flag| format!(" without {flag}"));
+    let (without, folder) = (without.unwrap_or_default(), folder.display());
+    let text = format!("stopped: run the same command{without} to continue in {folder}");
+    (text, Exit::Checkpoint)
+}
+
 /// Returns true if `folder` or a folder below it has finished passes: a film file, or records of an experiment
 /// after the first line, which only identifies the experiment.
-pub(crate) fn has_passes(folder: &Path) -> bool {
+fn has_passes(folder: &Path) -> bool {
     let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
     entries.map(|entry| entry.path()).any(|path| {
         if path.is_dir() && !path.is_symlink() {

@@ -5,11 +5,10 @@ mod cluster;
 mod watch;
 
 use crate::args::ExperimentArgs;
-use crate::checkpoint::has_passes;
+use crate::checkpoint;
 use crate::console::{Console, Display, print, say};
 use crate::exit::{Exit, Failure};
 use crate::lock::FilmLock;
-use crate::reference;
 use crate::scene_io;
 use crate::signals::Signals;
 use crate::threads;
@@ -65,18 +64,8 @@ fn command(args: &ExperimentArgs) -> String {
 
 /// Prints how to continue if a render finished, and returns the exit.
 fn stopped(args: &ExperimentArgs, signals: &Signals) -> Exit {
-    let (text, exit) = if !has_passes(&args.folder()) {
-        let exit = signals.ended();
-        ("stopped before the first pass", exit)
-    } else if args.restart {
-        let text = "stopped: run the same command without --restart to continue";
-        (text, Exit::Checkpoint)
-    } else {
-        (
-            "stopped: run the same command to continue",
-            Exit::Checkpoint,
-        )
-    };
+    let restart = args.restart.then_some("--restart");
+    let (text, exit) = checkpoint::stopped(&args.folder(), restart, signals);
     if !args.quiet {
         say(text);
     }
@@ -190,7 +179,7 @@ fn failure(error: ExperimentError) -> Failure {
     let text = error.to_string();
     match (error.hint().map(str::to_owned), error) {
         (hint, ExperimentError::Reference { error, .. }) => {
-            let exit = reference::failure(error).exit();
+            let exit = Failure::from(error).exit();
             let anew = "make it again with `bidir reference`, or start over with --restart";
             Failure::new(exit, text).with_hint(hint.unwrap_or_else(|| anew.to_owned()))
         }

@@ -95,14 +95,8 @@ impl<'a> Reporter<'a> {
 
     /// Returns the reporter of a render that continues after this number of samples.
     pub(crate) fn after(self, samples: u64) -> Self {
-        self.add_earlier(samples);
+        self.resume(samples);
         self
-    }
-
-    /// Adds samples of earlier runs.
-    pub(crate) fn add_earlier(&self, samples: u64) {
-        self.before.fetch_add(samples, Ordering::Relaxed);
-        self.samples.fetch_add(samples, Ordering::Relaxed);
     }
 
     /// Writes the line of the end, unless the last line was at 100 %.
@@ -197,6 +191,11 @@ impl Progress for Reporter<'_> {
         if let Ok(mut last) = self.last.try_lock() {
             self.report(&mut last);
         }
+    }
+
+    fn resume(&self, samples: u64) {
+        self.before.fetch_add(samples, Ordering::Relaxed);
+        self.samples.fetch_add(samples, Ordering::Relaxed);
     }
 
     fn stop(&self) -> Stop<'_> {

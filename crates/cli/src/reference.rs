@@ -1,7 +1,7 @@
 //! `bidir reference`: renders a reference image.
 
 use crate::args::{FilmArgs, PixelBounds, ReferenceArgs, Size};
-use crate::checkpoint::has_passes;
+use crate::checkpoint;
 use crate::console::{Console, say};
 use crate::exit::{Exit, Failure};
 use crate::lock::FilmLock;
@@ -13,7 +13,7 @@ use crate::signals::Signals;
 use crate::threads;
 use bidir::driver::{Budget, Resources, SessionError};
 use bidir::film::PixelRect;
-use lab::reference::{self, Error, FILMS, Host, Plan, Provenance, Reference};
+use lab::reference::{self, Error, FILMS, Fault, Job, Plan, Provenance};
 use std::path::Path;
 use std::time::Instant;
 
@@ -23,19 +23,13 @@ pub(crate) fn run(args: &ReferenceArgs, console: Console) -> Result<Exit, Failur
     threads::start(args.threads.count, console);
     let folder = args.output.clone();
     let folder = folder.unwrap_or_else(|| output::named_after(&args.scene.scene, ".reference"));
-    let earlier = args.extend.map(|_| Provenance::read(&folder));
-    let earlier = earlier.transpose().map_err(failure)?;
+    let earlier = args.extend.map(|_| Provenance::read(&folder)).transpose()?;
     check_folder(&folder)?;
-    let film = earlier.as_ref().map(film_of);
-    let film = film.as_ref().unwrap_or(&args.film);
-    let Some(loaded) = scene_io::load_until(&signals, &args.scene, Some(film))? else {
+    let film = earlier.as_ref().map_or_else(|| args.film.clone(), film_of);
+    let Some(loaded) = scene_io::load_until(&signals, &args.scene, Some(&film))? else {
         return Ok(signals.ended());
     };
     scene_io::print_warnings(&loaded, &args.scene, 0, console)?;
-    if let Some(earlier) = &earlier {
-        let same = earlier.check(&folder, &loaded.digest.to_string(), loaded.view.film());
-        same.map_err(failure)?;
-    }
     let plan = plan(args, earlier.as_ref(), &loaded)?;
     check_estimators(args, &plan, &loaded, console)?;
     check_apart(&folder, &loaded)?;
@@ -43,17 +37,51 @@ pub(crate) fn run(args: &ReferenceArgs, console: Console) -> Result<Exit, Failur
     std::fs::create_dir_all(&films).map_err(|error| Failure::io(&films, "make", &error))?;
     let _lock = FilmLock::take(&folder.join("reference"))?;
     if args.restart {
-        reference::clear(&folder).map_err(failure)?;
+        reference::clear(&folder)?;
     }
-    let job = Job {
-        args,
-        console,
-        folder: &folder,
-        loaded: &loaded,
-        plan,
-        signals: &signals,
+    let display = console.display(args.talk);
+    let reporter = Reporter::new(display, &signals, clock(&plan, &loaded));
+    let made = make(args, &folder, &loaded, &plan, &reporter)?;
+    let (lines, exit) = if let Some(provenance) = made {
+        report(&provenance, console)
+    } else {
+        let restart = args.restart.then_some("--restart");
+        let (line, exit) = checkpoint::stopped(&folder, restart, &signals);
+        (vec![line], exit)
     };
-    job.run()
+    if !args.talk.quiet {
+        lines.iter().for_each(say);
+    }
+    Ok(exit)
+}
+
+/// Renders the reference. None: a signal came first.
+fn make(
+    args: &ReferenceArgs,
+    folder: &Path,
+    loaded: &Loaded,
+    plan: &Plan,
+    reporter: &Reporter<'_>,
+) -> Result<Option<Provenance>, Failure> {
+    let job = Job {
+        folder,
+        subject: &loaded.subject(),
+        plan,
+        resources: &Resources {
+            threads: args.threads.count.into(),
+            ..Resources::default()
+        },
+        host: reporter,
+    };
+    let made = job.make();
+    if let Ok(Some(_)) = made {
+        reporter.complete();
+    }
+    reporter.finish();
+    made.map_err(|error| match error {
+        Error::Session(SessionError::Film(error)) => scene_io::too_large(loaded, &error),
+        error => error.into(),
+    })
 }
 
 /// Refuses a folder whose contents are not a reference.
@@ -78,14 +106,11 @@ fn check_apart(folder: &Path, loaded: &Loaded) -> Result<(), Failure> {
 /// Returns the geometry of the film of a reference.
 fn film_of(provenance: &Provenance) -> FilmArgs {
     let [left, top, right, bottom] = provenance.crop;
+    let (min, max) = ([left, top], [right, bottom]);
     FilmArgs {
         size: Some(Size(provenance.resolution)),
-        crop: Some(PixelBounds(PixelRect {
-            min: [left, top],
-            max: [right, bottom],
-        })),
-        pixelbounds: None,
-        cropwindow: None,
+        crop: Some(PixelBounds(PixelRect { min, max })),
+        ..FilmArgs::default()
     }
 }
 
@@ -96,10 +121,8 @@ fn plan(
     loaded: &Loaded,
 ) -> Result<Plan, Failure> {
     if let (Some(earlier), Some(more)) = (earlier, args.extend) {
-        return Plan::extended(earlier, more).ok_or_else(|| {
-            let message = "the reference has settings that this program does not know";
-            Failure::new(Exit::FilmMismatch, message)
-        });
+        earlier.check(&loaded.subject())?;
+        return Ok(Plan::extended(earlier, more)?);
     }
     let spp = args.spp.unwrap_or(loaded.settings.samples_per_pixel.into());
     let own = loaded.settings.render_settings();
@@ -134,155 +157,101 @@ fn check_estimators(
     Ok(())
 }
 
-/// A reference whose arguments are checked.
-struct Job<'a> {
-    args: &'a ReferenceArgs,
-    console: Console,
-    folder: &'a Path,
-    loaded: &'a Loaded,
-    plan: Plan,
-    signals: &'a Signals,
+/// Returns a clock whose budget is the passes of both estimators.
+fn clock(plan: &Plan, loaded: &Loaded) -> Clock {
+    // Each replicate is trained, so training counts in the rate of passes.
+    let start = Instant::now();
+    Clock {
+        budget: Budget {
+            passes: Some(plan.rounded_spp().saturating_mul(2)),
+            ..Budget::default()
+        },
+        samples_per_pass: loaded.view.film().crop.area(),
+        start,
+        first_pass: start,
+    }
 }
 
-impl Job<'_> {
-    fn run(&self) -> Result<Exit, Failure> {
-        let subject = self.loaded.subject();
-        let resources = Resources {
-            threads: self.args.threads.count.into(),
-            ..Resources::default()
-        };
-        let display = self.console.display(self.args.talk);
-        let reporter = Reporter::new(display, self.signals, self.clock());
-        let host = Host {
-            progress: &reporter,
-            found: &|samples| reporter.add_earlier(samples),
-        };
-        let made = reference::make(self.folder, &subject, &self.plan, &resources, host);
-        if let Ok(Some(_)) = made {
-            reporter.complete();
-        }
-        reporter.finish();
-        let failed = |error| match error {
-            Error::Session(SessionError::Film(error)) => scene_io::too_large(self.loaded, &error),
-            error => failure(error),
-        };
-        match made.map_err(failed)? {
-            Some(reference) => Ok(self.report(&reference)),
-            None => Ok(self.stopped()),
-        }
-    }
-
-    /// Prints how to continue after a signal, and returns the exit.
-    fn stopped(&self) -> Exit {
-        if !has_passes(self.folder) {
-            self.say(format_args!("stopped before the first pass"));
-            return self.signals.ended();
-        }
-        let folder = self.folder.display();
-        self.say(format_args!(
-            "stopped; run the same command to continue in {folder}"
+/// Prints the warnings of a reference. Returns the lines of its summary, and the exit: `Validation` if the estimators
+/// disagree.
+fn report(made: &Provenance, console: Console) -> (Vec<String>, Exit) {
+    let (agreement, folder) = (&made.agreement, made.folder.display());
+    let dropped: u64 = made.estimators.iter().map(|e| e.dropped).sum();
+    if dropped > 0 {
+        console.warning(format_args!(
+            "{dropped} contributions were not finite or too large, and were dropped"
         ));
-        Exit::Checkpoint
     }
-
-    /// Returns a clock whose budget is the passes of both estimators.
-    fn clock(&self) -> Clock {
-        // Each replicate is trained, so training counts in the rate of passes.
-        let start = Instant::now();
-        Clock {
-            budget: Budget {
-                passes: Some(self.plan.rounded_spp().saturating_mul(2)),
-                ..Budget::default()
-            },
-            samples_per_pass: self.loaded.view.film().crop.area(),
-            start,
-            first_pass: start,
-        }
+    if !agreement.decided {
+        let effective = agreement.effective.unwrap_or_default();
+        console.warning(format_args!(
+            "the estimators cannot be compared: a few bright samples make most of the light, so that \
+             all count as {effective:.1} even ones; add more with --extend"
+        ));
     }
-
-    fn say(&self, text: std::fmt::Arguments<'_>) {
-        if !self.args.talk.quiet {
-            say(text);
-        }
+    let mut lines = vec![format!("{}; wrote {folder}", made.summary())];
+    if !agreement.agree {
+        let (place, [a, b]) = (agreement.worst().place(), agreement.worst().means);
+        console.warning(format_args!(
+            "the estimators disagree, most in {place}: {a:.6e} and {b:.6e}; do not use this as \
+             ground truth"
+        ));
+        return (lines, Exit::Validation);
     }
+    lines.extend(agreement.smallest_bias.map(|bias| {
+        let percent = 100.0 * bias;
+        format!("a bias of {percent:.2} % of the film's mean would be detected with even odds")
+    }));
+    (lines, Exit::Done)
+}
 
-    /// Prints the results, and returns the exit: `Validation` if the estimators disagree.
-    fn report(&self, reference: &Reference) -> Exit {
-        let provenance = &reference.provenance;
-        let (agreement, folder) = (&provenance.agreement, self.folder.display());
-        let dropped: u64 = provenance.estimators.iter().map(|e| e.dropped).sum();
-        if dropped > 0 {
-            self.console.warning(format_args!(
-                "{dropped} contributions were not finite or too large, and were dropped"
-            ));
-        }
-        self.say(format_args!("{}; wrote {folder}", provenance.summary()));
-        if !agreement.decided {
-            let effective = agreement.effective.unwrap_or_default();
-            self.console.warning(format_args!(
-                "the estimators cannot be compared: a few bright samples make most of the light, so that \
-                 all count as {effective:.1} even ones; add more with --extend"
-            ));
-        }
-        if agreement.agree {
-            if let Some(bias) = agreement.smallest_bias {
-                let percent = 100.0 * bias;
-                self.say(format_args!(
-                    "a bias of {percent:.2} % of the film's mean would be detected with even odds"
-                ));
+/// An error of a reference, with the remedy of the command.
+impl From<Error> for Failure {
+    fn from(error: Error) -> Self {
+        let text = error.to_string();
+        let (exit, hint) = match error {
+            Error::File(error) => return error.into(),
+            Error::Session(SessionError::NoPath { .. }) => return Self::usage(text),
+            Error::Session(_) => (
+                Exit::Scene,
+                "make it smaller with --size, or render a part of it with --crop",
+            ),
+            Error::Disagree { .. } => (
+                Exit::Validation,
+                "take more samples with --extend, or another estimator with --against",
+            ),
+            Error::Unusable { fault, .. } => {
+                let (exit, hint) = remedy(fault);
+                return Self::new(exit, text).with_hint(hint);
             }
-            return Exit::Done;
-        }
-        let worst = if agreement.film.p < agreement.blocks.p {
-            &agreement.film
-        } else {
-            &agreement.blocks
         };
-        let [left, top, right, bottom] = worst.block;
-        let ([a, b], channel) = (worst.means, worst.channel_name());
-        self.console.warning(format_args!(
-            "the estimators disagree, most in {channel} of the pixels {left},{top} to \
-             {right},{bottom}: {a:.6e} and {b:.6e}; do not use this as ground truth"
-        ));
-        Exit::Validation
+        Self::new(exit, text).with_hint(hint)
     }
 }
 
-/// Returns the failure of the command for an error of a reference.
-pub(crate) fn failure(error: Error) -> Failure {
-    let text = error.to_string();
-    let (exit, hint) = match error {
-        Error::File(error) => return error.into(),
-        Error::Io { .. } => return Failure::new(Exit::InputOutput, text),
-        Error::Session(SessionError::NoPath { .. }) => return Failure::usage(text),
-        Error::TooLong { found, .. } => {
-            let hint = format!("use --spp {found}, or start over with --restart");
-            return Failure::new(Exit::FilmMismatch, text).with_hint(hint);
-        }
-        Error::Damaged { .. } => (
+/// Returns the exit and the remedy for a fault.
+fn remedy(fault: Fault) -> (Exit, String) {
+    let (exit, hint) = match fault {
+        Fault::Damaged => (
             Exit::InputOutput,
             "the `bidir reference` command that made it writes it again from its films",
         ),
-        Error::Missing(_) => (
+        Fault::Missing => (
             Exit::InputOutput,
             "make one with `bidir reference`, or name another folder",
         ),
-        Error::Session(_) => (
-            Exit::Scene,
-            "make it smaller with --size, or render a part of it with --crop",
-        ),
-        Error::Refused { .. } => (
+        Fault::Refused => (
             Exit::Validation,
             "make one again with `bidir reference`, in another folder or with --restart",
         ),
-        Error::Disagree { .. } => (
-            Exit::Validation,
-            "take more samples with --extend, or another estimator with --against",
-        ),
-        Error::OtherRender { .. } => (
+        Fault::TooLong(spp) => {
+            let hint = format!("use --spp {spp}, or start over with --restart");
+            return (Exit::FilmMismatch, hint);
+        }
+        Fault::OtherRender => (
             Exit::FilmMismatch,
             "name another folder with --output, or start over with --restart",
         ),
     };
-    Failure::new(exit, text).with_hint(hint)
+    (exit, hint.to_owned())
 }

@@ -97,7 +97,7 @@ impl Error {
     }
 
     /// Returns a system error for `file`; a missing file has its own kind.
-    pub(crate) fn io(file: &Path, action: &str, error: &std::io::Error) -> Self {
+    pub fn io(file: &Path, action: &str, error: &std::io::Error) -> Self {
         let kind = match error.kind() {
             std::io::ErrorKind::NotFound => ErrorKind::MissingFile,
             _ => ErrorKind::Io,

@@ -64,6 +64,11 @@ pub trait Progress: Sync {
     /// Reports `samples` finished samples.
     fn advance(&self, samples: u64);
 
+    /// Reports `samples` samples of an earlier run, which took no time in this one.
+    fn resume(&self, samples: u64) {
+        self.advance(samples);
+    }
+
     /// Returns the flag by which the host gives up the running pass, which is then forgotten. All threads check it
     /// before every ray, and a ray checks it before every instance.
     fn stop(&self) -> Stop<'_> {

@@ -174,6 +174,13 @@ impl Film {
         self.sums.chunks_exact(self.layers.sums())
     }
 
+    /// Numbers the passes anew, from `first` on, so that films of different seeds can be merged.
+    #[must_use]
+    pub fn numbered_from(self, first: u64) -> Self {
+        let passes = PassSet::from(first..first + self.passes.len());
+        Self { passes, ..self }
+    }
+
     /// Adds the passes of another film of the same render.
     ///
     /// Errors: some passes are in both films, or the geometries or layers differ.

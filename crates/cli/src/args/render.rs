@@ -151,7 +151,7 @@ pub(crate) struct BudgetArgs {
 }
 
 /// The image's geometry.
-#[derive(Args, Clone, Debug)]
+#[derive(Args, Clone, Debug, Default)]
 #[command(next_help_heading = "Image")]
 pub(crate) struct FilmArgs {
     /// Image size in pixels [default: the scene's].

@@ -1,10 +1,9 @@
 //! Tests whether a difference of images with variances is more than noise.
 
 use crate::exit::Failure;
-use crate::reference;
 use crate::scene_io::{self, Variance};
 use lab::image::Pixels;
-use lab::reference::Reference;
+use lab::reference::{PICTURE, Provenance};
 use lab::statistics::{Difference, Estimated, z_test};
 use serde::Serialize;
 use std::path::Path;
@@ -36,16 +35,8 @@ impl Noisy {
         if !path.is_dir() {
             return Self::read(path);
         }
-        let reference = Reference::load(path).map_err(reference::failure)?;
-        let freedom = reference.estimated().freedom;
-        let estimator = &reference.provenance.estimators[0];
-        let integrator = estimator.settings.get("integrator").cloned();
-        let pixels = reference.variance;
-        Ok(Self {
-            pixels: reference.picture,
-            variance: Some(Variance { pixels, freedom }),
-            integrator,
-        })
+        Provenance::load(path)?;
+        Self::read(&path.join(PICTURE))
     }
 
     /// Returns the warning that the noise of this image's pixels is correlated, which the test of blocks
@@ -100,11 +91,6 @@ impl Significance {
 /// Returns the result of a test in one line.
 pub(super) fn text(found: &Difference) -> String {
     let Difference { p, tests, .. } = found;
-    let [left, top, right, bottom] = found.block;
-    let channel = found.channel_name();
-    let deviations = found.deviations.abs();
-    format!(
-        "p {p:.3e} of {tests} tests; most at {left},{top} to {right},{bottom} in {channel}, \
-         {deviations:.2} standard errors"
-    )
+    let (place, deviations) = (found.place(), found.deviations.abs());
+    format!("p {p:.3e} of {tests} tests; most in {place}, {deviations:.2} standard errors")
 }

@@ -49,7 +49,7 @@ use crate::bytes;
 use crate::error::{Error, ErrorKind, Result};
 use crate::{file, limits};
 use bidir::driver::Resources;
-use bidir::film::{Film, Layers};
+use bidir::film::{Film, Layers, MergeError};
 use block::Packed;
 use rayon::prelude::*;
 use std::fs::File;
@@ -84,7 +84,14 @@ impl FilmFile {
         if let Some(difference) = other.header.difference(&self.header) {
             return Err(OpenError::OtherRender(difference));
         }
-        self.film.merge(&other.film).map_err(OpenError::Merge)?;
+        self.join(other).map_err(OpenError::Merge)
+    }
+
+    /// Adds a film with other passes, also of another render, such as one with another seed. Keeps the identity.
+    ///
+    /// Errors: `other` shows other pixels or layers, or has passes that this film has already.
+    pub fn join(&mut self, other: &Self) -> std::result::Result<(), MergeError> {
+        self.film.merge(&other.film)?;
         self.header = self.header.joined(&other.header).of(&self.film);
         Ok(())
     }

@@ -98,6 +98,18 @@ pub enum ExperimentError {
 }
 
 impl ExperimentError {
+    /// Returns true if the estimators of a reference disagree.
+    pub(super) fn is_disagreement(&self) -> bool {
+        use reference::Error::Disagree;
+        matches!(
+            self,
+            Self::Reference {
+                error: Disagree { .. },
+                ..
+            }
+        )
+    }
+
     /// Returns a remedy. None: the message implies it.
     pub fn hint(&self) -> Option<&str> {
         match self {
@@ -116,10 +128,7 @@ impl ExperimentError {
             ),
             Self::Image { hint, .. } => Some(hint),
             Self::Method { hint, .. } => *hint,
-            Self::Reference {
-                error: reference::Error::Disagree { .. },
-                ..
-            } => Some(
+            error if error.is_disagreement() => Some(
                 "the reference stays in its folder; take more samples (`reference-spp`) or \
                  another estimator (`reference-cross-check`), or name a `reference` made by \
                  `bidir reference --estimator … --against …`",

@@ -3,16 +3,16 @@
 use super::error::{ExperimentError, Place};
 use super::loaded_scene::{LoadedScene, Reference};
 use super::names::file_name;
-use super::observer::{self, Event, Observer};
+use super::observer::{Event, Host, Observer};
 use super::run::write_image;
 use super::run_set::{RunSet, Setup};
 use super::settings::texts;
 use super::{Absent, Experiment, ReferenceRecipe, ReferenceSpec};
 use crate::image::Pixels;
-use crate::reference::{self as references, Host, Plan};
+use crate::reference::{self as references, Job, PICTURE, Plan, Provenance};
 use crate::seal::sha256;
 use bidir::ESTIMATOR_VERSION;
-use bidir::driver::{Progress, Resources};
+use bidir::driver::Resources;
 use bidir::integrator::IntegratorKind;
 use bidir::path::{MisHeuristic, Strategies};
 use std::path::{Path, PathBuf};
@@ -26,12 +26,7 @@ type Result<T> = std::result::Result<T, ExperimentError>;
 pub(super) fn given(loaded: &LoadedScene<'_>) -> Result<Option<Reference>> {
     match &loaded.spec.reference {
         ReferenceSpec::Existing(path) if path.is_dir() => load(loaded, path, None).map(Some),
-        ReferenceSpec::Existing(path) => Ok(Some(Reference {
-            pixels: read(path, loaded)?,
-            words: format!("the image {}", path.display()),
-            image: None,
-            mse: stored_mse(path),
-        })),
+        ReferenceSpec::Existing(path) => read(path, loaded).map(Some),
         ReferenceSpec::Make(_) | ReferenceSpec::Of(_) => Ok(None),
     }
 }
@@ -55,15 +50,13 @@ pub(super) fn obtain_all<'a>(
         absent: experiment.absent.clone(),
     };
     for (loaded, given) in scenes.into_iter().zip(given) {
-        let given = given.or_else(|| shared(&ready, &loaded));
-        let threads = experiment.threads;
-        match obtain(&loaded, given, setup, threads, observer) {
-            Err(
-                error @ ExperimentError::Reference {
-                    error: references::Error::Disagree { .. },
-                    ..
-                },
-            ) if loaded.spec.optional => {
+        match obtain(&loaded, given, &ready, observer) {
+            Ok(None) => return Ok(None),
+            Ok(Some(reference)) => {
+                ready.scenes.push(loaded);
+                ready.references.push(reference);
+            }
+            Err(error) if error.is_disagreement() && loaded.spec.optional => {
                 let scene = Absent {
                     name: loaded.spec.name.clone(),
                     reason: error.to_string(),
@@ -71,13 +64,7 @@ pub(super) fn obtain_all<'a>(
                 scene.warn(observer);
                 ready.absent.push(scene);
             }
-            found => {
-                let Some(reference) = found? else {
-                    return Ok(None);
-                };
-                ready.scenes.push(loaded);
-                ready.references.push(reference);
-            }
+            Err(error) => return Err(error),
         }
     }
     match (&ready.scenes[..], ready.absent.last()) {
@@ -86,41 +73,33 @@ pub(super) fn obtain_all<'a>(
     }
 }
 
-/// Returns the reference of the scene with the same light that this scene names. None: it names none.
-fn shared(ready: &RunSet<'_>, loaded: &LoadedScene<'_>) -> Option<Reference> {
-    let ReferenceSpec::Of(name) = &loaded.spec.reference else {
-        return None;
-    };
-    let mut scenes = ready.scenes.iter().zip(&ready.references);
-    let found = scenes.find(|(other, _)| other.spec.name == *name && other.size() == loaded.size());
-    found.map(|(_, reference)| reference.clone())
-}
-
-/// Obtains the reference of a scene: copies the image of the [`given`] one into the folder of the results,
-/// or renders a new one. None: the observer stopped it.
+/// Obtains the reference of a scene: copies the image of the [`given`] one into the folder of the results, takes that
+/// of a scene before it, which is `ready`, or renders a new one. None: the observer stopped it.
 ///
 /// Errors: it cannot be rendered, or its estimators disagree; the folder of such a reference stays.
 fn obtain(
     loaded: &LoadedScene<'_>,
     given: Option<Reference>,
-    setup: &Setup,
-    threads: usize,
+    ready: &RunSet<'_>,
     observer: &mut dyn Observer,
 ) -> Result<Option<Reference>> {
     match (&loaded.spec.reference, given) {
-        (ReferenceSpec::Make(recipe), _) => {
-            make(loaded, &plan(loaded, recipe), setup, threads, observer)
-        }
-        (ReferenceSpec::Existing(_), Some(mut reference)) => {
+        (ReferenceSpec::Make(recipe), _) => make(loaded, &plan(loaded, recipe), ready, observer),
+        (_, Some(reference)) => {
             // The folder of the results holds everything that a report shows.
             let name = copy(loaded);
-            write_image(&setup.folder.join(&name), &reference.pixels)?;
-            reference.image = Some(name);
-            Ok(Some(reference))
+            write_image(&ready.setup.folder.join(&name), &reference.pixels)?;
+            let image = Some(name);
+            Ok(Some(Reference { image, ..reference }))
         }
-        (ReferenceSpec::Of(_), Some(reference)) => Ok(Some(reference)),
-        (ReferenceSpec::Existing(_) | ReferenceSpec::Of(_), None) => {
-            Err(ExperimentError::NoReference(loaded.spec.name.clone()))
+        (spec, None) => {
+            let mut scenes = ready.scenes.iter().zip(&ready.references);
+            let found = scenes.find(|(other, _)| {
+                *spec == ReferenceSpec::Of(other.spec.name.clone()) && other.size() == loaded.size()
+            });
+            let (_, reference) =
+                found.ok_or_else(|| ExperimentError::NoReference(loaded.spec.name.clone()))?;
+            Ok(Some(reference.clone()))
         }
     }
 }
@@ -144,23 +123,13 @@ pub(super) fn written(loaded: &LoadedScene<'_>, setup: &Setup) -> Vec<PathBuf> {
 
 /// Reads an existing reference; `name` is its folder within the folder of the results. None: it is elsewhere.
 fn load(loaded: &LoadedScene<'_>, folder: &Path, name: Option<&str>) -> Result<Reference> {
-    let of_scene = |error| failed(loaded, error);
-    let reference = references::Reference::load(folder).map_err(of_scene)?;
-    let checked = reference.check(&loaded.subject.digest, loaded.subject.view.film());
-    checked.map_err(of_scene)?;
-    new(loaded, reference, name)
-}
-
-fn new(
-    loaded: &LoadedScene<'_>,
-    reference: references::Reference,
-    name: Option<&str>,
-) -> Result<Reference> {
+    let provenance = Provenance::load(folder).map_err(|error| failed(loaded, error))?;
+    let checked = provenance.check(&loaded.subject);
+    checked.map_err(|error| failed(loaded, error))?;
     Ok(Reference {
-        mse: reference.mse(),
-        words: reference.provenance.summary(),
-        image: name.map(|name| format!("{name}/picture.exr")),
-        pixels: finite(reference.picture, &reference.folder, loaded)?,
+        words: provenance.summary(),
+        image: name.map(|name| format!("{name}/{PICTURE}")),
+        ..read(&folder.join(PICTURE), loaded)?
     })
 }
 
@@ -171,45 +140,45 @@ fn failed(loaded: &LoadedScene<'_>, error: references::Error) -> ExperimentError
     }
 }
 
-/// Reads an image of the scene's size.
-fn read(path: &Path, loaded: &LoadedScene<'_>) -> Result<Pixels> {
+/// Reads an image.
+///
+/// Errors: its size is not that of the scene; a pixel is not finite, so that errors against it would not be either.
+fn read(path: &Path, loaded: &LoadedScene<'_>) -> Result<Reference> {
     let image = formats::image::read(path, None);
     let place = loaded.spec.reference_place.as_ref();
     let pixels = Pixels::from(&image.map_err(|error| Place::of_named(place, error))?);
-    if pixels.size != loaded.size() {
-        let ([w, h], [width, height]) = (pixels.size, loaded.size());
-        let text = format!("{w} x {h} pixels, its images have {width} x {height}");
-        let hint = "give the scene the size of its reference";
-        return Err(unusable(path, loaded, text, hint));
+    if let Some((text, hint)) = fault(&pixels, loaded.size()) {
+        return Err(ExperimentError::Image {
+            path: path.to_owned(),
+            scene: loaded.spec.name.clone(),
+            text,
+            hint,
+        });
     }
-    finite(pixels, path, loaded)
+    Ok(Reference {
+        pixels,
+        words: format!("the image {}", path.display()),
+        image: None,
+        mse: stored_mse(path),
+    })
 }
 
-/// Refuses an image with pixels that are not finite, as errors against it would not be finite either.
-fn finite(pixels: Pixels, path: &Path, loaded: &LoadedScene<'_>) -> Result<Pixels> {
+/// Returns the fault of an image for a scene of this size, and a remedy. None: it has no fault.
+fn fault(pixels: &Pixels, size: [usize; 2]) -> Option<(String, &'static str)> {
+    let [width, height] = pixels.size;
+    if pixels.size != size {
+        let text = format!(
+            "{width} x {height} pixels, its images have {} x {}",
+            size[0], size[1]
+        );
+        return Some((text, "give the scene the size of its reference"));
+    }
     let is_bad = |pixel: &[f32; 3]| !pixel.iter().all(|channel| channel.is_finite());
-    let Some(first) = pixels.data.iter().position(is_bad) else {
-        return Ok(pixels);
-    };
+    let first = pixels.data.iter().position(is_bad)?;
     let count = pixels.data.iter().filter(|pixel| is_bad(pixel)).count();
-    let [x, y] = [first % pixels.size[0], first / pixels.size[0]];
+    let [x, y] = [first % width, first / width];
     let text = format!("{count} pixels that are not finite, the first at {x},{y}");
-    let hint = "render it again, or give these pixels a colour";
-    Err(unusable(path, loaded, text, hint))
-}
-
-fn unusable(
-    path: &Path,
-    loaded: &LoadedScene<'_>,
-    text: String,
-    hint: &'static str,
-) -> ExperimentError {
-    ExperimentError::Image {
-        path: path.to_owned(),
-        scene: loaded.spec.name.clone(),
-        text,
-        hint,
-    }
+    Some((text, "render it again, or give these pixels a colour"))
 }
 
 /// Computes the mean square error of an image from its variance layer. None: it has no such layer.
@@ -255,32 +224,28 @@ fn folder(loaded: &LoadedScene<'_>, plan: &Plan) -> String {
 fn make(
     loaded: &LoadedScene<'_>,
     plan: &Plan,
-    setup: &Setup,
-    threads: usize,
+    ready: &RunSet<'_>,
     observer: &mut dyn Observer,
 ) -> Result<Option<Reference>> {
     let name = folder(loaded, plan);
-    let path = setup.folder.join(&name);
+    let path = ready.setup.folder.join(&name);
     if let Ok(reference) = load(loaded, &path, Some(&name)) {
         return Ok(Some(reference));
     }
     let resources = Resources {
-        threads,
+        threads: ready.experiment.threads,
         ..Resources::default()
     };
     let (scene, of) = (&*loaded.spec.name, 2 * plan.rounded_spp());
     let event = |passes| (passes < of).then_some(Event::Reference { scene, passes, of });
     let area = loaded.subject.view.film().crop.area();
-    let host = observer::Host::telling(observer, area, &event);
-    let host = Host {
-        progress: &host,
-        found: &|samples| host.advance(samples),
+    let job = Job {
+        folder: &path,
+        subject: &loaded.subject,
+        plan,
+        resources: &resources,
+        host: &Host::telling(observer, area, &event),
     };
-    let made = references::make(&path, &loaded.subject, plan, &resources, host);
-    let Some(reference) = made.map_err(|error| failed(loaded, error))? else {
-        return Ok(None);
-    };
-    let usable = reference.provenance.check_usable(&path);
-    usable.map_err(|error| failed(loaded, error))?;
-    new(loaded, reference, Some(&name)).map(Some)
+    let made = job.make().map_err(|error| failed(loaded, error))?;
+    made.map(|_| load(loaded, &path, Some(&name))).transpose()
 }

@@ -14,6 +14,9 @@ const SMALLEST_BLOCK: usize = 8;
 /// samples is too small, and so is its variance.
 const ENOUGH: f64 = 64.0;
 
+/// The description of the test.
+const TEST: &str = "Welch's t-test over replicates, of the means of the film and of blocks, with Šidák's correction";
+
 /// The result of the agreement test.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Agreement {
@@ -47,11 +50,12 @@ pub struct Agreement {
 }
 
 /// The renders of an estimator.
-pub(super) struct Renders<'a> {
+pub(super) struct Renders {
     /// An image of each replicate.
-    pub(super) replicates: &'a [Pixels],
+    pub(super) replicates: Vec<Pixels>,
     /// The image of all passes, and the variance of its pixels.
-    pub(super) whole: &'a [Pixels; 2],
+    pub(super) whole: [Pixels; 2],
+    /// The number of all passes.
     pub(super) passes: u64,
 }
 
@@ -59,12 +63,12 @@ const fn yes() -> bool {
     true
 }
 
-impl Renders<'_> {
+impl Renders {
     /// Returns the effective number of samples of a mean over `block` × `block` pixels, for the channel that has the
     /// fewest. N samples have N E\[x\]² / E\[x²\]; E\[x²\] / E\[x\]² is averaged over blocks, as some blocks miss
     /// rare samples.
     fn effective(&self, block: usize) -> f64 {
-        let [mean, variance] = self.whole;
+        let [mean, variance] = &self.whole;
         let blocks = Blocks::new(mean.size, block);
         let passes = self.passes as f64;
         // Per channel: blocks with light, their pixels, and the sum of E[x²] / E[x]².
@@ -86,49 +90,56 @@ impl Renders<'_> {
     }
 }
 
-/// Compares the renders of two estimators. None: there are too few replicates, or no pixels.
-pub(super) fn agreement(renders: &[Renders<'_>; 2]) -> Option<Agreement> {
-    let [a, b] = renders.each_ref().map(|renders| renders.replicates);
-    let size = a.first()?.size;
-    let longest = size[0].max(size[1]);
-    let effective = |block| {
-        let [a, b] = renders.each_ref().map(|renders| renders.effective(block));
-        a.min(b)
-    };
-    let mut block = longest.div_ceil(BLOCKS).max(SMALLEST_BLOCK);
-    while block < longest && effective(block) < ENOUGH {
-        block *= 2;
+impl Agreement {
+    /// Compares the renders of two estimators. None: there are too few replicates, or no pixels.
+    pub(super) fn of(renders: [&Renders; 2]) -> Option<Self> {
+        let [a, b] = renders.map(|renders| &renders.replicates[..]);
+        let longest = *a.first()?.size.iter().max()?;
+        let effective = |block| {
+            let [a, b] = renders.map(|renders| renders.effective(block));
+            a.min(b)
+        };
+        let mut block = longest.div_ceil(BLOCKS).max(SMALLEST_BLOCK);
+        while block < longest && effective(block) < ENOUGH {
+            block *= 2;
+        }
+        let film = welch_test(a, b, WHOLE)?;
+        let blocks = welch_test(a, b, block)?;
+        let effective = effective(block);
+        let decided = effective >= ENOUGH;
+        // 1 - (1 - p)² [Sidak67], exact for small p too.
+        let smallest = film.p.min(blocks.p);
+        let p = if decided {
+            smallest * (2.0 - smallest)
+        } else {
+            1.0
+        };
+        // The level of the film's part alone.
+        let level = LEVEL / (1.0 + (1.0 - LEVEL).sqrt());
+        Some(Self {
+            agree: p >= LEVEL,
+            p,
+            level: LEVEL,
+            test: TEST.to_owned(),
+            replicates: a.len(),
+            comparisons: film.tests + blocks.tests,
+            block,
+            effective: effective.is_finite().then_some(effective),
+            decided,
+            film,
+            blocks,
+            smallest_bias: smallest_bias(a, b, level),
+        })
     }
-    let film = welch_test(a, b, WHOLE)?;
-    let blocks = welch_test(a, b, block)?;
-    let effective = effective(block);
-    let decided = effective >= ENOUGH;
-    // 1 - (1 - p)² [Sidak67], exact for small p too.
-    let smallest = film.p.min(blocks.p);
-    let p = if decided {
-        smallest * (2.0 - smallest)
-    } else {
-        1.0
-    };
-    // The level of the film's part alone.
-    let level = LEVEL / (1.0 + (1.0 - LEVEL).sqrt());
-    Some(Agreement {
-        agree: p >= LEVEL,
-        p,
-        level: LEVEL,
-        test:
-            "Welch's t-test over replicates, of the means of the film and of blocks, with Šidák's \
-               correction"
-                .to_owned(),
-        replicates: a.len(),
-        comparisons: film.tests + blocks.tests,
-        block,
-        effective: effective.is_finite().then_some(effective),
-        decided,
-        film,
-        blocks,
-        smallest_bias: smallest_bias(a, b, level),
-    })
+
+    /// Returns the more significant difference: that of the film, or that of a block.
+    pub fn worst(&self) -> &Difference {
+        if self.film.p < self.blocks.p {
+            &self.film
+        } else {
+            &self.blocks
+        }
+    }
 }
 
 #[cfg(test)]

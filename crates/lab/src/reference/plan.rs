@@ -1,10 +1,14 @@
 //! The two estimators of a reference.
 
-use super::{Provenance, REPLICATES};
+use super::{Error, Fault, Provenance, REPLICATES};
 use bidir::driver::Settings;
+use bidir::film::{Aov, Layers};
 use bidir::integrator::IntegratorKind;
 use bidir::sampler::SamplerKind;
 use bidir::settings::Request;
+
+/// The first seed, far from the seeds that people choose.
+const SEEDS: u64 = 1 << 40;
 
 /// The settings of a reference.
 #[derive(Clone, Debug)]
@@ -39,16 +43,21 @@ impl Plan {
         }
     }
 
-    /// Makes the plan that adds `more` samples per pixel to a reference. None: the reference has settings that
-    /// this program does not know.
-    pub fn extended(provenance: &Provenance, more: u64) -> Option<Self> {
+    /// Makes the plan that adds `more` samples per pixel to a reference.
+    ///
+    /// Errors: the reference has settings that this program does not know.
+    pub fn extended(provenance: &Provenance, more: u64) -> Result<Self, Error> {
         let [first, second] = provenance.estimators.each_ref().map(|record| {
             let mut request = Request::read(&record.settings)?;
             request.seed = Some(record.seed);
             Some(request.apply(&Settings::default()))
         });
-        Some(Self {
-            estimators: [first?, second?],
+        let estimators = first.zip(second).ok_or_else(|| {
+            let reason = "has settings that this program does not know";
+            Fault::OtherRender.of(&provenance.folder, reason)
+        })?;
+        Ok(Self {
+            estimators: estimators.into(),
             spp: provenance.estimators[0].spp.saturating_add(more),
         })
     }
@@ -56,6 +65,19 @@ impl Plan {
     /// Returns the number of passes of each replicate.
     pub(super) fn passes(&self) -> u64 {
         self.spp.div_ceil(REPLICATES).max(1)
+    }
+
+    /// Returns the settings of a replicate of an estimator, which differ in their seeds. They ask for the layers of
+    /// the image.
+    pub(super) fn settings(&self, estimator: usize, replicate: u64) -> Settings {
+        let settings = &self.estimators[estimator];
+        let number = settings.seed.wrapping_mul(2).wrapping_add(estimator as u64);
+        let first = number.wrapping_mul(REPLICATES).wrapping_add(SEEDS);
+        Settings {
+            seed: first.wrapping_add(replicate),
+            layers: Layers::new(&[Aov::Samples, Aov::Variance], &[], 0),
+            ..settings.clone()
+        }
     }
 
     /// Returns the samples per pixel of each estimator, rounded up.

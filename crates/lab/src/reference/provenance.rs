@@ -1,17 +1,18 @@
 //! The provenance of a reference, `provenance.json`.
 
 use super::agreement::Agreement;
-use super::{Error, LEVEL, PROVENANCE};
+use super::{Error, Fault, LEVEL, PROVENANCE, Plan, REPLICATES};
 use crate::results::Rays;
 use crate::seal::{self, Seal, sha256};
 use bidir::ESTIMATOR_VERSION;
 use bidir::driver::Settings;
-use bidir::film::FilmSettings;
-use formats::film::SettingsText;
+use bidir::film::PixelRect;
+use formats::film::{FilmHeader, SettingsText, Subject};
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
 use std::collections::BTreeMap;
 use std::io::ErrorKind;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// The version of the format of `provenance.json`.
 pub const FORMAT: u32 = 2;
@@ -19,6 +20,9 @@ pub const FORMAT: u32 = 2;
 /// The provenance of a reference.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Provenance {
+    /// The folder of the reference.
+    #[serde(skip)]
+    pub folder: PathBuf,
     /// [`FORMAT`].
     pub format: u32,
     /// The program with its version.
@@ -65,85 +69,104 @@ pub struct EstimatorRecord {
 }
 
 impl EstimatorRecord {
+    /// Makes the record of an estimator from the header of its films.
+    pub(super) fn new(plan: &Plan, estimator: usize, header: &FilmHeader) -> Self {
+        let own = &plan.estimators[estimator];
+        let mut settings = SettingsText::from(own).by_flag();
+        settings.remove("seed");
+        let rays = Rays::deserialize(&header.counts["rays"]);
+        Self {
+            settings,
+            spp: header.passes.len(),
+            replicates: REPLICATES,
+            seed: own.seed,
+            first_seed: plan.settings(estimator, 0).seed,
+            seconds: header.seconds,
+            rays: rays.unwrap_or_default(),
+            dropped: header.counts["dropped"].as_u64().unwrap_or_default(),
+        }
+    }
+
     /// Summarizes the estimator in a line, such as `bdpt, 4096 samples per pixel`, with the settings that differ
     /// from the defaults of the integrator.
     pub fn summary(&self) -> String {
-        let defaults = self.defaults();
-        let ignored = ["integrator", "max-depth", "sampler", "seed", "aov"];
         let setting = |name: &str| self.settings.get(name).map_or("", String::as_str);
+        let integrator = setting("integrator");
+        let defaults = Settings::new(integrator.parse().unwrap_or_default());
+        let defaults = SettingsText::from(&defaults).by_flag();
+        let ignored = ["integrator", "max-depth", "sampler", "seed", "aov"];
         let named = self.settings.iter().filter(|(name, value)| {
             !ignored.contains(&name.as_str()) && defaults.get(*name) != Some(value)
         });
         let named = named.map(|(name, value)| format!(" --{name} {value}"));
         let named = named.collect::<String>();
-        let integrator = setting("integrator");
         format!("{integrator}{named}, {} samples per pixel", self.spp)
-    }
-
-    /// Returns the default settings of the estimator's integrator.
-    fn defaults(&self) -> BTreeMap<String, String> {
-        let integrator = self.settings.get("integrator");
-        let integrator = integrator.and_then(|name| name.parse().ok());
-        let settings = Settings::new(integrator.unwrap_or_default());
-        SettingsText::from(&settings).by_flag()
     }
 }
 
 impl Provenance {
+    /// Reads the provenance of the reference in `folder`, if its image can be used.
+    ///
+    /// Errors: a file is missing or damaged; another version of the estimators made it; its estimators disagree.
+    /// [`Self::check`] compares it with a scene.
+    pub fn load(folder: &Path) -> Result<Self, Error> {
+        let provenance = Self::read(folder)?;
+        provenance.check_usable()?;
+        provenance.check_files()?;
+        Ok(provenance)
+    }
+
     /// Reads `provenance.json` of the reference in `folder`, also if its estimators disagree.
     ///
     /// Errors: it is missing, damaged, not the expected JSON, or has another format.
     pub fn read(folder: &Path) -> Result<Self, Error> {
-        #[derive(Deserialize)]
-        struct Format {
-            format: u32,
-        }
         let path = folder.join(PROVENANCE);
         let text = std::fs::read_to_string(&path).map_err(|error| match error.kind() {
-            ErrorKind::NotFound => Error::Missing(folder.to_owned()),
-            _ => Error::io(&path, error),
+            ErrorKind::NotFound => {
+                let reason = format!("is not a reference: it has no {PROVENANCE}");
+                Fault::Missing.of(folder, reason)
+            }
+            _ => formats::Error::io(&path, "read", &error).into(),
         })?;
-        let damaged = |error: serde_json::Error| Error::damaged(&path, error.to_string());
-        if seal::check(&text) == Seal::Broken {
-            return Err(Error::damaged(
-                &path,
-                "its checksum is that of another text",
-            ));
+        let seal = seal::check(&text);
+        if seal == Seal::Broken {
+            return Err(Fault::Damaged.of(&path, "its checksum is that of another text"));
         }
-        let Format { format } = serde_json::from_str(&text).map_err(damaged)?;
-        if format != FORMAT {
-            let reason =
-                format!("the reference has format {format}; this program reads format {FORMAT}");
-            return Err(Error::Refused {
+        let damaged = |error: serde_json::Error| Fault::Damaged.of(&path, error);
+        let json: Value = serde_json::from_str(&text).map_err(damaged)?;
+        match json["format"].as_u64() {
+            Some(format) if format != u64::from(FORMAT) => {
+                let reason = "the reference has format";
+                let reason = format!("{reason} {format}; this program reads format {FORMAT}");
+                Err(Fault::Refused.of(folder, reason))
+            }
+            _ if seal == Seal::Missing => Err(Fault::Damaged.of(&path, "it has no checksum")),
+            _ => Ok(Self {
                 folder: folder.to_owned(),
-                reason,
-            });
+                ..serde_json::from_value(json).map_err(damaged)?
+            }),
         }
-        if seal::check(&text) == Seal::Missing {
-            return Err(Error::damaged(&path, "it has no checksum"));
-        }
-        serde_json::from_str(&text).map_err(damaged)
     }
 
-    /// Writes `provenance.json` to the reference in `folder`.
-    pub(super) fn write(&self, folder: &Path) -> Result<(), Error> {
+    /// Writes `provenance.json` to the folder.
+    pub(super) fn write(&self) -> Result<(), Error> {
         let json = serde_json::to_string_pretty(self);
         let json = seal::sealed(&json.expect("it is numbers and texts")) + "\n";
-        let path = folder.join(PROVENANCE);
+        let path = self.folder.join(PROVENANCE);
         Ok(formats::file::replace(&path, json.as_bytes())?)
     }
 
-    /// Refuses the reference in `folder` if one of its files is damaged.
-    pub(super) fn check_files(&self, folder: &Path) -> Result<(), Error> {
+    /// Refuses the reference if one of its images is damaged.
+    fn check_files(&self) -> Result<(), Error> {
         for (name, sum) in &self.files {
-            let path = folder.join(name);
+            let path = self.folder.join(name);
             let bytes = std::fs::read(&path).map_err(|error| match error.kind() {
-                ErrorKind::NotFound => Error::damaged(&path, "it is missing"),
-                _ => Error::io(&path, error),
+                ErrorKind::NotFound => Fault::Damaged.of(&path, "it is missing"),
+                _ => formats::Error::io(&path, "read", &error).into(),
             })?;
             if sha256(&bytes) != *sum {
                 let reason = format!("it is not the file that {PROVENANCE} describes");
-                return Err(Error::damaged(&path, reason));
+                return Err(Fault::Damaged.of(&path, reason));
             }
         }
         Ok(())
@@ -153,60 +176,61 @@ impl Provenance {
     pub fn summary(&self) -> String {
         let [first, second] = self.estimators.each_ref().map(EstimatorRecord::summary);
         let Agreement { p, level, .. } = &self.agreement;
-        let agree = if !self.agreement.decided {
-            "cannot be compared"
-        } else if self.agreement.agree {
-            "agrees"
-        } else {
-            "does not agree"
+        let agrees = match (self.agreement.decided, self.agreement.agree) {
+            (false, _) => "cannot be compared",
+            (true, true) => "agrees",
+            (true, false) => "does not agree",
         };
-        format!("{first}; {agree} with {second} (p = {p:.3}, level {level})")
+        format!("{first}; {agrees} with {second} (p = {p:.3}, level {level})")
     }
 
-    /// Refuses the reference in `folder` if no scene can use it: its estimators disagree, or another version of
-    /// the estimators made it.
-    pub fn check_usable(&self, folder: &Path) -> Result<(), Error> {
-        let folder = folder.to_owned();
+    /// Refuses the reference if no scene can use it: its estimators disagree, or another version of the estimators
+    /// made it.
+    fn check_usable(&self) -> Result<(), Error> {
         let version = self.estimator_version;
         if version != ESTIMATOR_VERSION {
             let reason = format!(
                 "stale: made by version {version} of the estimators, this program has \
                  {ESTIMATOR_VERSION}"
             );
-            return Err(Error::Refused { folder, reason });
+            return Err(Fault::Refused.of(&self.folder, reason));
         }
-        let Agreement { agree, p, .. } = &self.agreement;
+        let Agreement { agree, p, .. } = self.agreement;
         // Its own level may be less strict.
-        if *agree && *p >= LEVEL {
+        if agree && p >= LEVEL {
             return Ok(());
         }
-        Err(Error::Disagree { folder, p: *p })
+        let folder = self.folder.clone();
+        Err(Error::Disagree { folder, p })
     }
 
-    /// Refuses the reference in `folder` unless it belongs to the scene with this digest and to this film.
-    pub fn check(&self, folder: &Path, digest: &str, film: &FilmSettings) -> Result<(), Error> {
-        let ([left, top], [right, bottom]) = (film.crop.min, film.crop.max);
-        let crop = [left, top, right, bottom];
-        let text = |crop: [u32; 4]| crop.map(|edge| edge.to_string()).join(",");
-        let reason = if self.scene_digest != digest {
-            let (found, expected) = (short(&self.scene_digest), short(digest));
-            format!(
-                "another scene, or one that has changed since: its digest is {found}, not {expected}"
-            )
-        } else if self.resolution != film.resolution {
-            let ([width, height], [w, h]) = (self.resolution, film.resolution);
-            format!("another film: of {width} x {height} pixels, not {w} x {h}")
-        } else if self.crop != crop {
-            format!("another crop: {}, not {}", text(self.crop), text(crop))
-        } else {
-            return Ok(());
-        };
-        let folder = folder.to_owned();
-        Err(Error::Refused { folder, reason })
+    /// Refuses the reference unless it is of this scene and of its film.
+    pub fn check(&self, subject: &Subject) -> Result<(), Error> {
+        let film = subject.view.film();
+        let PixelRect { min, max } = film.crop;
+        let size = |[width, height]: [u32; 2]| format!("{width} x {height}");
+        let crop = |edges: [u32; 4]| edges.map(|edge| edge.to_string()).join(",");
+        let crops = [self.crop, [min[0], min[1], max[0], max[1]]].map(crop);
+        let digests = [self.scene_digest.clone(), subject.digest.clone()];
+        let parts = [
+            (
+                "another scene, or one that has changed since: its digest is",
+                digests,
+            ),
+            (
+                "another size:",
+                [self.resolution, film.resolution].map(size),
+            ),
+            ("another crop:", crops),
+        ];
+        let mut parts = parts.iter();
+        match parts.find(|(_, [found, expected])| found != expected) {
+            None => Ok(()),
+            // The first digits of a digest suffice.
+            Some((what, [found, expected])) => {
+                let reason = format!("{what} {found:.32}, not {expected:.32}");
+                Err(Fault::Refused.of(&self.folder, reason))
+            }
+        }
     }
-}
-
-/// Returns the first digits of a hash.
-fn short(digest: &str) -> &str {
-    digest.get(..12).unwrap_or(digest)
 }

@@ -1,6 +1,7 @@
 use super::*;
+use crate::image::{Pixels, digest};
 use crate::seal;
-use crate::statistics::z_test;
+use crate::statistics::{Estimated, z_test};
 use bidir::driver::{Progress, Resources, Settings, Stop};
 use bidir::integrator::IntegratorKind;
 use bidir::path::LightPointChoice;
@@ -38,12 +39,6 @@ fn subject(text: &str) -> Subject {
     scene(text).subject()
 }
 
-/// A host without progress and clock, which never stops.
-const SILENT: Host<'static> = Host {
-    progress: &(),
-    found: &|_| {},
-};
-
 /// A temporary folder and a scene.
 struct Workplace {
     folder: TempDir,
@@ -62,24 +57,42 @@ impl Workplace {
         self.folder.path().join(name)
     }
 
-    fn made(&self, name: &str, plan: &Plan, host: Host<'_>) -> Result<Option<Reference>, Error> {
+    fn made(
+        &self,
+        name: &str,
+        plan: &Plan,
+        host: &dyn Progress,
+    ) -> Result<Option<Provenance>, Error> {
         let resources = Resources {
             threads: 1,
             ..Resources::default()
         };
-        make(&self.path(name), &self.subject, plan, &resources, host)
+        let job = Job {
+            folder: &self.path(name),
+            subject: &self.subject,
+            plan,
+            resources: &resources,
+            host,
+        };
+        job.make()
     }
 
     #[track_caller]
-    fn make(&self, name: &str, plan: &Plan) -> Reference {
-        let made = self.made(name, plan, SILENT).unwrap();
+    fn make(&self, name: &str, plan: &Plan) -> Provenance {
+        let made = self.made(name, plan, &()).unwrap();
         made.expect("the host never stops")
+    }
+
+    /// Reads the image and its variances.
+    fn images(&self, name: &str) -> [Pixels; 2] {
+        let layers = formats::image::read_layers(&self.path(name).join(PICTURE)).unwrap();
+        ["", "Variance."].map(|prefix| Pixels::layer(&layers, prefix).unwrap())
     }
 
     /// Returns the error of loading the reference.
     #[track_caller]
     fn refusal(&self, name: &str) -> String {
-        Reference::load(&self.path(name)).unwrap_err().to_string()
+        Provenance::load(&self.path(name)).unwrap_err().to_string()
     }
 }
 
@@ -100,18 +113,16 @@ fn estimators_that_agree_make_a_reference() {
         block,
         smallest_bias,
         ..
-    } = made.provenance.agreement;
+    } = made.agreement;
     assert!(agree && comparisons == 9 && block == 8);
     let bias = smallest_bias.unwrap();
     assert!((0.01..0.2).contains(&bias), "{bias}");
-    let loaded = Reference::load(&place.path("a")).unwrap();
-    assert!(crate::image::identical(&loaded.picture, &made.picture));
-    assert!(crate::image::identical(&loaded.variance, &made.variance));
-    assert_eq!(loaded.provenance.estimators, made.provenance.estimators);
-    loaded
-        .check(&place.subject.digest, place.subject.view.film())
-        .unwrap();
-    for (record, light) in made.provenance.estimators.iter().zip([true, false]) {
+    let loaded = Provenance::load(&place.path("a")).unwrap();
+    let [picture, variance] = place.images("a");
+    assert_eq!(loaded.picture, digest(&[&picture, &variance]));
+    assert_eq!(loaded.estimators, made.estimators);
+    loaded.check(&place.subject).unwrap();
+    for (record, light) in made.estimators.iter().zip([true, false]) {
         assert_eq!((record.spp, record.replicates), (256, REPLICATES));
         assert_eq!(record.rays.light > 0, light);
         let samples = 256 * 12 * 8;
@@ -129,14 +140,14 @@ fn restricted_estimators_agree_where_they_make_the_same_paths() {
     second.set_integrator(IntegratorKind::Bdpt);
     second.path.strategies = "s1,-t1".parse().unwrap();
     let made = place.make("a", &plan);
-    assert!(made.provenance.agreement.agree);
-    let summary = made.provenance.summary();
-    let extended = Plan::extended(&made.provenance, 16).unwrap();
+    assert!(made.agreement.agree);
+    let summary = made.summary();
+    let extended = Plan::extended(&made, 16).unwrap();
     let made = place.make("a", &extended);
-    assert_eq!(made.provenance.estimators[1].spp, 144);
+    assert_eq!(made.estimators[1].spp, 144);
     clear(&place.path("a")).unwrap();
     assert!(!is_reference(&place.path("a")));
-    assert_eq!(place.make("a", &plan).provenance.estimators[0].spp, 128);
+    assert_eq!(place.make("a", &plan).estimators[0].spp, 128);
     let expected = "bdpt --light-point shared --strategies all,-s0,-t1, 128 samples per pixel; agrees with \
                     bdpt --strategies s1,-t1, 128";
     assert!(summary.starts_with(expected), "{summary}");
@@ -148,7 +159,7 @@ fn an_estimator_that_misses_paths_is_detected() {
     let mut plan = plan(128);
     plan.estimators[1].path.max_depth = Some(1);
     let made = place.make("a", &plan);
-    let agreement = &made.provenance.agreement;
+    let agreement = &made.agreement;
     assert!(!agreement.agree && agreement.p < LEVEL);
     let refusal = place.refusal("a");
     assert!(refusal.contains("its estimators disagree"), "{refusal}");
@@ -174,6 +185,8 @@ impl Progress for Readings {
         self.flag.fetch_or(is_last, Ordering::Relaxed);
     }
 
+    fn resume(&self, _samples: u64) {}
+
     fn stop(&self) -> Stop<'_> {
         Stop::when(&self.flag)
     }
@@ -187,7 +200,7 @@ impl Progress for Readings {
 fn stopped_and_extended_references_have_the_same_bits() {
     let place = Workplace::new();
     place.make("a", &plan(64));
-    let at_once = Reference::load(&place.path("a")).unwrap();
+    let at_once = Provenance::load(&place.path("a")).unwrap();
     place.make("b", &plan(17));
     let mut stops = 0;
     // In the middle of the first estimator, of the second, and never.
@@ -197,30 +210,26 @@ fn stopped_and_extended_references_have_the_same_bits() {
             left: AtomicI64::new(passes * 12 * 8),
             flag: AtomicBool::new(false),
         };
-        let host = Host {
-            progress: &readings,
-            ..SILENT
-        };
-        if place.made("b", &plan(60), host).unwrap().is_none() {
+        if place.made("b", &plan(60), &readings).unwrap().is_none() {
             stops += 1;
             // The reference of 32 samples stays intact meanwhile.
-            let spp = Reference::load(&place.path("b")).unwrap().provenance;
+            let spp = Provenance::load(&place.path("b")).unwrap();
             assert_eq!(spp.estimators[0].spp, 32);
         }
     }
     assert_eq!(stops, 2);
-    let extended = Reference::load(&place.path("b")).unwrap();
-    assert!(extended.provenance.estimators[1].seconds > 0.0);
-    assert_eq!(extended.provenance.picture, at_once.provenance.picture);
-    assert_eq!(extended.provenance.agreement, at_once.provenance.agreement);
-    let rays = |reference: &Reference| reference.provenance.estimators.clone().map(|e| e.rays);
+    let extended = Provenance::load(&place.path("b")).unwrap();
+    assert!(extended.estimators[1].seconds > 0.0);
+    assert_eq!(extended.picture, at_once.picture);
+    assert_eq!(extended.agreement, at_once.agreement);
+    let rays = |reference: &Provenance| reference.estimators.clone().map(|e| e.rays);
     assert_eq!(rays(&extended), rays(&at_once));
     let film = |name: &str| {
         let path = place.path(name).join("films/against-15.film");
         formats::film::read(&path).unwrap().film
     };
     assert!(film("a") == film("b"));
-    let error = place.made("b", &plan(32), SILENT).unwrap_err().to_string();
+    let error = place.made("b", &plan(32), &()).unwrap_err().to_string();
     assert!(error.contains("has 64 samples per pixel"), "{error}");
 }
 
@@ -233,11 +242,17 @@ fn references_of_other_seeds_differ_within_their_variance() {
         settings.seed = 1;
     }
     let b = place.make("b", &other);
-    assert_ne!(a.provenance.picture, b.provenance.picture);
-    let seeds = [&a, &b].map(|r| r.provenance.estimators.each_ref().map(|e| e.first_seed));
+    assert_ne!(a.picture, b.picture);
+    let seeds = [&a, &b].map(|r| r.estimators.each_ref().map(|e| e.first_seed));
     let seeds = seeds.as_flattened();
     assert!(seeds.windows(2).all(|pair| pair[1] == pair[0] + REPLICATES));
-    let p = z_test(&a.estimated(), &b.estimated(), 4).unwrap().p;
+    let images = ["a", "b"].map(|name| place.images(name));
+    let [a, b] = images.each_ref().map(|[mean, variance]| Estimated {
+        mean,
+        variance,
+        freedom: 127.0,
+    });
+    let p = z_test(&a, &b, 4).unwrap().p;
     assert!(p >= LEVEL, "{p}");
 }
 
@@ -245,25 +260,21 @@ fn references_of_other_seeds_differ_within_their_variance() {
 fn another_scene_and_another_film_are_refused() {
     let place = Workplace::new();
     let reference = place.make("a", &plan(1));
-    let refused = |text: &str| {
-        let other = scene(text);
-        let digest = other.digest.to_string();
-        let error = reference.check(&digest, other.view.film());
-        error.unwrap_err().to_string()
+    let refusal = |subject: &Subject| {
+        let error = reference.check(subject).unwrap_err();
+        error.to_string()
     };
-    let changed = refused(&SCENE.replace("9 8 7", "9 8 8"));
+    let changed = refusal(&subject(&SCENE.replace("9 8 7", "9 8 8")));
     assert!(changed.contains("one that has changed since"), "{changed}");
-    let mut film = place.subject.view.film().clone();
+    let mut other = place.subject.clone();
+    let mut film = other.view.film().clone();
     film.crop.max[1] = 7;
-    let error = reference.check(&place.subject.digest, &film).unwrap_err();
-    assert!(
-        error
-            .to_string()
-            .contains("another crop: 0,0,12,8, not 0,0,12,7")
-    );
+    let camera = *other.view.camera();
+    other.view = other.view.moved(camera, film.clone()).unwrap();
+    assert!(refusal(&other).contains("another crop: 0,0,12,8, not 0,0,12,7"));
     film.resolution = [24, 16];
-    let error = reference.check(&place.subject.digest, &film).unwrap_err();
-    assert!(error.to_string().contains("of 12 x 8 pixels, not 24 x 16"));
+    other.view = other.view.moved(camera, film).unwrap();
+    assert!(refusal(&other).contains("another size: 12 x 8, not 24 x 16"));
 }
 
 #[test]
@@ -272,11 +283,11 @@ fn films_of_another_render_are_refused() {
     place.make("a", &plan(1));
     let mut other = plan(32);
     other.estimators[0].sampler = SamplerKind::Sobol;
-    let error = place.made("a", &other, SILENT).unwrap_err().to_string();
+    let error = place.made("a", &other, &()).unwrap_err().to_string();
     let expected = "picture-00.film is the film of another render: sampler is sobol in this render and independent";
     assert!(error.contains(expected), "{error}");
     place.subject = subject(&SCENE.replace("9 8 7", "9 8 8"));
-    let error = place.made("a", &plan(32), SILENT).unwrap_err().to_string();
+    let error = place.made("a", &plan(32), &()).unwrap_err().to_string();
     assert!(error.contains("scene-digest is"), "{error}");
 }
 
@@ -311,7 +322,7 @@ fn every_flipped_bit_in_a_file_of_a_reference_is_an_error() {
         assert!(refusal.contains(name), "{refusal}");
         fs::write(&path, whole).unwrap();
     }
-    Reference::load(&place.path("a")).unwrap();
+    Provenance::load(&place.path("a")).unwrap();
 }
 
 #[test]
@@ -326,7 +337,7 @@ fn damaged_and_stale_references_are_refused() {
         assert!(refusal.contains(part), "{refusal}");
     };
     check(&whole[..whole.len() / 2], "provenance.json: damaged: EOF");
-    check("{}", "damaged: missing field `format`");
+    check("{}", "damaged: it has no checksum");
     check("[2]", "damaged");
     check(
         &resealed(&whole.replace("\"format\": 2", "\"format\": 3")),

@@ -62,9 +62,11 @@ pub struct Difference {
 }
 
 impl Difference {
-    /// Returns the name of the channel.
-    pub fn channel_name(&self) -> &'static str {
-        ["red", "green", "blue"][self.channel % 3]
+    /// Describes the place, such as `red of the pixels 0,0 to 8,8`.
+    pub fn place(&self) -> String {
+        let channel = ["red", "green", "blue"][self.channel % 3];
+        let [left, top, right, bottom] = self.block;
+        format!("{channel} of the pixels {left},{top} to {right},{bottom}")
     }
 }
 

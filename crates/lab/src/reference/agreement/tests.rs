@@ -18,13 +18,6 @@ impl Numbers {
     }
 }
 
-/// The renders of an estimator that draws a sample of `bright` with probability `rate`, and that has the mean 1.
-struct Made {
-    replicates: Vec<Pixels>,
-    whole: [Pixels; 2],
-    passes: u64,
-}
-
 fn pixels(values: &[f64]) -> Pixels {
     Pixels {
         size: [SIDE; 2],
@@ -32,9 +25,10 @@ fn pixels(values: &[f64]) -> Pixels {
     }
 }
 
-impl Made {
-    /// `scale` is 1 without a bias.
-    fn new(seed: u64, passes: u64, [rate, bright, scale]: [f64; 3]) -> Self {
+impl Renders {
+    /// Makes the renders of an estimator that draws a sample of `bright` with probability `rate`, and that has the
+    /// mean `scale`, which is 1 without a bias.
+    fn made(seed: u64, passes: u64, [rate, bright, scale]: [f64; 3]) -> Self {
         let mut numbers = Numbers(seed);
         let (dim, n) = (1.0 - rate * bright, passes as f64);
         let mut sums = vec![[0.0; 2]; SIDE * SIDE];
@@ -63,20 +57,12 @@ impl Made {
             passes: passes * REPLICATES,
         }
     }
-
-    fn renders(&self) -> Renders<'_> {
-        Renders {
-            replicates: &self.replicates,
-            whole: &self.whole,
-            passes: self.passes,
-        }
-    }
 }
 
 /// The verdict on an even estimator, and one of rare samples.
 fn verdict(seed: u64, passes: u64, rare: [f64; 3]) -> Agreement {
-    let [even, rare] = [[0.0, 0.0, 1.0], rare].map(|of| Made::new(seed, passes, of));
-    agreement(&[even.renders(), rare.renders()]).expect("films of one size")
+    let [even, rare] = [[0.0, 0.0, 1.0], rare].map(|of| Renders::made(seed, passes, of));
+    Agreement::of([&even, &rare]).expect("films of one size")
 }
 
 /// Half of the light comes by two samples in a block, so that some blocks lack it, and their variance with it.
@@ -87,7 +73,7 @@ fn rare_bright_samples_are_no_reason_to_refuse() {
         .collect();
     assert!(verdicts.iter().all(|it| it.agree && !it.decided));
     let small = [0, 1, 2, 3].map(|seed| {
-        let made = [[0.0, 0.0, 1.0], [3e-5, 0.5 / 3e-5, 1.0]].map(|of| Made::new(seed, 64, of));
+        let made = [[0.0, 0.0, 1.0], [3e-5, 0.5 / 3e-5, 1.0]].map(|of| Renders::made(seed, 64, of));
         welch_test(&made[0].replicates, &made[1].replicates, SMALLEST_BLOCK)
     });
     assert!(small.iter().flatten().any(|it| it.p < 1e-6), "{small:?}");
