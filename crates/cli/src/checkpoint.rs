@@ -45,7 +45,7 @@ impl Checkpoint {
             is_whole: film.is_some() || scene_io::read_film(&path).is_ok(),
             name: name.clone(),
             path,
-            every: args.checkpoint_every.0,
+            every: args.checkpoint_every,
             written: Instant::now(),
             _lock: lock,
         };

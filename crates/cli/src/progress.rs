@@ -3,7 +3,7 @@
 //! Lines are plain text, JSON, or messages of Open Job Description
 //! [OpenJD23, Stdout/Stderr Messages], which go to stdout; all others go to stderr.
 
-use crate::args::{self, TalkArgs};
+use crate::args::{TalkArgs, short};
 use crate::console::{Display, LineFormat, print, say};
 use crate::exit::Failure;
 use crate::signals::Signals;
@@ -245,9 +245,7 @@ impl State {
 
     /// Returns the time left as text, such as `14.9s left`; empty if it is unknown.
     fn left(&self) -> String {
-        let left = self
-            .left
-            .map(|left| format!("{} left", args::Duration(left)));
+        let left = self.left.map(|left| format!("{} left", short(left)));
         left.unwrap_or_default()
     }
 
@@ -263,7 +261,7 @@ impl State {
     }
 
     fn plain(&self) -> String {
-        let elapsed = args::Duration(self.elapsed);
+        let elapsed = short(self.elapsed);
         let (percent, pass, left) = (self.percent(), self.pass(), self.left());
         let comma = if left.is_empty() { "" } else { ", " };
         format!("Progress: {percent}% {pass}, {elapsed}{comma}{left}")

@@ -1,6 +1,6 @@
 //! `bidir reference`: renders a reference image.
 
-use crate::args::{FilmArgs, PixelBounds, ReferenceArgs, Size};
+use crate::args::{FilmArgs, ReferenceArgs};
 use crate::checkpoint;
 use crate::console::{Console, say};
 use crate::exit::{Exit, Failure};
@@ -108,8 +108,8 @@ fn film_of(provenance: &Provenance) -> FilmArgs {
     let [left, top, right, bottom] = provenance.crop;
     let (min, max) = ([left, top], [right, bottom]);
     FilmArgs {
-        size: Some(Size(provenance.resolution)),
-        crop: Some(PixelBounds(PixelRect { min, max })),
+        size: Some(provenance.resolution),
+        crop: Some(PixelRect { min, max }),
         ..FilmArgs::default()
     }
 }

@@ -1,6 +1,6 @@
 //! `bidir render`: renders a scene to an image.
 
-use crate::args::{self, RenderArgs};
+use crate::args::{RenderArgs, short};
 use crate::begin;
 use crate::checkpoint::Checkpoint;
 use crate::console::{Console, json, say};
@@ -38,7 +38,8 @@ pub(crate) fn run(args: &RenderArgs, console: Console) -> Result<Exit, Failure> 
         replay::check(args)?;
         (None, None)
     };
-    let listener = args.serve.map(serve::listen).transpose()?;
+    let listener = args.serve.map(|address| serve::bind(address, 0));
+    let listener = listener.transpose()?;
     let start = Instant::now();
     let Some(loaded) = scene_io::load_until(&signals, &args.scene, Some(&args.film))? else {
         return Ok(stopped(&signals, earlier.is_some(), console));
@@ -160,11 +161,11 @@ impl Job<'_> {
             return Ok(stopped(self.signals, is_resumed, self.console));
         };
         let further = if is_resumed { "further " } else { "" };
-        let time = args::Duration(time);
+        let time = short(time);
         let message = format!("no {further}pass was complete after {time}: nothing was written");
         let more = "give it more --time, or make the image smaller with --size or --crop";
         let hint = match pass_time {
-            Some(pass) => format!("a pass takes about {}: {more}", args::Duration(pass)),
+            Some(pass) => format!("a pass takes about {}: {more}", short(pass)),
             None => more.to_owned(),
         };
         Err(Failure::new(Exit::NoPass, message).with_hint(hint))

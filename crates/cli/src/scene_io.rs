@@ -4,7 +4,7 @@ use crate::args::{FilmArgs, SceneArgs};
 use crate::console::Console;
 use crate::exit::{Exit, Failure};
 use crate::signals::Signals;
-use bidir::film::FilmError;
+use bidir::film::{FilmError, PixelRect};
 use bidir::scene::Scene;
 use bidir::view::View;
 use formats::ErrorKind;
@@ -29,7 +29,7 @@ const SMALLER: &str =
 pub(crate) fn load(args: &SceneArgs, film: Option<&FilmArgs>) -> Result<Loaded, Failure> {
     let options = LoadOptions {
         lenient: args.lenient,
-        resolution: film.and_then(|film| film.size).map(|size| size.0),
+        resolution: film.and_then(|film| film.size),
         crop: film.and_then(crop),
         isa: args.isa,
         ..LoadOptions::default()
@@ -91,19 +91,15 @@ pub(crate) fn check_strict(args: &SceneArgs, count: usize) -> Result<(), Failure
 
 /// Returns the crop of the flags. clap accepts only one of the three flags.
 fn crop(film: &FilmArgs) -> Option<Crop> {
-    let pixels = film.crop.or(film.pixelbounds).map(|bounds| {
-        let rect = bounds.0;
-        Crop::Pixels([rect.min[0], rect.max[0], rect.min[1], rect.max[1]])
-    });
-    pixels.or_else(|| {
-        film.cropwindow
-            .map(|fractions| Crop::Fractions(fractions.0))
-    })
+    let pixels = film.crop.or(film.pixelbounds);
+    let of_pixels = |PixelRect { min, max }| Crop::Pixels([min[0], max[0], min[1], max[1]]);
+    let fractions = || film.cropwindow.map(Crop::Fractions);
+    pixels.map(of_pixels).or_else(fractions)
 }
 
 /// Returns the warning of a crop that reaches beyond the film. None: it does not.
 fn crop_warning(args: &FilmArgs, view: &View) -> Option<String> {
-    let asked = args.crop.or(args.pixelbounds)?.0;
+    let asked = args.crop.or(args.pixelbounds)?;
     let film = view.film();
     let [width, height] = film.resolution;
     let message = format!("the crop reaches beyond the film, which has {width} x {height} pixels");

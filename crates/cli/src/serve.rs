@@ -1,6 +1,5 @@
 //! `bidir render --serve` and `--display-server`: a render with viewers.
 
-use crate::args::ServeAddress;
 use crate::console::{Console, print};
 use crate::exit::{Exit, Failure};
 use formats::film::Render;
@@ -9,11 +8,6 @@ use std::net::{SocketAddr, TcpListener};
 use viewer::tev::{Tev, TevAddress};
 use viewer::web::{self, Server};
 use viewer::{RenderMonitor, RequestQueue, Status, request_queue};
-
-/// Listens on the address of `--serve`. It is called first, so that errors come early.
-pub(crate) fn listen(address: ServeAddress) -> Result<TcpListener, Failure> {
-    bind(address.0, 0)
-}
 
 /// Returns a listener on `address`, or if its port is taken, on one of the next `more` ports.
 pub(crate) fn bind(address: SocketAddr, more: u16) -> Result<TcpListener, Failure> {

@@ -119,11 +119,11 @@ fn lamps(loaded: &Loaded, spot: BlindSpot) -> String {
 ///
 /// Errors: a part has no passes.
 pub(crate) fn budget(args: &BudgetArgs, long: &LongArgs, scene: u64) -> Result<Budget, Failure> {
-    let (time, noise) = (args.time.map(|time| time.0), args.noise);
+    let (time, noise) = (args.time, args.noise);
     let is_open = time.is_some() || noise.is_some();
     let all = args.spp.or((!is_open).then_some(scene));
     let part = match (&long.passes, long.part) {
-        (Some(range), _) => Some(range.0.clone()),
+        (Some(range), _) => Some(range.clone()),
         (None, Some(part)) => Some(passes_of(part, all.unwrap_or(scene))?),
         (None, None) => None,
     };

@@ -1,7 +1,7 @@
 //! The flags of `bidir experiment`.
 
 use super::ThreadsArgs;
-use super::values::{Size, count, positive_number};
+use super::values::{count, positive_number, size};
 use crate::output;
 use clap::error::ErrorKind;
 use clap::parser::ValueSource;
@@ -85,8 +85,8 @@ pub(crate) struct ExtentArgs {
     #[arg(long, value_name = "LIST", value_delimiter = ',')]
     scenes: Vec<String>,
     /// Size of all images.
-    #[arg(long, value_name = "WxH")]
-    size: Option<Size>,
+    #[arg(long, value_name = "WxH", value_parser = size)]
+    size: Option<[u32; 2]>,
     /// Amount of budgets in seconds of training and rendering.
     #[arg(long, value_name = "S", value_parser = positive_number)]
     seconds: Option<f64>,
@@ -106,7 +106,7 @@ impl ExtentArgs {
     pub(crate) fn extent(&self) -> Extent {
         Extent {
             scenes: self.scenes.clone(),
-            size: self.size.map(|size| size.0),
+            size: self.size,
             seeds: self.seeds,
             seconds: self.seconds,
             rays: self.rays,
@@ -116,12 +116,12 @@ impl ExtentArgs {
 
     /// Returns the given flags, in the form of a command line.
     pub(crate) fn words(&self) -> impl Iterator<Item = String> {
-        let size = self.size.map(|size| size.0);
         let number = |flag: &str, number: Option<f64>| number.map(|n| format!("{flag} {n}"));
         let whole = |flag: &str, number: Option<u64>| number.map(|n| format!("{flag} {n}"));
         let flags = [
             (!self.scenes.is_empty()).then(|| format!("--scenes {}", self.scenes.join(","))),
-            size.map(|[width, height]| format!("--size {width}x{height}")),
+            self.size
+                .map(|[width, height]| format!("--size {width}x{height}")),
             number("--seconds", self.seconds),
             number("--rays", self.rays),
             whole("--seeds", self.seeds),

@@ -1,11 +1,11 @@
 //! The flags of long renders: film files, and parts of a render.
 
-use super::values::Duration;
+use super::values::duration;
 use bidir::film::PassSet;
 use clap::{Args, ValueHint};
 use std::ops::Range;
 use std::path::PathBuf;
-use std::str::FromStr;
+use std::time::Duration;
 
 /// The film file of a render, and the passes that it renders.
 #[derive(Args, Debug)]
@@ -19,7 +19,7 @@ pub(crate) struct LongArgs {
     #[arg(long, value_name = "FILE.film", value_hint = ValueHint::FilePath)]
     pub(crate) checkpoint: Option<PathBuf>,
     /// Time between checkpoints.
-    #[arg(long, value_name = "DURATION", default_value = "5m")]
+    #[arg(long, value_name = "DURATION", default_value = "5m", value_parser = duration)]
     #[arg(requires = "checkpoint")]
     pub(crate) checkpoint_every: Duration,
     /// Continue from the checkpoint if it exists.
@@ -37,30 +37,23 @@ pub(crate) struct LongArgs {
     /// --spp and BIDIR_SPP then have no effect, and a warning says so. Ranges that begin and end at
     /// multiples of powers of two are stratified best. A part of a render writes an image only if
     /// --output names one. `bidir merge` adds parts.
-    #[arg(long, value_name = "A..B", conflicts_with = "part")]
-    pub(crate) passes: Option<PassRange>,
+    #[arg(long, value_name = "A..B", conflicts_with = "part", value_parser = passes)]
+    pub(crate) passes: Option<Range<u64>>,
     /// Render part I of N of the passes, I from 0, such as 3/16.
     ///
     /// env/N takes I from HyperQueue, Kubernetes or Slurm: the first of HQ_TASK_ID,
     /// JOB_COMPLETION_INDEX and SLURM_ARRAY_TASK_ID (minus SLURM_ARRAY_TASK_MIN) that is set.
     /// `bidir merge` adds parts.
-    #[arg(long, value_name = "I/N")]
+    #[arg(long, value_name = "I/N", value_parser = Part::read)]
     pub(crate) part: Option<Part>,
 }
 
-/// A half-open, non-empty range of passes, written `A..B`.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct PassRange(pub(crate) Range<u64>);
-
-impl FromStr for PassRange {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let passes = text.parse::<PassSet>();
-        match passes.as_ref().map(PassSet::ranges) {
-            Ok([range]) => Ok(Self(range.clone())),
-            _ => Err("expected A..B with A < B, such as 0..64".into()),
-        }
+/// Reads a half-open, non-empty range of passes, written `A..B`.
+fn passes(text: &str) -> Result<Range<u64>, String> {
+    let passes = text.parse::<PassSet>();
+    match passes.as_ref().map(PassSet::ranges) {
+        Ok([range]) => Ok(range.clone()),
+        _ => Err("expected A..B with A < B, such as 0..64".into()),
     }
 }
 
@@ -90,12 +83,9 @@ impl Part {
             ))
         }
     }
-}
 
-impl FromStr for Part {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
+    /// Reads a part, whose number `env` comes from the environment.
+    fn read(text: &str) -> Result<Self, String> {
         let expected = || "expected I/N, such as 3/16, or env/16".to_owned();
         let (index, of) = text.split_once('/').ok_or_else(expected)?;
         let of = of.parse().map_err(|_| expected())?;
@@ -146,7 +136,7 @@ mod tests {
     #[test]
     fn malformed_parts_and_ranges_are_refused() {
         for text in ["", "3", "3/3", "-1/3", "a/b", "0/0", "1/"] {
-            assert!(text.parse::<Part>().is_err(), "{text}");
+            assert!(Part::read(text).is_err(), "{text}");
         }
         for text in [
             "",
@@ -159,10 +149,10 @@ mod tests {
             "0..4, 8..9",
             "none",
         ] {
-            assert!(text.parse::<PassRange>().is_err(), "{text}");
+            assert!(passes(text).is_err(), "{text}");
         }
-        assert_eq!("2/3".parse(), Ok(Part { index: 2, of: 3 }));
-        assert_eq!("4..9".parse(), Ok(PassRange(4..9)));
+        assert_eq!(Part::read("2/3"), Ok(Part { index: 2, of: 3 }));
+        assert_eq!(passes("4..9"), Ok(4..9));
     }
 
     #[test]

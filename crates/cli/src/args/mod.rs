@@ -28,8 +28,8 @@ pub(crate) use reference::ReferenceArgs;
 pub(crate) use render::{BudgetArgs, FilmArgs, RenderArgs, TalkArgs};
 pub(crate) use threads::ThreadsArgs;
 pub(crate) use tonemap::TonemapArgs;
-pub(crate) use values::{Duration, PixelBounds, ReplayTarget, Size};
-pub(crate) use view::{ServeAddress, ViewArgs};
+pub(crate) use values::{ReplayTarget, short};
+pub(crate) use view::ViewArgs;
 
 use crate::console::{print, print_help};
 use crate::exit::{Exit, Failure};

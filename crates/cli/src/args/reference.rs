@@ -6,7 +6,6 @@ use super::{SceneArgs, ThreadsArgs, mistakes};
 use bidir::settings::Request;
 use clap::{Args, FromArgMatches, ValueHint};
 use std::path::PathBuf;
-use std::str::FromStr;
 
 /// The scene that gets a reference, and its estimators.
 #[derive(Args, Debug)]
@@ -41,13 +40,13 @@ pub(crate) struct ReferenceArgs {
     /// light subpaths. Defaults are those of `bidir render`, with the independent sampler and with the
     /// scene's maximum depth and seed; the scene's integrator and sampler and the environment have no
     /// effect.
-    #[arg(long, value_name = "FLAGS", help_heading = "Estimators")]
-    estimator: Option<EstimatorFlags>,
+    #[arg(long, value_name = "FLAGS", help_heading = "Estimators", value_parser = estimator)]
+    estimator: Option<Request>,
     /// Estimator of the cross-check [default: path].
     ///
     /// Written in the same way; it must differ from the first in more than the seed.
-    #[arg(long, value_name = "FLAGS", help_heading = "Estimators")]
-    against: Option<EstimatorFlags>,
+    #[arg(long, value_name = "FLAGS", help_heading = "Estimators", value_parser = estimator)]
+    against: Option<Request>,
     /// The image's geometry.
     #[command(flatten)]
     pub(crate) film: FilmArgs,
@@ -62,38 +61,29 @@ pub(crate) struct ReferenceArgs {
 impl ReferenceArgs {
     /// Returns the requested settings of the image's estimator and of the cross-check.
     pub(crate) fn requests(&self) -> [Request; 2] {
-        let flags = [&self.estimator, &self.against];
-        flags.map(|flags| flags.clone().map_or_else(Request::default, |flags| flags.0))
+        [&self.estimator, &self.against].map(|flags| flags.clone().unwrap_or_default())
     }
 }
 
 /// Maximum number of samples per pixel, beyond any practical render.
 const MOST_SAMPLES: u64 = 1 << 40;
 
-/// An estimator in one argument of the command line, such as `bdpt --strategies s1,-t1`.
-#[derive(Clone, Debug)]
-struct EstimatorFlags(Request);
-
-impl FromStr for EstimatorFlags {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let command = clap::Command::new("").no_binary_name(true);
-        let command = command.disable_help_flag(true);
-        // Variables apply to the whole command, not to one of its estimators.
-        let mut command = Request::augment_args(command)
-            .mut_args(|flag| flag.env(clap::builder::Resettable::Reset));
-        let mut words: Vec<_> = text.split_whitespace().collect();
-        if words.first().is_some_and(|word| !word.starts_with('-')) {
-            words.insert(0, "--integrator");
-        }
-        let matches = command.try_get_matches_from_mut(words);
-        let flags = matches.and_then(|matches| Request::from_arg_matches(&matches));
-        flags.map(Self).map_err(|error| {
-            let failure = mistakes::explained(&error, &command, &[]);
-            failure.message().to_owned()
-        })
+/// Reads an estimator in one argument of the command line, such as `bdpt --strategies s1,-t1`.
+fn estimator(text: &str) -> Result<Request, String> {
+    let empty = clap::Command::new("").no_binary_name(true);
+    // Variables apply to the whole command, not to one of its estimators.
+    let mut command = Request::augment_args(empty.disable_help_flag(true))
+        .mut_args(|flag| flag.env(clap::builder::Resettable::Reset));
+    let mut words: Vec<_> = text.split_whitespace().collect();
+    if words.first().is_some_and(|word| !word.starts_with('-')) {
+        words.insert(0, "--integrator");
     }
+    let matches = command.try_get_matches_from_mut(words);
+    let flags = matches.and_then(|matches| Request::from_arg_matches(&matches));
+    flags.map_err(|error| {
+        let failure = mistakes::explained(&error, &command, &[]);
+        failure.message().to_owned()
+    })
 }
 
 #[cfg(test)]
@@ -103,18 +93,18 @@ mod tests {
 
     #[test]
     fn an_estimator_is_a_name_and_flags() {
-        let EstimatorFlags(args) = "bdpt --strategies s1,-t1 --seed 4".parse().unwrap();
+        let args = estimator("bdpt --strategies s1,-t1 --seed 4").unwrap();
         assert_eq!(args.integrator, Some(IntegratorKind::Bdpt));
         assert_eq!(args.strategies, Some("s1,-t1".parse().unwrap()));
         assert_eq!((args.seed, args.max_depth), (Some(4), None));
-        let EstimatorFlags(args) = "--max-depth 3".parse().unwrap();
+        let args = estimator("--max-depth 3").unwrap();
         assert_eq!((args.integrator, args.max_depth), (None, Some(3)));
         for (text, part) in [
             ("photons", "--integrator: `photons` is not one of path"),
             ("bdpt --spp 4", "there is no flag `--spp`"),
             ("bdpt path", "unexpected argument `path`"),
         ] {
-            let error = text.parse::<EstimatorFlags>().unwrap_err();
+            let error = estimator(text).unwrap_err();
             assert!(error.contains(part), "{error}");
         }
     }

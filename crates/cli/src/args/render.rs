@@ -2,13 +2,15 @@
 
 use super::layers::LayerArgs;
 use super::long::LongArgs;
-use super::values::{CropFractions, Duration, PixelBounds, ReplayTarget, Size, named};
-use super::view::ServeAddress;
-use super::{SceneArgs, ThreadsArgs, values};
+use super::values::{ReplayTarget, named};
+use super::{SceneArgs, ThreadsArgs, values, view};
 use crate::console::Display;
+use bidir::film::PixelRect;
 use bidir::settings::Request;
 use clap::{Args, ValueHint};
+use std::net::SocketAddr;
 use std::path::PathBuf;
+use std::time::Duration;
 use viewer::tev::TevAddress;
 
 /// The flags of `bidir render`. The order of the fields is the order of the headings in `--help`.
@@ -29,8 +31,8 @@ pub(crate) struct RenderArgs {
     /// otherwise the URL carries a random token. The server ends with the render. `bidir view` can
     /// also change the render.
     #[arg(long, value_name = "[ADDRESS:]PORT", conflicts_with = "replay")]
-    #[arg(help_heading = "Output")]
-    pub(crate) serve: Option<ServeAddress>,
+    #[arg(help_heading = "Output", value_parser = view::serve_address)]
+    pub(crate) serve: Option<SocketAddr>,
     /// Show progress in the image viewer tev [default port: 14158].
     ///
     /// The render never waits for tev, which may be started later, except for at most two seconds at
@@ -68,6 +70,7 @@ pub(crate) struct RenderArgs {
     /// probability, weight and visibility; and the values added to the film. X and Y count from the
     /// top left of the whole film, PASS from 0. Repeat the flags of the render.
     #[arg(long, value_name = "X,Y,PASS", help_heading = "Debugging")]
+    #[arg(value_parser = values::replay_target)]
     pub(crate) replay: Option<ReplayTarget>,
     /// Print the replayed sample as JSON.
     #[arg(long, requires = "replay", help_heading = "Debugging")]
@@ -139,7 +142,7 @@ pub(crate) struct BudgetArgs {
     /// Counts training and checkpoints, not loading the scene and writing the image. A pass that would
     /// not finish in time is not started, or left. If none is complete, that is an error, and no file is
     /// written. Training takes at most a tenth of the time; shorter training means more noise.
-    #[arg(long, env = "BIDIR_TIME", value_name = "DURATION")]
+    #[arg(long, env = "BIDIR_TIME", value_name = "DURATION", value_parser = values::duration)]
     pub(crate) time: Option<Duration>,
     /// Stop at this relative error, such as 0.05.
     ///
@@ -158,18 +161,20 @@ pub(crate) struct FilmArgs {
     ///
     /// In another aspect ratio, a pbrt scene keeps its view and is stretched, with a warning; a glTF scene
     /// shows more.
-    #[arg(long, value_name = "WxH")]
-    pub(crate) size: Option<Size>,
+    #[arg(long, value_name = "WxH", value_parser = values::size)]
+    pub(crate) size: Option<[u32; 2]>,
     /// Render only this rectangle of pixels; X1 and Y1 are exclusive [default: the scene's].
     #[arg(long, value_name = "X0,Y0,X1,Y1", group = "crops")]
-    pub(crate) crop: Option<PixelBounds>,
+    #[arg(value_parser = values::pixel_bounds)]
+    pub(crate) crop: Option<PixelRect>,
     /// The same in pbrt's order.
     #[arg(long, value_name = "X0,X1,Y0,Y1", group = "crops")]
-    #[arg(value_parser = PixelBounds::from_pbrt)]
-    pub(crate) pixelbounds: Option<PixelBounds>,
+    #[arg(value_parser = values::pbrt_pixel_bounds)]
+    pub(crate) pixelbounds: Option<PixelRect>,
     /// The same in pbrt's order, as fractions of the image.
     #[arg(long, value_name = "X0,X1,Y0,Y1", group = "crops")]
-    pub(crate) cropwindow: Option<CropFractions>,
+    #[arg(value_parser = values::crop_fractions)]
+    pub(crate) cropwindow: Option<[f32; 4]>,
 }
 
 #[cfg(test)]

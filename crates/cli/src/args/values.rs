@@ -2,9 +2,9 @@
 
 use bidir::film::PixelRect;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
-use std::fmt;
 use std::ops::RangeInclusive;
 use std::str::FromStr;
+use std::time::Duration;
 
 /// Returns a parser of the names in a table of the library.
 pub(crate) fn named<T, const N: usize>(
@@ -65,23 +65,18 @@ pub(crate) fn isa(name: &str) -> Result<accel::Isa, String> {
     isa.is_supported().then_some(isa).ok_or_else(missing)
 }
 
-/// Width and height, written `1920x1080`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Size(pub(crate) [u32; 2]);
-
-impl FromStr for Size {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let side = |side: &str| side.trim().parse::<u32>().ok();
-        let sides = text
-            .split_once(['x', 'X'])
-            .and_then(|(width, height)| Some([side(width)?, side(height)?]));
-        let valid = sides.filter(|sides| sides.iter().all(|side| (1..=MOST).contains(side)));
-        valid.map(Self).ok_or_else(|| {
+/// Reads width and height, written `1920x1080`.
+pub(crate) fn size(text: &str) -> Result<[u32; 2], String> {
+    let side = |side: &str| {
+        let number = side.trim().parse().ok();
+        number.filter(|number| (1..=MOST).contains(number))
+    };
+    let sides = text.split_once(['x', 'X']);
+    sides
+        .and_then(|(width, height)| Some([side(width)?, side(height)?]))
+        .ok_or_else(|| {
             format!("expected WIDTHxHEIGHT of 1 to {MOST} pixels each, such as 1920x1080")
         })
-    }
 }
 
 /// The most pixels of a side of a film.
@@ -107,55 +102,33 @@ fn list<T: FromStr, const N: usize>(text: &str) -> Option<[T; N]> {
     numbers.ok()?.try_into().ok()
 }
 
-/// A rectangle of pixels, written `x0,y0,x1,y1`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct PixelBounds(pub(crate) PixelRect);
+/// Reads a rectangle of pixels, written `x0,y0,x1,y1`.
+pub(crate) fn pixel_bounds(text: &str) -> Result<PixelRect, String> {
+    let [x0, y0, x1, y1] = list(text).ok_or("expected four pixel numbers: x0,y0,x1,y1")?;
+    rectangle([x0, y0], [x1, y1])
+}
 
-impl PixelBounds {
-    fn new([x0, y0, x1, y1]: [u32; 4]) -> Result<Self, String> {
-        if x0 < x1 && y0 < y1 {
-            Ok(Self(PixelRect {
-                min: [x0, y0],
-                max: [x1, y1],
-            }))
-        } else {
-            Err("the rectangle is empty: its end is not beyond its beginning".into())
-        }
-    }
+/// Reads a rectangle in pbrt's order, `x0,x1,y0,y1`.
+pub(crate) fn pbrt_pixel_bounds(text: &str) -> Result<PixelRect, String> {
+    let [x0, x1, y0, y1] = list(text).ok_or("expected four pixel numbers: x0,x1,y0,y1")?;
+    rectangle([x0, y0], [x1, y1])
+}
 
-    /// Reads a rectangle in pbrt's order, `x0,x1,y0,y1`.
-    pub(crate) fn from_pbrt(text: &str) -> Result<Self, String> {
-        let [x0, x1, y0, y1] = list(text).ok_or("expected four pixel numbers: x0,x1,y0,y1")?;
-        Self::new([x0, y0, x1, y1])
+fn rectangle(min: [u32; 2], max: [u32; 2]) -> Result<PixelRect, String> {
+    if min[0] < max[0] && min[1] < max[1] {
+        Ok(PixelRect { min, max })
+    } else {
+        Err("the rectangle is empty: its end is not beyond its beginning".into())
     }
 }
 
-impl FromStr for PixelBounds {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        Self::new(list(text).ok_or("expected four pixel numbers: x0,y0,x1,y1")?)
-    }
-}
-
-/// A part of the film as fractions of its size, in pbrt's order: `x0,x1,y0,y1`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct CropFractions(pub(crate) [f32; 4]);
-
-impl FromStr for CropFractions {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let [x0, x1, y0, y1] =
-            list::<f32, 4>(text).ok_or("expected four numbers from 0 to 1: x0,x1,y0,y1")?;
-        let inside = [x0, x1, y0, y1]
-            .iter()
-            .all(|fraction| (0.0..=1.0).contains(fraction));
-        if inside && x0 < x1 && y0 < y1 {
-            Ok(Self([x0, x1, y0, y1]))
-        } else {
-            Err("expected 0 <= x0 < x1 <= 1 and 0 <= y0 < y1 <= 1".into())
-        }
+/// Reads a part of the film as fractions of its size, in pbrt's order: `x0,x1,y0,y1`.
+pub(crate) fn crop_fractions(text: &str) -> Result<[f32; 4], String> {
+    let [x0, x1, y0, y1] = list(text).ok_or("expected four numbers from 0 to 1: x0,x1,y0,y1")?;
+    if 0.0 <= x0 && x0 < x1 && x1 <= 1.0 && 0.0 <= y0 && y0 < y1 && y1 <= 1.0 {
+        Ok([x0, x1, y0, y1])
+    } else {
+        Err("expected 0 <= x0 < x1 <= 1 and 0 <= y0 < y1 <= 1".into())
     }
 }
 
@@ -168,60 +141,47 @@ pub(crate) struct ReplayTarget {
     pub(crate) pass: u64,
 }
 
-impl FromStr for ReplayTarget {
-    type Err = String;
+/// Reads a sample to repeat.
+pub(crate) fn replay_target(text: &str) -> Result<ReplayTarget, String> {
+    let [x, y, pass] = list(text).ok_or("expected three whole numbers: x,y,pass")?;
+    let pixel = |at: u64| u32::try_from(at).map_err(|_| format!("there is no pixel {at}"));
+    Ok(ReplayTarget {
+        pixel: [pixel(x)?, pixel(y)?],
+        pass,
+    })
+}
 
-    fn from_str(text: &str) -> Result<Self, String> {
-        let numbers = list::<u64, 3>(text).ok_or("expected three whole numbers: x,y,pass")?;
-        let [x, y, pass] = numbers;
-        let pixel = |at: u64| u32::try_from(at).map_err(|_| format!("there is no pixel {at}"));
-        Ok(Self {
-            pixel: [pixel(x)?, pixel(y)?],
-            pass,
-        })
+/// Reads a length of time, written `90`, `90s`, `10m`, `1h30m`.
+pub(crate) fn duration(text: &str) -> Result<Duration, String> {
+    let expected = || "expected a time such as 90, 90s, 10m or 1h30m".to_owned();
+    let trimmed = text.trim();
+    let is_known = |c: char| c.is_ascii_digit() || ".hms".contains(c);
+    // A single number without a unit is in seconds.
+    let number = trimmed.parse();
+    let (mut seconds, mut rest) = number.map_or((0.0, trimmed), |seconds| (seconds, ""));
+    for (unit, length) in [('h', 3600.0), ('m', 60.0), ('s', 1.0)] {
+        if let Some((count, after)) = rest.split_once(unit) {
+            seconds += count.parse::<f64>().map_err(|_| expected())? * length;
+            rest = after;
+        }
+    }
+    if trimmed.is_empty() || !trimmed.chars().all(is_known) || !rest.is_empty() {
+        return Err(expected());
+    }
+    match Duration::try_from_secs_f64(seconds) {
+        Ok(Duration::ZERO) => Err("must be above 0, such as 90s".to_owned()),
+        time => time.map_err(|_| expected()),
     }
 }
 
-/// A length of time, written `90`, `90s`, `10m`, `1h30m`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Duration(pub(crate) std::time::Duration);
-
-impl FromStr for Duration {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let expected = || "expected a time such as 90, 90s, 10m or 1h30m".to_owned();
-        let text = text.trim();
-        let is_known = |c: char| c.is_ascii_digit() || ".hms".contains(c);
-        // A single number without a unit is in seconds.
-        let (mut seconds, mut rest) = text.parse().map_or((0.0, text), |seconds| (seconds, ""));
-        for (unit, length) in [('h', 3600.0), ('m', 60.0), ('s', 1.0)] {
-            if let Some((count, after)) = rest.split_once(unit) {
-                seconds += count.parse::<f64>().map_err(|_| expected())? * length;
-                rest = after;
-            }
-        }
-        if text.is_empty() || !text.chars().all(is_known) || !rest.is_empty() {
-            return Err(expected());
-        }
-        let time = std::time::Duration::try_from_secs_f64(seconds).map_err(|_| expected())?;
-        let positive = Some(time).filter(|time| !time.is_zero());
-        positive
-            .map(Self)
-            .ok_or_else(|| "must be above 0, such as 90s".to_owned())
-    }
-}
-
-impl fmt::Display for Duration {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let seconds = self.0.as_secs_f64();
-        let (hours, minutes) = (self.0.as_secs() / 3600, self.0.as_secs() / 60 % 60);
-        match (hours, minutes) {
-            (0, 0) if seconds < 10.0 => write!(f, "{seconds:.2}s"),
-            (0, 0) => write!(f, "{seconds:.1}s"),
-            (0, _) => write!(f, "{minutes}m{:02}s", self.0.as_secs() % 60),
-            _ => write!(f, "{hours}h{minutes:02}m"),
-        }
+/// Formats a length of time, such as `1.23s`, `1m30s` or `1h30m`.
+pub(crate) fn short(time: Duration) -> String {
+    let whole = time.as_secs();
+    match (whole / 3600, whole / 60 % 60) {
+        (0, 0) if whole < 10 => format!("{:.2}s", time.as_secs_f64()),
+        (0, 0) => format!("{:.1}s", time.as_secs_f64()),
+        (0, minutes) => format!("{minutes}m{:02}s", whole % 60),
+        (hours, minutes) => format!("{hours}h{minutes:02}m"),
     }
 }
 
@@ -262,11 +222,8 @@ mod tests {
 
     #[track_caller]
     fn check_duration(text: &str, expected: Option<f64>) {
-        let seconds = text
-            .parse::<Duration>()
-            .ok()
-            .map(|duration| duration.0.as_secs_f64());
-        assert_eq!(seconds, expected, "{text}");
+        let time = duration(text).ok();
+        assert_eq!(time.map(|time| time.as_secs_f64()), expected, "{text}");
     }
 
     #[test]
@@ -295,7 +252,7 @@ mod tests {
 
     #[test]
     fn durations_are_printed_in_short_form() {
-        let write = |seconds| Duration(std::time::Duration::from_secs_f64(seconds)).to_string();
+        let write = |seconds| short(Duration::from_secs_f64(seconds));
         assert_eq!(write(1.234), "1.23s");
         assert_eq!(write(12.34), "12.3s");
         assert_eq!(write(90.0), "1m30s");
@@ -308,34 +265,29 @@ mod tests {
             min: [1, 2],
             max: [3, 4],
         };
-        assert_eq!("1,2,3,4".parse(), Ok(PixelBounds(rect)));
-        assert_eq!(PixelBounds::from_pbrt("1,3,2,4"), Ok(PixelBounds(rect)));
+        assert_eq!(pixel_bounds("1,2,3,4"), Ok(rect));
+        assert_eq!(pbrt_pixel_bounds("1,3,2,4"), Ok(rect));
         for text in ["1,2,3", "1,2,1,4", "a,b,c,d", "-1,0,3,4"] {
-            assert!(text.parse::<PixelBounds>().is_err(), "{text}");
+            assert!(pixel_bounds(text).is_err(), "{text}");
         }
     }
 
     #[test]
     fn fractions_are_checked() {
         assert_eq!(
-            "0.25,0.75,0,0.5".parse(),
-            Ok(CropFractions([0.25, 0.75, 0.0, 0.5]))
+            crop_fractions("0.25,0.75,0,0.5"),
+            Ok([0.25, 0.75, 0.0, 0.5])
         );
-        assert!("0.5,0.5,0,1".parse::<CropFractions>().is_err());
-        assert!("0,2,0,1".parse::<CropFractions>().is_err());
+        assert!(crop_fractions("0.5,0.5,0,1").is_err());
+        assert!(crop_fractions("0,2,0,1").is_err());
+        assert!(crop_fractions("nan,1,0,1").is_err());
     }
 
     #[test]
     fn sizes_and_samples_are_checked() {
-        assert_eq!("1920x1080".parse(), Ok(Size([1920, 1080])));
-        assert_eq!(
-            "3,4,17".parse(),
-            Ok(ReplayTarget {
-                pixel: [3, 4],
-                pass: 17
-            })
-        );
-        assert!("0x5".parse::<Size>().is_err());
-        assert!("1,2".parse::<ReplayTarget>().is_err());
+        assert_eq!(size("1920x1080"), Ok([1920, 1080]));
+        let (pixel, pass) = ([3, 4], 17);
+        assert_eq!(replay_target("3,4,17"), Ok(ReplayTarget { pixel, pass }));
+        assert!(size("0x5").is_err() && replay_target("1,2").is_err());
     }
 }

@@ -5,7 +5,6 @@ use super::{SceneArgs, ThreadsArgs, values};
 use bidir::settings::Request;
 use clap::Args;
 use std::net::{IpAddr, Ipv4Addr, SocketAddr};
-use std::str::FromStr;
 
 /// The scene and its settings, and the address of the page.
 #[derive(Args, Debug)]
@@ -43,22 +42,14 @@ pub(crate) struct ViewArgs {
     pub(crate) quiet: bool,
 }
 
-/// The address of a server: `8080`, `:8080`, `192.0.2.1:8080`, `[::1]:8080`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct ServeAddress(pub(crate) SocketAddr);
-
-impl FromStr for ServeAddress {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let port = text.strip_prefix(':').unwrap_or(text).parse::<u16>();
-        let address = match port {
-            Ok(port) => Ok(SocketAddr::new(Ipv4Addr::LOCALHOST.into(), port)),
-            Err(_) => text.parse(),
-        };
-        let expected = |_| "expected [ADDRESS:]PORT, such as 8080 or 0.0.0.0:8080".to_owned();
-        address.map(Self).map_err(expected)
-    }
+/// Reads the address of a server: `8080`, `:8080`, `192.0.2.1:8080`, `[::1]:8080`.
+pub(super) fn serve_address(text: &str) -> Result<SocketAddr, String> {
+    let port = text.strip_prefix(':').unwrap_or(text).parse::<u16>();
+    let address = match port {
+        Ok(port) => Ok(SocketAddr::new(Ipv4Addr::LOCALHOST.into(), port)),
+        Err(_) => text.parse(),
+    };
+    address.map_err(|_| "expected [ADDRESS:]PORT, such as 8080 or 0.0.0.0:8080".to_owned())
 }
 
 #[cfg(test)]
@@ -67,8 +58,7 @@ mod tests {
 
     #[track_caller]
     fn check(text: &str, expected: Option<&str>) {
-        let address = text.parse::<ServeAddress>().ok();
-        let address = address.map(|address| address.0.to_string());
+        let address = serve_address(text).ok().map(|address| address.to_string());
         assert_eq!(address.as_deref(), expected);
     }
 

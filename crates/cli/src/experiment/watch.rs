@@ -1,6 +1,6 @@
 //! Progress of an experiment: a bar on a terminal, lines elsewhere.
 
-use crate::args::Duration;
+use crate::args::short;
 use crate::console::{Console, Display, say};
 use crate::progress::bar;
 use crate::signals::Signals;
@@ -9,10 +9,10 @@ use indicatif::ProgressBar;
 use lab::experiment::{Event, Observer};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
-use std::time::{Duration as Time, Instant};
+use std::time::{Duration, Instant};
 
 /// The least time between two lines, except for the first and the last.
-const GAP: Time = Time::from_secs(10);
+const GAP: Duration = Duration::from_secs(10);
 /// The template of the bar and its text.
 const TEMPLATE: &str = "{bar:32} {percent:>3}%  {msg}  {elapsed}  {eta} left";
 
@@ -86,7 +86,7 @@ impl<'a> Watch<'a> {
         let elapsed = self.start.elapsed();
         let here = (done - self.before).max(1);
         let left = elapsed.mul_f64((of - done) as f64 / here as f64);
-        let [elapsed, left] = [elapsed, left].map(Duration);
+        let [elapsed, left] = [elapsed, left].map(short);
         format!("{done} of {of} renders, {elapsed}, {left} left")
     }
 

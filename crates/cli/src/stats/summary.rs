@@ -1,6 +1,6 @@
 //! The lines that are printed at the end of a render.
 
-use crate::args;
+use crate::args::short;
 use bidir::driver::{Budget, Plan};
 use bidir::integrator::{CandidateCount, IntegratorKind};
 use formats::film::Render;
@@ -72,7 +72,7 @@ impl Summary {
     }
 
     fn samples(&self) -> String {
-        let time = args::Duration(self.time);
+        let time = short(self.time);
         let count = match self.wanted.filter(|wanted| self.passes < *wanted) {
             Some(wanted) => format!("{} of {wanted} samples per pixel", self.passes),
             None if self.passes == 1 => "1 sample per pixel".to_owned(),
