@@ -2,7 +2,7 @@
 
 use crate::args::RenderArgs;
 use crate::checkpoint;
-use crate::console::{Console, Display, LineFormat};
+use crate::console::{Console, Display};
 use crate::exit::Failure;
 use crate::render::Job;
 use crate::scene_io::{self, FilmFile};
@@ -51,7 +51,7 @@ pub(crate) fn render(
 /// Returns the form of progress. With --json, only the replay is on stdout.
 fn display(args: &RenderArgs, console: Console) -> Display {
     match console.display(args.output.talk) {
-        Display::Lines(LineFormat::OpenJd) if args.json => Display::Silent,
+        Display::OpenJd if args.json => Display::Silent,
         display => display,
     }
 }

@@ -23,30 +23,23 @@ static LOST: OnceLock<String> = OnceLock::new();
 pub(crate) enum Display {
     /// A progress bar that is redrawn in place.
     Bar,
-    /// A line from time to time.
-    Lines(LineFormat),
-    /// No progress.
-    Silent,
-}
-
-/// The format of a line of progress.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum LineFormat {
-    /// Plain text.
+    /// A line of text from time to time.
     Plain,
-    /// A JSON object.
+    /// A JSON object from time to time.
     Ndjson,
     /// Messages of Open Job Description, on stdout.
     OpenJd,
+    /// No progress.
+    Silent,
 }
 
 impl Display {
     /// Names on the command line.
     pub(crate) const NAMES: [(&'static str, Self); 4] = [
         ("bar", Self::Bar),
-        ("plain", Self::Lines(LineFormat::Plain)),
-        ("ndjson", Self::Lines(LineFormat::Ndjson)),
-        ("openjd", Self::Lines(LineFormat::OpenJd)),
+        ("plain", Self::Plain),
+        ("ndjson", Self::Ndjson),
+        ("openjd", Self::OpenJd),
     ];
 }
 
@@ -73,21 +66,12 @@ impl Console {
         }
     }
 
-    /// Returns the form of progress that the flags request, with a bar only on a terminal.
+    /// Returns the form of progress that the flags request, with plain lines instead of a bar if there is no terminal.
     pub(crate) fn display(self, args: TalkArgs) -> Display {
-        let default = if args.quiet {
-            Display::Silent
-        } else {
-            Display::Bar
-        };
-        self.on_terminal(args.progress.unwrap_or(default))
-    }
-
-    /// Returns the `requested` form of progress, with plain lines instead of a bar if there is no terminal.
-    pub(crate) fn on_terminal(self, requested: Display) -> Display {
-        match requested {
-            Display::Bar if !self.is_terminal => Display::Lines(LineFormat::Plain),
-            display => display,
+        match args.progress {
+            None if args.quiet => Display::Silent,
+            None | Some(Display::Bar) if !self.is_terminal => Display::Plain,
+            requested => requested.unwrap_or(Display::Bar),
         }
     }
 

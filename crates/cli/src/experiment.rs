@@ -4,9 +4,9 @@ mod claims;
 mod cluster;
 mod watch;
 
-use crate::args::ExperimentArgs;
+use crate::args::{ExperimentArgs, TalkArgs};
 use crate::checkpoint;
-use crate::console::{Console, Display, print, say};
+use crate::console::{Console, print, say};
 use crate::exit::{Exit, Failure};
 use crate::lock::FilmLock;
 use crate::scene_io;
@@ -155,12 +155,11 @@ fn execute(
         program: formats::film::program(),
         machine: Machine::here(),
     };
-    let display = if args.quiet {
-        Display::Silent
-    } else {
-        Display::Bar
+    let talk = TalkArgs {
+        quiet: args.quiet,
+        progress: None,
     };
-    let mut watch = Watch::new(console, display, signals);
+    let mut watch = Watch::new(console, console.display(talk), signals);
     let outcome = experiment::run(experiment, &setup, &mut watch);
     watch.finish();
     outcome.map_err(failure)

@@ -4,7 +4,7 @@
 //! [OpenJD23, Stdout/Stderr Messages], which go to stdout; all others go to stderr.
 
 use crate::args::{TalkArgs, short};
-use crate::console::{Display, LineFormat, print, say};
+use crate::console::{Display, print, say};
 use crate::exit::Failure;
 use crate::signals::Signals;
 use bidir::driver::{Budget, Progress, Stop};
@@ -52,13 +52,9 @@ pub(crate) struct Reporter<'a> {
     before: AtomicU64,
     samples: AtomicU64,
     last: Mutex<LastReport>,
-    channel: Channel,
-}
-
-enum Channel {
-    Silent,
-    Bar(ProgressBar),
-    Lines(LineFormat),
+    display: Display,
+    /// The bar of [`Display::Bar`].
+    bar: Option<ProgressBar>,
 }
 
 /// The time and percentage of the last line, or of the last text of the bar.
@@ -70,11 +66,7 @@ struct LastReport {
 impl<'a> Reporter<'a> {
     /// Returns a reporter of a render without earlier samples.
     pub(crate) fn new(display: Display, signals: &'a Signals, clock: Clock) -> Self {
-        let channel = match display {
-            Display::Silent => Channel::Silent,
-            Display::Bar => Channel::Bar(bar(TEMPLATE).with_elapsed(clock.start.elapsed())),
-            Display::Lines(format) => Channel::Lines(format),
-        };
+        let bar = bar(display, TEMPLATE).map(|bar| bar.with_elapsed(clock.start.elapsed()));
         let last = LastReport {
             at: clock.start,
             percent: 0,
@@ -85,10 +77,11 @@ impl<'a> Reporter<'a> {
             before: AtomicU64::new(0),
             samples: AtomicU64::new(0),
             last: Mutex::new(last),
-            channel,
+            display,
+            bar,
         };
-        if let Channel::Bar(bar) = &reporter.channel {
-            reporter.state().draw(bar);
+        if reporter.bar.is_some() {
+            reporter.show(&reporter.state());
         }
         reporter
     }
@@ -102,9 +95,9 @@ impl<'a> Reporter<'a> {
     /// Writes the line of the end, unless the last line was at 100 %.
     pub(crate) fn complete(&self) {
         let is_last = self.last.lock().is_ok_and(|last| last.percent >= 100);
-        if let (Channel::Lines(format), false) = (&self.channel, is_last) {
+        if !is_last {
             let pass = self.passes(self.samples.load(Ordering::Relaxed)) as u64;
-            format.write(&State {
+            self.display.write(&State {
                 progress: 1.0,
                 pass,
                 left: Some(Duration::ZERO),
@@ -115,9 +108,7 @@ impl<'a> Reporter<'a> {
 
     /// Removes the bar.
     pub(crate) fn finish(&self) {
-        if let Channel::Bar(bar) = &self.channel {
-            bar.finish_and_clear();
-        }
+        self.bar.iter().for_each(ProgressBar::finish_and_clear);
     }
 
     fn passes(&self, samples: u64) -> f64 {
@@ -153,10 +144,9 @@ impl<'a> Reporter<'a> {
     /// Reports that a signal ends the render.
     pub(crate) fn say_stop(&self) {
         let text = "stopping; a second signal stops at once";
-        match &self.channel {
-            Channel::Silent => {}
-            Channel::Bar(bar) => bar.println(text),
-            Channel::Lines(format) => Display::Lines(*format).say(text),
+        match &self.bar {
+            Some(bar) => bar.println(text),
+            None => self.display.say(text),
         }
     }
 
@@ -164,22 +154,23 @@ impl<'a> Reporter<'a> {
     fn report(&self, last: &mut LastReport) {
         let (state, gap) = (self.state(), last.at.elapsed());
         let is_step = state.percent() >= last.percent + STEP;
-        let is_due = match self.channel {
-            Channel::Silent => false,
-            Channel::Bar(_) => gap >= TICK,
-            Channel::Lines(_) => gap >= LONGEST_GAP || gap >= SHORTEST_GAP && is_step,
+        let is_due = match self.display {
+            Display::Bar => gap >= TICK,
+            _ => gap >= LONGEST_GAP || gap >= SHORTEST_GAP && is_step,
         };
-        if !is_due {
-            return;
+        if is_due {
+            *last = LastReport {
+                at: Instant::now(),
+                percent: state.percent(),
+            };
+            self.show(&state);
         }
-        *last = LastReport {
-            at: Instant::now(),
-            percent: state.percent(),
-        };
-        match &self.channel {
-            Channel::Silent => {}
-            Channel::Bar(bar) => state.draw(bar),
-            Channel::Lines(format) => format.write(&state),
+    }
+
+    fn show(&self, state: &State) {
+        match &self.bar {
+            Some(bar) => state.draw(bar),
+            None => self.display.write(state),
         }
     }
 }
@@ -207,9 +198,14 @@ impl Progress for Reporter<'_> {
     }
 }
 
-/// Returns a bar of [`BAR_LENGTH`] steps. A thread of the bar redraws it at intervals, so that its time advances; but
-/// not if the system gives no more threads, as the bar would then panic.
-pub(crate) fn bar(template: &str) -> ProgressBar {
+/// Returns a bar of [`BAR_LENGTH`] steps. None: the form of progress is another.
+///
+/// A thread of the bar redraws it at intervals, so that its time advances; but not if the system gives no more
+/// threads, as the bar would then panic.
+pub(crate) fn bar(display: Display, template: &str) -> Option<ProgressBar> {
+    if display != Display::Bar {
+        return None;
+    }
     let bar = ProgressBar::new(BAR_LENGTH);
     if let Ok(style) = ProgressStyle::with_template(template) {
         bar.set_style(style.progress_chars("━╸ "));
@@ -217,7 +213,7 @@ pub(crate) fn bar(template: &str) -> ProgressBar {
     if thread::Builder::new().spawn(|| ()).is_ok() {
         bar.enable_steady_tick(TICK);
     }
-    bar
+    Some(bar)
 }
 
 /// The progress of a render.
@@ -286,16 +282,16 @@ impl Display {
     pub(crate) fn say(self, text: &str) {
         match self {
             // Readers of NDJSON expect only objects with progress.
-            Self::Silent | Self::Lines(LineFormat::Ndjson) => {}
-            Self::Lines(LineFormat::OpenJd) => write_openjd("status", text),
-            Self::Bar | Self::Lines(LineFormat::Plain) => say(text),
+            Self::Silent | Self::Ndjson => {}
+            Self::OpenJd => write_openjd("status", text),
+            Self::Bar | Self::Plain => say(text),
         }
     }
-}
 
-impl LineFormat {
+    /// Writes a line of progress; bars have none.
     fn write(self, state: &State) {
         match self {
+            Self::Silent | Self::Bar => {}
             Self::Plain => say(state.plain()),
             Self::Ndjson => say(state.json()),
             Self::OpenJd => {
@@ -308,7 +304,7 @@ impl LineFormat {
 
 /// Reports a failure to a scheduler that reads Open Job Description.
 pub(crate) fn report_failure(args: TalkArgs, failure: &Failure) {
-    if args.progress == Some(Display::Lines(LineFormat::OpenJd)) {
+    if args.progress == Some(Display::OpenJd) {
         write_openjd("fail", failure.message());
     }
 }
@@ -393,9 +389,7 @@ mod tests {
             first_pass: start,
         };
         let reporter = Reporter::new(Display::Bar, &signals, clock);
-        let Channel::Bar(bar) = &reporter.channel else {
-            panic!("it has a bar")
-        };
+        let bar = reporter.bar.as_ref().unwrap();
         assert_eq!(bar.message(), "pass 1 of 100000");
         for (samples, pass, is_known) in [(50, 1, false), (60, 2, true), (2100, 23, true)] {
             // As after the time between two drawings.

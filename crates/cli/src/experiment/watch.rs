@@ -1,7 +1,7 @@
 //! Progress of an experiment: a bar on a terminal, lines elsewhere.
 
 use crate::args::short;
-use crate::console::{Console, Display, say};
+use crate::console::{Console, Display};
 use crate::progress::bar;
 use crate::signals::Signals;
 use formats::printable;
@@ -21,7 +21,11 @@ pub(super) struct Watch<'a> {
     console: Console,
     signals: &'a Signals,
     start: Instant,
-    channel: Channel,
+    display: Display,
+    /// The bar of [`Display::Bar`].
+    bar: Option<ProgressBar>,
+    /// The time of the last line. None: there was none.
+    last: Option<Instant>,
     /// Number of renders done before this run.
     before: usize,
     /// Number of renders done.
@@ -30,25 +34,15 @@ pub(super) struct Watch<'a> {
     of: usize,
 }
 
-enum Channel {
-    Silent,
-    Bar(ProgressBar),
-    /// Lines, with the time of the last one. None: there was none.
-    Lines(Option<Instant>),
-}
-
 impl<'a> Watch<'a> {
-    pub(super) fn new(console: Console, wanted: Display, signals: &'a Signals) -> Self {
-        let channel = match console.on_terminal(wanted) {
-            Display::Silent => Channel::Silent,
-            Display::Bar => Channel::Bar(bar(TEMPLATE)),
-            Display::Lines(_) => Channel::Lines(None),
-        };
+    pub(super) fn new(console: Console, display: Display, signals: &'a Signals) -> Self {
         Self {
             console,
             signals,
             start: Instant::now(),
-            channel,
+            display,
+            bar: bar(display, TEMPLATE),
+            last: None,
             before: 0,
             done: 0,
             of: 0,
@@ -57,26 +51,19 @@ impl<'a> Watch<'a> {
 
     /// Removes the bar.
     pub(super) fn finish(&self) {
-        if let Channel::Bar(bar) = &self.channel {
-            bar.finish_and_clear();
-        }
+        self.bar.iter().for_each(ProgressBar::finish_and_clear);
     }
 
     /// Shows the finished part, in `[0, 1]`, with a text.
     fn show(&mut self, part: f64, text: &str) {
-        match &mut self.channel {
-            Channel::Silent => {}
-            Channel::Bar(bar) => {
-                bar.set_message(printable(text).into_owned());
-                bar.set_position((part * 1000.0) as u64);
-            }
-            Channel::Lines(last) => {
-                let is_due = last.is_none_or(|last| last.elapsed() >= GAP) || part >= 1.0;
-                if is_due {
-                    *last = Some(Instant::now());
-                    say(format_args!("Progress: {}% {text}", (part * 100.0) as u32));
-                }
-            }
+        let is_due = self.last.is_none_or(|last| last.elapsed() >= GAP) || part >= 1.0;
+        if let Some(bar) = &self.bar {
+            bar.set_message(printable(text).into_owned());
+            bar.set_position((part * 1000.0) as u64);
+        } else if is_due {
+            self.last = Some(Instant::now());
+            let line = format!("Progress: {}% {text}", (part * 100.0) as u32);
+            self.display.say(&line);
         }
     }
 
@@ -93,11 +80,8 @@ impl<'a> Watch<'a> {
     fn begin(&mut self, [done, of]: [usize; 2]) {
         (self.before, self.done, self.of) = (done, done, of);
         self.start = Instant::now();
-        match &mut self.channel {
-            Channel::Silent => {}
-            Channel::Bar(bar) => bar.reset(),
-            Channel::Lines(last) => *last = None,
-        }
+        self.last = None;
+        self.bar.iter().for_each(ProgressBar::reset);
         self.show(part(done, of), &format!("{done} of {of} renders"));
     }
 }
@@ -109,9 +93,9 @@ fn part(done: usize, of: usize) -> f64 {
 impl Observer for Watch<'_> {
     fn notify(&mut self, event: Event<'_>) {
         match event {
-            Event::Warning(text) => match &self.channel {
-                Channel::Bar(bar) => bar.suspend(|| self.console.warning(text)),
-                _ => self.console.warning(text),
+            Event::Warning(text) => match &self.bar {
+                Some(bar) => bar.suspend(|| self.console.warning(text)),
+                None => self.console.warning(text),
             },
             Event::Reference { scene, passes, of } => {
                 let part = part(passes as usize, of as usize).min(0.99);
