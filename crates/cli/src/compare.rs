@@ -1,6 +1,5 @@
 //! `bidir compare`: error metrics of images against a reference.
 
-mod independence;
 mod noise;
 mod report;
 
@@ -9,7 +8,6 @@ use crate::console::{Console, print, print_json, say};
 use crate::exit::{Exit, Failure};
 use crate::output;
 use crate::scene_io::{self, IMAGES, MetadataValue};
-use independence::Independence;
 use lab::image::{Pair, identical, resample};
 use lab::metric::{ErrorMap, Metric, mean_ratio};
 use noise::{Noisy, Significance};
@@ -74,73 +72,61 @@ fn reference_files(reference: &Path) -> Vec<PathBuf> {
 /// Compares every image. Warns if the noise of two images, or of the pixels of one image, is correlated.
 fn compare_all(
     args: &CompareArgs,
-    images: &[PathBuf],
+    paths: &[PathBuf],
     name: &Path,
     console: Console,
 ) -> Result<Vec<Comparison>, Failure> {
     let reference = Noisy::reference(name)?;
-    let mut independence = Independence::default();
-    let mut warnings = Vec::new();
-    let comparisons = images
-        .iter()
-        .map(|image| {
-            let noisy = Noisy::read(image)?;
-            independence.add(image, &noisy.pixels);
-            let correlation = noisy.correlation(image);
-            let comparison = compare(args, [image, name], noisy, &reference)?;
-            // Intervals over several images do not assume independent pixels.
-            if images.len() == 1 && comparison.significance.is_some() {
-                warnings.extend(correlation.or_else(|| reference.correlation(name)));
-            }
-            Ok(comparison)
-        })
-        .collect::<Result<_, _>>();
-    for warning in warnings.iter().chain(&independence.warnings) {
+    let (mut images, mut warnings) = (Vec::new(), Vec::new());
+    let comparisons = paths.iter().map(|path| {
+        let image = Noisy::read(path)?;
+        let comparison = compare(args, &image, &reference)?;
+        // Intervals over several images do not assume independent pixels.
+        if paths.len() == 1 && comparison.significance.is_some() {
+            warnings.extend(image.correlation().or_else(|| reference.correlation()));
+        }
+        warnings.extend(image.likeness(&images));
+        images.push(image);
+        Ok(comparison)
+    });
+    let comparisons = comparisons.collect();
+    for warning in &warnings {
         console.warning(warning);
     }
     comparisons
 }
 
 /// Compares one image.
-fn compare(
-    args: &CompareArgs,
-    names: [&Path; 2],
-    image: Noisy,
-    reference: &Noisy,
-) -> Result<Comparison, Failure> {
-    let significance = Significance::of(&image, reference);
-    let (image, reference) = (image.pixels, &reference.pixels);
-    let identical = identical(&image, reference);
-    let sizes = [image.size, reference.size];
-    let is_larger = image.data.len() > reference.data.len();
-    // The larger image is resampled to the size of the other.
-    let (image, reference, resampled) = if !args.resample || sizes[0] == sizes[1] {
-        (image, Cow::Borrowed(reference), None)
-    } else if is_larger {
-        (
-            resample(&image, sizes[1]),
-            Cow::Borrowed(reference),
-            Some("A"),
-        )
-    } else {
-        (image, Cow::Owned(resample(reference, sizes[0])), Some("B"))
-    };
-    let pair = Pair::new(&image, &reference);
+fn compare(args: &CompareArgs, image: &Noisy, reference: &Noisy) -> Result<Comparison, Failure> {
+    let [mut a, mut b] = [&image.pixels, &reference.pixels].map(Cow::Borrowed);
+    let mut resampled = None;
+    if args.resample && a.size != b.size {
+        // The larger image is resampled to the size of the other.
+        if a.data.len() > b.data.len() {
+            (a, resampled) = (Cow::Owned(resample(&a, b.size)), Some("A"));
+        } else {
+            (b, resampled) = (Cow::Owned(resample(&b, a.size)), Some("B"));
+        }
+    }
+    let pair = Pair::new(&a, &b);
     if pair.is_none() && !args.exact {
-        return Err(sizes_differ(names, sizes));
+        return Err(sizes_differ([image, reference]));
     }
     Ok(Comparison {
         numbers: numbers(&args.metrics, pair.as_ref())?,
-        identical,
+        identical: identical(&image.pixels, &reference.pixels),
         size: pair.map(|pair| pair.size()),
         resampled,
-        significance,
+        significance: Significance::of(image, reference),
     })
 }
 
-fn sizes_differ(names: [&Path; 2], [[aw, ah], [bw, bh]]: [[usize; 2]; 2]) -> Failure {
-    let [a, b] = names.map(Path::display);
-    let message = format!("the images differ in size: `{a}` is {aw}x{ah}, `{b}` is {bw}x{bh}");
+fn sizes_differ(images: [&Noisy; 2]) -> Failure {
+    let [a, b] = images.map(|image| {
+        let [width, height] = image.pixels.size;
+        format!("`{}` is {width}x{height}", image.path.display())
+    });
+    let message = format!("the images differ in size: {a}, {b}");
     Failure::new(Exit::InputOutput, message).with_hint("average the larger one with --resample")
 }
 

@@ -140,36 +140,6 @@ pub(crate) fn read_image(path: &Path) -> Result<Pixels, Failure> {
     Ok(Pixels::from(&formats::image::read(path, None)?))
 }
 
-/// Reads a setting, by name, of the render that wrote an image. None: the image does not have it.
-pub(crate) fn setting_of(path: &Path, name: &str) -> Option<String> {
-    let layers = formats::image::read_layers(path).ok()?;
-    layers.text(&format!("bidir/{name}"))
-}
-
-/// Reads the estimated variance of an image. None: the image has no such layers.
-pub(crate) fn read_variance(path: &Path) -> Option<Variance> {
-    let layers = formats::image::read_layers(path).ok()?;
-    let pixels = Pixels {
-        size: layers.size(),
-        data: layers.triples(["Variance.R", "Variance.G", "Variance.B"])?,
-    };
-    let samples = layers.channel("Samples")?.into_iter();
-    let fewest = samples.fold(f32::INFINITY, f32::min);
-    Some(Variance {
-        pixels,
-        freedom: f64::from(fewest) - 1.0,
-    })
-}
-
-/// The estimated variance of an image.
-#[derive(Clone, Debug)]
-pub(crate) struct Variance {
-    /// The variance of every pixel's mean.
-    pub(crate) pixels: Pixels,
-    /// The degrees of freedom of the variances.
-    pub(crate) freedom: f64,
-}
-
 /// Writes errors to an EXR as the channel Y, or to a PNG as colours from 0 to `full`.
 pub(crate) fn write_error_map(
     path: &Path,

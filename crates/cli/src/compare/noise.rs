@@ -1,12 +1,12 @@
 //! Tests whether a difference of images with variances is more than noise.
 
 use crate::exit::Failure;
-use crate::scene_io::{self, Variance};
-use lab::image::Pixels;
+use crate::scene_io;
+use lab::image::{Pixels, identical};
 use lab::reference::{PICTURE, Provenance};
 use lab::statistics::{Difference, Estimated, z_test};
 use serde::Serialize;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Approximate number of blocks along the longer side of an image.
 const BLOCKS: usize = 16;
@@ -14,19 +14,33 @@ const BLOCKS: usize = 16;
 /// An image with the variances of its pixels, if it has them.
 #[derive(Debug)]
 pub(super) struct Noisy {
+    pub(super) path: PathBuf,
     pub(super) pixels: Pixels,
-    variance: Option<Variance>,
+    /// The variance of every pixel's mean.
+    variance: Option<Pixels>,
+    /// The degrees of freedom of the variances; 0 if they are unknown.
+    freedom: f64,
     /// The integrator of the render. None: the image has no such attribute.
     integrator: Option<String>,
+    /// The seed of the render. None: the image has no such attribute.
+    seed: Option<String>,
 }
 
 impl Noisy {
     /// Reads an image.
     pub(super) fn read(path: &Path) -> Result<Self, Failure> {
+        let read = formats::image::read_layers(path).ok();
+        let layers = read.as_ref();
+        let setting = |name: &str| layers?.text(&format!("bidir/{name}"));
+        let samples = layers.and_then(|layers| layers.channel("Samples"));
+        let fewest = samples.map(|all| all.into_iter().fold(f32::INFINITY, f32::min));
         Ok(Self {
+            path: path.to_owned(),
             pixels: scene_io::read_image(path)?,
-            variance: scene_io::read_variance(path),
-            integrator: scene_io::setting_of(path, "integrator"),
+            variance: layers.and_then(|layers| Pixels::layer(layers, "Variance.")),
+            freedom: fewest.map_or(0.0, |fewest| f64::from(fewest) - 1.0),
+            integrator: setting("integrator"),
+            seed: setting("seed"),
         })
     }
 
@@ -36,17 +50,41 @@ impl Noisy {
             return Self::read(path);
         }
         Provenance::load(path)?;
-        Self::read(&path.join(PICTURE))
+        Ok(Self {
+            path: path.to_owned(),
+            ..Self::read(&path.join(PICTURE))?
+        })
     }
 
-    /// Returns the warning that the noise of this image's pixels is correlated, which the test of blocks
-    /// ignores; `path` names the image. None: the noise is independent, or the integrator is unknown.
-    pub(super) fn correlation(&self, path: &Path) -> Option<String> {
+    /// Returns the warning that intervals are wrong for this image and one of `others`. None: they are independent.
+    pub(super) fn likeness(&self, others: &[Self]) -> Option<String> {
+        let name = self.path.display();
+        let likeness = others.iter().find_map(|other| {
+            let both = format!("`{}` and `{name}`", other.path.display());
+            match &self.seed {
+                _ if other.path == self.path => Some(format!("`{name}` is given twice")),
+                _ if identical(&self.pixels, &other.pixels) => {
+                    Some(format!("{both} are identical"))
+                }
+                Some(seed) if other.seed == self.seed => {
+                    Some(format!("{both} have the same seed, {seed}"))
+                }
+                _ => None,
+            }
+        })?;
+        Some(format!(
+            "{likeness}: intervals need images with different seeds"
+        ))
+    }
+
+    /// Returns the warning that the noise of this image's pixels is correlated, which the test of blocks ignores.
+    /// None: the noise is independent, or the integrator is unknown.
+    pub(super) fn correlation(&self) -> Option<String> {
         let integrator = self.integrator.as_deref()?;
         if !["lvc", "auto"].contains(&integrator) {
             return None;
         }
-        let name = path.display();
+        let name = self.path.display();
         Some(format!(
             "z_blocks assumes independent pixels, but those of `{name}` share light subpaths by \
              `{integrator}`: its p may be too small; compare several seeds with --reference instead"
@@ -54,11 +92,10 @@ impl Noisy {
     }
 
     fn estimated(&self) -> Option<Estimated<'_>> {
-        let variance = self.variance.as_ref()?;
         Some(Estimated {
             mean: &self.pixels,
-            variance: &variance.pixels,
-            freedom: variance.freedom,
+            variance: self.variance.as_ref()?,
+            freedom: self.freedom,
         })
     }
 }

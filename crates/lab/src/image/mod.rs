@@ -21,7 +21,7 @@ pub struct Pixels {
 
 impl Pixels {
     /// Returns the channels `R`, `G` and `B` behind `prefix`. None: one is missing.
-    pub(crate) fn layer(layers: &Layers, prefix: &str) -> Option<Self> {
+    pub fn layer(layers: &Layers, prefix: &str) -> Option<Self> {
         let names = ["R", "G", "B"].map(|channel| format!("{prefix}{channel}"));
         let data = layers.triples(names.each_ref().map(String::as_str))?;
         let size = layers.size();
