@@ -262,7 +262,7 @@ impl Job<'_> {
         film: Option<String>,
         exit: Exit,
     ) {
-        let warnings = report.warning().into_iter().chain(report.raw_warning());
+        let warnings = report.warnings.iter();
         warnings.for_each(|warning| self.console.warning(warning));
         if !self.args.output.talk.quiet {
             let names: Vec<_> = self.outputs.names().chain(film).collect();

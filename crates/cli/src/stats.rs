@@ -4,7 +4,7 @@ mod summary;
 
 use bidir::driver::Budget;
 use bidir::film::Film;
-use bidir::stats::{Stage, StageTimes};
+use bidir::stats::{Stage, StageTimes, Stats};
 use formats::film::{Render, SettingsText};
 use lab::pyramid::Figures;
 use lab::sample::TrainingReport;
@@ -21,9 +21,9 @@ pub(crate) struct Report {
     json: Value,
     #[serde(skip)]
     strategies: Vec<Figures>,
-    /// The warning of dropped contributions. None: there were none.
+    /// The warnings of dropped values.
     #[serde(skip)]
-    warning: Option<String>,
+    pub(crate) warnings: Vec<String>,
 }
 
 impl Report {
@@ -70,18 +70,10 @@ impl Report {
             "film_bytes": Film::memory(film, &session.settings().layers),
             "bvh_bytes": bvh.memory_bytes(),
         });
-        let warning = stats.dropped_list.first().map(|first| {
-            let ([x, y], pass) = (first.pixel, first.pass);
-            format!(
-                "{} contributions were not finite or too large, and were dropped; the first by {}, \
-                 repeat it with --replay {x},{y},{pass}",
-                stats.dropped, first.strategy
-            )
-        });
         Self {
             json,
+            warnings: warnings(stats, &strategies),
             strategies,
-            warning,
         }
     }
 
@@ -104,22 +96,26 @@ impl Report {
             table + &format!("{name:<8} {rays:>12.3} {blocked:>8} {mean:>11} {variance:>11}\n")
         })
     }
+}
 
-    /// Returns the warning that raw images lack values. None: they lack none.
-    pub(crate) fn raw_warning(&self) -> Option<String> {
-        let images = self.strategies.iter().filter_map(|figures| figures.images);
-        let count: u64 = images.map(|images| images.raw_dropped).sum();
-        (count > 0).then(|| {
-            format!(
-                "{count} values were too large without their weight, and are missing in raw images"
-            )
-        })
-    }
-
-    /// The warning of dropped contributions. None: there were none.
-    pub(crate) fn warning(&self) -> Option<String> {
-        self.warning.clone()
-    }
+/// Returns the warnings of dropped contributions, and of values that raw images lack.
+fn warnings(stats: &Stats, strategies: &[Figures]) -> Vec<String> {
+    let dropped = stats.dropped_list.first().map(|first| {
+        let ([x, y], pass) = (first.pixel, first.pass);
+        format!(
+            "{} contributions were not finite or too large, and were dropped; the first by {}, \
+             repeat it with --replay {x},{y},{pass}",
+            stats.dropped, first.strategy
+        )
+    });
+    let images = strategies.iter().filter_map(|figures| figures.images);
+    let lacking: u64 = images.map(|images| images.raw_dropped).sum();
+    let raw = (lacking > 0).then(|| {
+        format!(
+            "{lacking} values were too large without their weight, and are missing in raw images"
+        )
+    });
+    dropped.into_iter().chain(raw).collect()
 }
 
 fn per_sample(count: u64, samples: u64) -> f64 {
