@@ -26,20 +26,19 @@ pub use bundle::module;
 pub use flip::add_flip;
 pub use text::table_text;
 
-use crate::experiment::analysis::{ReferenceNoise, reference_noise};
+use crate::experiment::analysis::reference_noise;
 use crate::image::Pixels;
-use crate::markup::{Element, element, script_json};
+use crate::markup::{escaped, script_json};
 use crate::metric::ErrorMap;
 use crate::results::{Claim, Plot, Results, Table};
 use crate::statistics::RATIOS;
 use half::{base64, halves};
-use serde::ser::SerializeStruct;
-use serde::{Serialize, Serializer};
+use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
 
 /// The contents of a page.
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Copy, Debug)]
 pub struct Report<'a> {
     /// The results.
     pub results: &'a Results,
@@ -50,14 +49,13 @@ pub struct Report<'a> {
     /// The images to flip between.
     pub images: &'a [ReportImage],
     /// The images of each pyramid of the results, by the names of their layers.
-    #[serde(serialize_with = "layers")]
     pub layers: &'a [BTreeMap<String, Pixels>],
     /// The command that repeats the experiment.
     pub command: &'a str,
 }
 
 /// An image to flip to.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct ReportImage {
     /// The name of the scene.
     pub scene: String,
@@ -66,10 +64,8 @@ pub struct ReportImage {
     /// True if the other images of the scene are compared with this one.
     pub is_reference: bool,
     /// The pixels of the image.
-    #[serde(flatten, serialize_with = "coded")]
     pub pixels: Pixels,
     /// FLIP of every pixel; see [`add_flip`]. None: the page shows no map.
-    #[serde(serialize_with = "flip_bytes")]
     pub flip: Option<ErrorMap>,
 }
 
@@ -78,41 +74,45 @@ const STYLE: &str = include_str!("../../page/report.css");
 /// Returns the page. Equal reports give equal bytes.
 pub fn html(report: &Report<'_>) -> String {
     let script = bundle::script();
-    let head = head(&report.results.title, &script);
-    let body = element("body")
-        .child(element("noscript").children(without_script(&report.results.claims)))
-        .child(data(report))
-        .child(element("script").with("type", "module").code(script));
-    format!("<!DOCTYPE html>\n<html lang=\"en\">{head}{body}\n</html>\n")
+    format!(
+        include_str!("../../page/report.html"),
+        policy = policy(&script),
+        title = escaped(&report.results.title),
+        style = STYLE,
+        verdicts = verdicts(&report.results.claims),
+        data = script_json(&data(report).to_string()),
+        script = script,
+    )
 }
 
-/// Returns the element with the data of the page.
-fn data(report: &Report<'_>) -> Element {
-    let data = Data {
-        report,
-        noises: reference_noise(report.results).collect(),
-        ratios: RATIOS,
-        most_flip_pixels: flip::MOST_PIXELS,
-    };
-    let json = serde_json::to_string(&data).expect("texts and numbers are JSON");
-    element("script")
-        .with("type", "application/json")
-        .with("id", "data")
-        .code(script_json(&json))
-}
-
-fn head(title: &str, script: &str) -> Element {
-    let meta = |name, content: &str| element("meta").with("name", name).with("content", content);
-    let policy = element("meta")
-        .with("http-equiv", "Content-Security-Policy")
-        .with("content", policy(script));
-    element("head")
-        .child(element("meta").with("charset", "utf-8"))
-        .child(policy)
-        .child(meta("viewport", "width=device-width, initial-scale=1"))
-        .child(meta("color-scheme", "light dark"))
-        .child(element("title").text(title))
-        .child(element("style").code(STYLE))
+/// Returns the data of the page, in the form that `page/results.js` describes.
+fn data(report: &Report<'_>) -> Value {
+    let images = report.images.iter().map(|image| {
+        json!({
+            "scene": image.scene,
+            "name": image.name,
+            "is_reference": image.is_reference,
+            "size": image.pixels.size,
+            "halves": halves(&image.pixels.data),
+            "flip": image.flip.as_ref().map(flip_bytes),
+        })
+    });
+    let layers = report.layers.iter().map(|layers| {
+        let coded = layers.iter();
+        let coded = coded.map(|(name, pixels)| (name.as_str(), halves(&pixels.data)));
+        coded.collect::<BTreeMap<_, _>>()
+    });
+    json!({
+        "results": report.results,
+        "tables": report.tables,
+        "plots": report.plots,
+        "images": images.collect::<Vec<_>>(),
+        "layers": layers.collect::<Vec<_>>(),
+        "command": report.command,
+        "noises": reference_noise(report.results).collect::<Vec<_>>(),
+        "ratios": RATIOS,
+        "most_flip_pixels": flip::MOST_PIXELS,
+    })
 }
 
 /// Returns the security policy of the page: it loads, sends and frames nothing, and allows only its style and `script`.
@@ -126,60 +126,23 @@ fn policy(script: &str) -> String {
     )
 }
 
-/// Returns the content of the page for browsers that run no scripts.
-fn without_script(claims: &[Claim]) -> Vec<Element> {
+/// Returns the verdicts for browsers that run no scripts.
+fn verdicts(claims: &[Claim]) -> String {
     let line = |claim: &Claim| {
-        let rest = format!(": {} {}", claim.claim, claim.found);
-        let verdict = element("b").text(claim.verdict.words());
-        element("p").child(verdict).text(rest)
+        let texts = [claim.verdict.words(), &claim.claim, &claim.found].map(escaped);
+        let [verdict, statement, found] = texts;
+        format!("<p><b>{verdict}</b>: {statement} {found}</p>\n")
     };
-    let notice = "This page needs JavaScript. Its figures are in results.json, too.";
-    let notice = element("p").text(notice);
-    std::iter::once(notice)
-        .chain(claims.iter().map(line))
-        .collect()
+    claims.iter().map(line).collect()
 }
 
-/// The data of a page, in the form that `page/results.js` describes.
-#[derive(Serialize)]
-struct Data<'a> {
-    #[serde(flatten)]
-    report: &'a Report<'a>,
-    noises: Vec<ReferenceNoise<'a>>,
-    ratios: &'static str,
-    most_flip_pixels: usize,
-}
-
-/// Writes the images of pyramids, by their names.
-fn layers<S: Serializer>(
-    pyramids: &[BTreeMap<String, Pixels>],
-    serializer: S,
-) -> Result<S::Ok, S::Error> {
-    let coded = pyramids.iter().map(|layers| {
-        let layers = layers.iter();
-        let coded = layers.map(|(name, pixels)| (name, halves(&pixels.data)));
-        coded.collect::<BTreeMap<_, _>>()
-    });
-    serializer.collect_seq(coded)
-}
-
-/// Writes an image as its size and its pixels.
-fn coded<S: Serializer>(pixels: &Pixels, serializer: S) -> Result<S::Ok, S::Error> {
-    let mut coded = serializer.serialize_struct("Pixels", 2)?;
-    coded.serialize_field("size", &pixels.size)?;
-    coded.serialize_field("halves", &halves(&pixels.data))?;
-    coded.end()
-}
-
-/// Writes a byte for each pixel: 254 for an error of 1, 255 for no number.
-#[expect(clippy::ref_option, reason = "serde passes a reference to the field")]
-fn flip_bytes<S: Serializer>(map: &Option<ErrorMap>, serializer: S) -> Result<S::Ok, S::Error> {
+/// Returns a byte for each pixel in base64: 254 for an error of 1, 255 for no number.
+fn flip_bytes(map: &ErrorMap) -> String {
     let byte = |error: &f64| {
         if error.is_nan() {
             return 255;
         }
         (error.clamp(0.0, 1.0) * 254.0).round() as u8
     };
-    let coded = |map: &ErrorMap| base64(&map.data.iter().map(byte).collect::<Vec<_>>());
-    map.as_ref().map(coded).serialize(serializer)
+    base64(&map.data.iter().map(byte).collect::<Vec<_>>())
 }

@@ -69,7 +69,7 @@ fn inside<'a>(page: &'a str, start: &str, end: &str) -> &'a str {
     rest.split_once(end).unwrap().0
 }
 
-fn data(page: &str) -> serde_json::Value {
+fn data(page: &str) -> Value {
     serde_json::from_str(inside(page, "id=\"data\">", "</script>")).unwrap()
 }
 
@@ -102,7 +102,7 @@ fn pixels_are_in_the_page_as_they_are() {
     // 1.0, 0.5, 0.0 twice: 00 3c 00 38 00 00.
     assert_eq!(reference["halves"], "ADwAOAAAADwAOAAA");
     assert_eq!(render["name"], HOSTILE);
-    assert_eq!(render["size"], serde_json::json!([2, 1]));
+    assert_eq!(render["size"], json!([2, 1]));
     assert_eq!(render["flip"], "AP4=");
     let layers = data["layers"][0].as_object().unwrap();
     let names: Vec<_> = layers.keys().map(String::as_str).collect();
@@ -173,5 +173,5 @@ fn a_page_of_nothing_is_a_page() {
         layers: &[],
         command: "",
     });
-    assert_eq!(data(&page)["images"], serde_json::json!([]));
+    assert_eq!(data(&page)["images"], json!([]));
 }

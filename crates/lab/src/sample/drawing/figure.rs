@@ -4,7 +4,6 @@ use super::super::report::{ConnectionReport, SampleReport, SubpathReport};
 use super::super::view::Place;
 use super::shapes::{circle, polyline, px, text};
 use super::view::View;
-use crate::markup::{Element, element};
 use crate::number::number;
 use bidir::math::{Vec2, Vec3};
 use bidir::spectrum::luminance;
@@ -62,7 +61,7 @@ impl Ray {
 
     /// Returns the line, whose width grows with its weight relative to the largest one. None: both ends are at
     /// infinity.
-    pub(super) fn draw(&self, view: &View<'_>, largest: f32) -> Option<Element> {
+    pub(super) fn draw(&self, view: &View<'_>, largest: f32) -> Option<String> {
         let (light, camera) = (self.light_end, self.camera_end);
         if light.is_infinite && camera.is_infinite {
             return None;
@@ -70,13 +69,13 @@ impl Ray {
         let from = view.seen_from(&light, camera.point);
         let to = view.seen_from(&camera, light.point);
         // The maximum is a number also where the weight is none.
-        let width = 1.2 + 3.0 * (self.weight / largest).max(0.0).sqrt();
-        let line = polyline(&[from, to]).class(self.class);
-        let line = line.with("stroke-width", px(width));
-        let line = line.child(element("title").text(&self.title));
-        let mark = || circle(from, 2.8).class("light hollow");
-        let mark = self.is_foreign.then(mark);
-        Some(element("g").child(line).children(mark))
+        let width = px(1.2 + 3.0 * (self.weight / largest).max(0.0).sqrt());
+        let (title, line) = (&self.title, polyline(&[from, to], self.class));
+        let mark = self.is_foreign.then(|| circle(from, 2.8, "light hollow"));
+        let mark = mark.unwrap_or_default();
+        Some(format!(
+            "<g stroke-width=\"{width}\">\n<title>{title}</title>\n{line}{mark}</g>\n"
+        ))
     }
 }
 
@@ -109,36 +108,38 @@ impl Walk {
         (0..self.places.len()).map(point).collect()
     }
 
-    pub(super) fn draw(&self, view: &View<'_>) -> Element {
-        let points = self.points(view);
-        let marks = points.iter().map(|at| circle(*at, 4.2).class("vertex"));
-        let group = element("g").class(self.class);
-        let group = group.child(polyline(&points).class("track"));
-        group.children(self.arrow(view)).children(marks)
+    pub(super) fn draw(&self, view: &View<'_>) -> String {
+        let (class, points) = (self.class, self.points(view));
+        let track = polyline(&points, "track");
+        let arrow = self.arrow(view).unwrap_or_default();
+        let marks = points.iter().map(|at| circle(*at, 4.2, "vertex"));
+        let marks: String = marks.collect();
+        format!("<g class=\"{class}\">\n{track}{arrow}{marks}</g>\n")
     }
 
     /// Returns the arrow from the last vertex to the border. None: the walk does not leave the scene.
-    fn arrow(&self, view: &View<'_>) -> Option<Element> {
+    fn arrow(&self, view: &View<'_>) -> Option<String> {
         let last = self.places.last().filter(|last| !last.is_infinite)?;
         let from = view.seen_from(last, last.point);
         let to = view.border(last.point, self.escape?);
         let along = (to - from).try_normalize()?;
         let (back, side) = (along * -9.0, along.perp() * 4.0);
         let line = [from, to, to + back + side, to, to + back - side];
-        Some(polyline(&line).class("track escape"))
+        Some(polyline(&line, "track escape"))
     }
 
     /// Returns the names of the vertices, inside the panel. The two subpaths have their names on different sides,
     /// and successive vertices have theirs at different heights, as vertices may be close to each other.
-    pub(super) fn names(&self, view: &View<'_>) -> Element {
+    pub(super) fn names(&self, view: &View<'_>) -> String {
         let [min, max] = [view.corner + 12.0, view.corner + view.size() - 12.0];
         let side = if self.letter == 'z' { -14.0 } else { 14.0 };
         let points = self.points(view).into_iter().enumerate();
         let names = points.map(|(i, at)| {
             let at = (at + Vec2::new(side, [-5.0, 4.0, 15.0][i % 3])).clamp(min, max);
             let infinite = ["", " \u{221e}"][usize::from(self.places[i].is_infinite)];
-            text(at, format!("{}{i}{infinite}", self.letter)).class("name")
+            text(at, "name", &format!("{}{i}{infinite}", self.letter))
         });
-        element("g").class(self.class).children(names)
+        let (class, names) = (self.class, names.collect::<String>());
+        format!("<g class=\"{class}\">\n{names}</g>\n")
     }
 }

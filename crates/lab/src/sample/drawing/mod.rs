@@ -13,7 +13,7 @@ mod view;
 mod tests;
 
 use super::SampleReport;
-use crate::markup::{Element, element};
+use crate::markup::escaped;
 use crate::number::number;
 use bidir::driver::Session;
 use bidir::math::{Vec2, Vec3};
@@ -73,41 +73,45 @@ impl Figure {
         self.rays.iter().filter(move |ray| ray.class == class)
     }
 
-    fn draw(&self, title: &str, view: &View<'_>) -> Element {
+    fn draw(&self, title: &str, view: &View<'_>) -> String {
         let weights = self.rays.iter().map(|ray| ray.weight);
         let largest = weights.fold(f32::MIN_POSITIVE, f32::max);
         let rays = KINDS.iter().flat_map(|[class, _]| self.of_class(class));
-        view.panel(title)
-            .child(view.outline())
-            .children(rays.filter_map(|ray| ray.draw(view, largest)))
-            .children(self.walks.iter().map(|walk| walk.draw(view)))
-            .children(self.walks.iter().map(|walk| walk.names(view)))
+        let rays: String = rays.filter_map(|ray| ray.draw(view, largest)).collect();
+        let walks: String = self.walks.iter().map(|walk| walk.draw(view)).collect();
+        let names: String = self.walks.iter().map(|walk| walk.names(view)).collect();
+        let (panel, outline) = (view.panel(title), view.outline());
+        format!("<g>\n{panel}{outline}{rays}{walks}{names}</g>\n")
     }
 
     /// Returns the legend beside the panels: the meaning of lines and marks, and their number.
-    fn legend(&self) -> Element {
-        let line = |class| polyline(&[Vec2::ZERO, Vec2::X * 26.0]).class(class);
-        let dot = circle(Vec2::X * 13.0, 2.8).class("light hollow");
+    fn legend(&self) -> String {
+        let line = |class: &str| polyline(&[Vec2::ZERO, Vec2::X * 26.0], class);
+        let dot = circle(Vec2::X * 13.0, 2.8, "light hollow");
         let [z, y] = self.walks.each_ref().map(|walk| walk.places.len());
         let foreign = self.rays.iter().filter(|ray| ray.is_foreign).count();
-        let mut rows = vec![
+        let marks = [
             (line("camera track"), format!("camera vertices y: {y}")),
             (line("light track"), format!("light vertices z: {z}")),
             (dot, format!("light points off this subpath: {foreign}")),
         ];
-        rows.extend(KINDS.iter().rev().map(|[class, meaning]| {
+        let lines = KINDS.iter().rev().map(|[class, meaning]| {
             let count = self.of_class(class).count();
             (line(class), format!("{meaning}: {count}"))
-        }));
-        let note = |note: &str| (element("g"), note.to_owned());
-        rows.push(note("width: w C times probability of candidates"));
-        rows.push(note("an arrow leaves the scene"));
-        let rows = rows.into_iter().enumerate().map(|(i, (sample, meaning))| {
-            let place = format!("translate({} {})", LEGEND.x, LEGEND.y + ROW * i as f32);
-            let row = element("g").with("transform", place).child(sample);
-            row.child(text(Vec2::new(36.0, 4.0), meaning))
         });
-        element("g").with("stroke-width", 2.2).children(rows)
+        let notes = [
+            "width: w C times probability of candidates",
+            "an arrow leaves the scene",
+        ];
+        let notes = notes.map(|note| (String::new(), note.to_owned()));
+        let rows = marks.into_iter().chain(lines).chain(notes).enumerate();
+        let rows = rows.map(|(i, (sample, meaning))| {
+            let [x, y] = [LEGEND.x, LEGEND.y + ROW * i as f32].map(px);
+            let meaning = text(Vec2::new(36.0, 4.0), "meaning", &meaning);
+            format!("<g transform=\"translate({x} {y})\">\n{sample}{meaning}</g>\n")
+        });
+        let rows: String = rows.collect();
+        format!("<g stroke-width=\"2.2\">\n{rows}</g>\n")
     }
 }
 
@@ -118,17 +122,22 @@ impl SampleReport {
         let views = View::both(session, &figure.points(), PLAN);
         let below = views[1].corner + views[1].size();
         let height = below.y.max(LEGEND.y + 10.0 * ROW) + MARGIN;
-        let picture = element("svg")
-            .with("xmlns", "http://www.w3.org/2000/svg")
-            .with("viewBox", format!("0 0 {WIDTH} {}", px(height)))
-            .child(element("title").text(format!("{} of {name}", self.title())))
-            .child(element("style").code(include_str!("style.css")))
-            .child(rectangle(Vec2::ZERO, Vec2::new(WIDTH, height)).class("page"))
-            .children(self.head(name))
-            .child(figure.draw("Plan", &views[0]))
-            .child(figure.draw("Elevation", &views[1]))
-            .child(figure.legend());
-        format!("{}\n", picture.to_string().trim_start())
+        let content = [
+            rectangle(Vec2::ZERO, Vec2::new(WIDTH, height), "page"),
+            self.head(name),
+            figure.draw("Plan", &views[0]),
+            figure.draw("Elevation", &views[1]),
+            figure.legend(),
+        ];
+        format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {WIDTH} {}\">\n\
+             <title>{} of {}</title>\n<style>{}</style>\n{}</svg>\n",
+            px(height),
+            self.title(),
+            escaped(name),
+            include_str!("style.css"),
+            content.concat()
+        )
     }
 
     fn title(&self) -> String {
@@ -137,15 +146,18 @@ impl SampleReport {
     }
 
     /// Returns the heading, with lines for settings and results below.
-    fn head(&self, name: &str) -> [Element; 3] {
-        let settings = ["integrator", "shadow-rays", "mis", "seed"];
-        let settings = format!("{name}: {}", self.settings.line(&settings));
+    fn head(&self, name: &str) -> String {
+        let names = ["integrator", "shadow-rays", "mis", "seed"];
+        let settings = format!("{name}: {}", self.settings.line(&names));
         let value = number(f64::from(luminance(self.value)));
         let (rays, hits) = (self.rays, self.hits.len());
         let results = format!("{rays} rays, {hits} hits of lights, luminance {value}");
-        let line = |i: f32, content| text(Vec2::new(MARGIN, 36.0 + 18.0 * i), content);
-        let title = line(0.0, self.title()).class("title");
-        let settings = line(1.0, settings).class("muted");
-        [title, settings, line(2.0, results).class("muted")]
+        let at = |line: f32| Vec2::new(MARGIN, 36.0 + 18.0 * line);
+        [
+            text(at(0.0), "title", &self.title()),
+            text(at(1.0), "muted", &settings),
+            text(at(2.0), "muted", &results),
+        ]
+        .concat()
     }
 }

@@ -5,7 +5,6 @@
 
 use super::shapes::px;
 use super::view::View;
-use crate::markup::{Element, element};
 use bidir::math::{Vec2, Vec3};
 use bidir::sampler::{Domain, Sampler, SamplerKind};
 use bidir::scene::RayDraws;
@@ -26,7 +25,7 @@ struct Sight {
 
 impl View<'_> {
     /// Returns all edges in the panel.
-    pub(super) fn outline(&self) -> Element {
+    pub(super) fn outline(&self) -> String {
         let [columns, rows] = (self.size() / CELL).to_array().map(|count| count as usize);
         let at = |x, y| self.corner + Vec2::new(x as f32, y as f32) * CELL;
         let row = |y: usize| (0..=columns).map(|x| self.look(at(x, y))).collect();
@@ -37,7 +36,7 @@ impl View<'_> {
                 edges += &self.edges([above[0], above[1], below[1], below[0]]);
             }
         }
-        element("path").class("outline").with("d", edges)
+        format!("<path class=\"outline\" d=\"{edges}\"/>\n")
     }
 
     fn look(&self, at: Vec2) -> Sight {

@@ -2,7 +2,6 @@
 
 use super::super::view::Place;
 use super::shapes::{rectangle, text};
-use crate::markup::{Element, element};
 use crate::number::number;
 use bidir::camera::Pose;
 use bidir::driver::Session;
@@ -118,13 +117,12 @@ impl<'a> View<'a> {
     }
 
     /// Returns the empty panel with its heading: the title, the size, and the directions of the axes.
-    pub(super) fn panel(&self, title: &str) -> Element {
+    pub(super) fn panel(&self, title: &str) -> String {
         let [width, height] = self.extent.to_array().map(|x| number(f64::from(x)));
         let [right, up] = [self.right, self.up].map(axis_name);
         let title = format!("{title}: {width} \u{d7} {height}, {right} to the right, {up} up");
-        element("g")
-            .child(text(self.corner - Vec2::Y * 8.0, title).class("heading"))
-            .child(rectangle(self.corner, self.size()).class("paper"))
+        text(self.corner - Vec2::Y * 8.0, "heading", &title)
+            + &rectangle(self.corner, self.size(), "paper")
     }
 }
 
