@@ -22,11 +22,11 @@ pub struct SampleReport {
     /// The hits, s = 0: lights that the camera subpath met.
     pub(super) hits: Vec<TermReport>,
     /// The candidates, s ≥ 1 and t ≥ 2: connections that are not zero before selection and visibility.
-    pub(super) candidates: Vec<ConnectionReport>,
+    pub(super) candidates: Vec<TermReport>,
     /// The strategies of connections without a term, because they are zero.
     pub(super) zeros: Vec<String>,
     /// The splats, t = 1.
-    pub(super) light_image: Vec<ConnectionReport>,
+    pub(super) light_image: Vec<TermReport>,
     /// The number of light paths by which splats are divided.
     pub(super) light_paths: u64,
     /// The number of light subpaths of the pass. It is smaller if samples share them.
@@ -75,17 +75,18 @@ pub(super) struct TermReport {
     pub(super) is_dropped: bool,
     /// The value that it added to a pixel of an image of one pass.
     pub(super) added: Rgb,
+    /// The shadow ray. None: s = 0, which needs none.
+    #[serde(flatten)]
+    pub(super) ray: Option<RayReport>,
 }
 
-/// The contribution of a strategy with a shadow ray.
+/// The shadow ray of a contribution.
 #[derive(Clone, Debug, Serialize)]
-pub(super) struct ConnectionReport {
-    #[serde(flatten)]
-    pub(super) term: TermReport,
+pub(super) struct RayReport {
     /// The end of the light subpath: for s = 1 a separately sampled light point, in `lvc` a vertex of another
     /// sample. The other end is vertex t - 1 of the camera subpath, or the lens.
     pub(super) light_end: Place,
-    /// The selection among candidates. None: it is a splat.
+    /// The selection among candidates. None: the term is a splat.
     #[serde(flatten)]
     pub(super) choice: Option<Choice>,
     /// True if the ends are visible from each other, whether the ray was traced or not.
@@ -111,14 +112,11 @@ impl SampleReport {
     pub fn new(session: &Session<'_>, pixel: [u32; 2], pass: u64, replay: &Replay) -> Self {
         let stats = &replay.batch.worker.stats;
         let view = View::new(session, replay);
-        let hits = replay.terms.iter().filter(|term| term.ends.is_none());
-        let hits: Vec<_> = hits.map(|term| view.term(term)).collect();
-        let connections = replay.terms.iter().filter_map(|term| view.connection(term));
-        let (light_image, candidates): (Vec<_>, Vec<_>) =
-            connections.partition(|connection| connection.landing.is_some());
-        let all = candidates
-            .iter()
-            .filter(|c| c.is_visible && !c.term.is_dropped);
+        let terms = replay.terms.iter().map(|term| view.term(term));
+        let (hits, connections): (Vec<_>, Vec<_>) = terms.partition(|term| term.ray.is_none());
+        let is_candidate = |term: &TermReport| term.choice().is_some();
+        let (candidates, light_image): (Vec<_>, Vec<_>) =
+            connections.into_iter().partition(is_candidate);
         Self {
             pixel,
             pass,
@@ -129,8 +127,8 @@ impl SampleReport {
             light: view.subpath(&replay.light()),
             value: replay.lanes.to_rgb(replay.value()),
             value_of_hits: sum(hits.iter().map(|hit| hit.added)),
-            value_of_candidates: sum(candidates.iter().map(|c| c.term.added)),
-            value_of_all_candidates: sum(all.map(ConnectionReport::arriving)),
+            value_of_candidates: sum(candidates.iter().map(|candidate| candidate.added)),
+            value_of_all_candidates: sum(candidates.iter().filter_map(TermReport::arriving)),
             hits,
             candidates,
             zeros: replay.zeros.iter().map(ToString::to_string).collect(),
@@ -143,10 +141,17 @@ impl SampleReport {
     }
 }
 
-impl ConnectionReport {
-    /// Returns the value times the transmittance.
-    fn arriving(&self) -> Rgb {
-        self.term.value.map(|channel| channel * self.transmittance)
+impl TermReport {
+    /// Returns the selection of a candidate. None: the term is a hit or a splat.
+    pub(super) fn choice(&self) -> Option<&Choice> {
+        self.ray.as_ref()?.choice.as_ref()
+    }
+
+    /// Returns the value times the transmittance. None: it was dropped, or something opaque is in the way.
+    fn arriving(&self) -> Option<Rgb> {
+        let ray = self.ray.as_ref()?;
+        let arrives = ray.is_visible && !self.is_dropped;
+        arrives.then(|| self.value.map(|channel| channel * ray.transmittance))
     }
 }
 

@@ -135,8 +135,9 @@ fn splats_land_where_their_vertex_is_seen() {
         let splats = reports.iter().flat_map(|report| &report.light_image);
         let mut count = 0;
         for splat in splats {
-            let seen = splat.light_end.raster.expect("it is in front");
-            for (a, b) in seen.into_iter().zip(splat.landing.unwrap().raster) {
+            let ray = splat.ray.as_ref().unwrap();
+            let seen = ray.light_end.raster.expect("it is in front");
+            for (a, b) in seen.into_iter().zip(ray.landing.unwrap().raster) {
                 assert!((a - b).abs() < 1e-3, "{camera}: {a} {b}");
             }
             count += 1;
@@ -166,8 +167,9 @@ fn connections_end_at_vertices_of_the_light_subpath() {
     let (mut own, mut fresh) = (0, 0);
     for report in reports(&session, 2) {
         for candidate in &report.candidates {
-            let s = usize::from(candidate.term.s);
-            let is_own = candidate.light_end == report.light.vertices[s - 1].place;
+            let s = usize::from(candidate.s);
+            let is_own =
+                candidate.ray.as_ref().unwrap().light_end == report.light.vertices[s - 1].place;
             own += usize::from(is_own);
             // Next-event estimation draws a light point for each camera vertex.
             fresh += usize::from(!is_own);

@@ -1,7 +1,8 @@
 //! The report of a sample as text: tables of the subpaths and of each kind of strategy, and the sums.
 
-use super::report::{ConnectionReport, SampleReport, SubpathReport, TermReport, VertexReport};
+use super::report::{RayReport, SampleReport, SubpathReport, TermReport, VertexReport};
 use super::training::TrainingReport;
+use bidir::driver::Landing;
 use bidir::integrator::IntegratorKind;
 use std::fmt::{self, Display, Formatter};
 
@@ -74,11 +75,7 @@ fn table(f: &mut Formatter<'_>, title: &str, columns: &str, rows: &[impl Display
 impl SampleReport {
     fn write_candidates(&self, f: &mut Formatter<'_>) -> fmt::Result {
         let is_lvc = self.settings.request.integrator == Some(IntegratorKind::Lvc);
-        let learned = if is_lvc {
-            ", times √V̂ where visibility is learned"
-        } else {
-            ""
-        };
+        let learned = ["", ", times √V̂ where visibility is learned"][usize::from(is_lvc)];
         let columns = format!(
             "  g, by which candidates are chosen, is the mean of the channels of w C{learned}\n\
              {TERM}           g  probability  ray         way      adds w C / probability"
@@ -143,11 +140,7 @@ impl Display for SubpathReport {
 
 impl Display for VertexReport {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        let at = if self.place.is_infinite {
-            "towards"
-        } else {
-            "at"
-        };
+        let at = ["at", "towards"][usize::from(self.place.is_infinite)];
         write!(f, "{:<7} {at} {}", self.kind, Point(self.place.position))?;
         write!(f, "  beta {}", Triple(self.beta))?;
         write!(
@@ -162,55 +155,42 @@ impl Display for VertexReport {
     }
 }
 
-impl TermReport {
-    /// Returns the text in the columns of [`TERM`].
-    fn head(&self) -> String {
-        let contribution = Triple(self.contribution);
-        format!(
-            "{:>3} {:>3}  {contribution}  {:>10.4e}",
-            self.s, self.t, self.weight
-        )
-    }
-
-    /// Returns the value that the term added, as a text.
-    fn outcome(&self) -> String {
-        if self.is_dropped {
-            "dropped: not finite, or too large".to_owned()
-        } else if self.added.iter().all(|channel| *channel == 0.0) {
-            "nothing".to_owned()
-        } else {
-            Triple(self.added).to_string()
-        }
-    }
-}
-
+/// Writes the columns of [`TERM`], those of the shadow ray, and the value that the term added.
 impl Display for TermReport {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        write!(f, "{}  {}", self.head(), self.outcome())
+        let (contribution, weight) = (Triple(self.contribution), self.weight);
+        write!(
+            f,
+            "{:>3} {:>3}  {contribution}  {weight:>10.4e}",
+            self.s, self.t
+        )?;
+        if let Some(ray) = &self.ray {
+            write!(f, "{ray}")?;
+        }
+        if self.is_dropped {
+            write!(f, "  dropped: not finite, or too large")
+        } else if self.added.iter().all(|channel| *channel == 0.0) {
+            write!(f, "  nothing")
+        } else {
+            write!(f, "  {}", Triple(self.added))
+        }
     }
 }
 
-impl Display for ConnectionReport {
+impl Display for RayReport {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.term.head())?;
         if let Some(choice) = &self.choice {
             let score = choice.score.map_or("-".to_owned(), |g| format!("{g:.4e}"));
-            let ray = if choice.is_chosen {
-                "chosen"
-            } else {
-                "not chosen"
-            };
+            let ray = ["not chosen", "chosen"][usize::from(choice.is_chosen)];
             write!(f, "  {score:>10}  {:>11.4e}  {ray:<10}", choice.prob)?;
         }
-        let way = if self.is_visible { "clear" } else { "blocked" };
+        let way = ["blocked", "clear"][usize::from(self.is_visible)];
         write!(f, "  {way:<7}")?;
-        if let Some(landing) = &self.landing {
-            let [x, y] = landing.raster;
-            let pixel = landing
-                .pixel
-                .map_or("none".to_owned(), |[x, y]| format!("{x},{y}"));
-            write!(f, "  {:<19}  {pixel:<11}", format!("{x:.3},{y:.3}"))?;
-        }
-        write!(f, "  {}", self.term.outcome())
+        let Some(Landing { raster, pixel }) = self.landing else {
+            return Ok(());
+        };
+        let at = format!("{:.3},{:.3}", raster[0], raster[1]);
+        let pixel = pixel.map_or("none".to_owned(), |[x, y]| format!("{x},{y}"));
+        write!(f, "  {at:<19}  {pixel:<11}")
     }
 }

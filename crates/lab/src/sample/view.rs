@@ -1,6 +1,6 @@
 //! The vertices and terms of a sample, in the world, on the film, and in RGB.
 
-use super::report::{Choice, ConnectionReport, SubpathReport, TermReport, VertexReport};
+use super::report::{Choice, RayReport, SubpathReport, TermReport, VertexReport};
 use bidir::camera::Camera;
 use bidir::driver::{Replay, ReplayedTerm, Session};
 use bidir::integrator::Fate;
@@ -119,25 +119,24 @@ impl<'a> View<'a> {
             value: self.lanes.to_rgb(term.value()),
             is_dropped: replayed.fate == Fate::Dropped,
             added: self.lanes.to_rgb(replayed.added),
+            ray: replayed.ends.map(|[end, _]| self.ray(replayed, &end)),
         }
     }
 
-    /// Reports a candidate or a splat. None: the term has no shadow ray.
-    pub(super) fn connection(&self, replayed: &ReplayedTerm) -> Option<ConnectionReport> {
-        let [light_end, _] = replayed.ends?;
+    /// Reports the shadow ray of a candidate or a splat.
+    fn ray(&self, replayed: &ReplayedTerm, light_end: &Locus) -> RayReport {
         let choice = || Choice {
             score: replayed.selection.map(|selection| selection.score),
             // Without a choice everything is traced.
             prob: replayed.selection.map_or(1.0, |selection| selection.prob),
             is_chosen: replayed.is_chosen(),
         };
-        Some(ConnectionReport {
-            term: self.term(replayed),
-            light_end: self.place(&light_end),
+        RayReport {
+            light_end: self.place(light_end),
             choice: replayed.landing.is_none().then(choice),
             is_visible: replayed.is_visible(),
             transmittance: replayed.transmittance,
             landing: replayed.landing,
-        })
+        }
     }
 }

@@ -1,6 +1,6 @@
 //! The lines of a sample: subpaths, candidates and splats.
 
-use super::super::report::{ConnectionReport, SampleReport, SubpathReport};
+use super::super::report::{SampleReport, SubpathReport, TermReport};
 use super::super::view::Place;
 use super::shapes::{circle, polyline, px, text};
 use super::view::View;
@@ -26,37 +26,39 @@ impl Ray {
     /// Returns all rays of a sample.
     pub(super) fn all(report: &SampleReport) -> Vec<Self> {
         let all = report.candidates.iter().chain(&report.light_image);
-        all.map(|connection| Self::new(report, connection))
-            .collect()
+        all.filter_map(|term| Self::new(report, term)).collect()
     }
 
-    fn new(report: &SampleReport, connection: &ConnectionReport) -> Self {
-        let (term, light_end) = (&connection.term, connection.light_end);
-        let (s, t) = (usize::from(term.s), usize::from(term.t));
-        let z = report.light.vertices.get(s - 1);
-        let y = report.camera.vertices.get(t - 1);
-        let value = luminance(term.value);
-        let prob = connection.choice.as_ref().map(|choice| choice.prob);
+    /// Returns the ray of a term. None: it has none.
+    fn new(report: &SampleReport, term: &TermReport) -> Option<Self> {
+        let ray = term.ray.as_ref()?;
+        let z = report.light.vertices.get(usize::from(term.s) - 1);
+        let y = report.camera.vertices.get(usize::from(term.t) - 1);
+        let (value, prob) = (
+            luminance(term.value),
+            term.choice().map(|choice| choice.prob),
+        );
         let probability = prob.map(|prob| format!(", probability {}", number(prob)));
-        let is_traced = connection.choice.as_ref().map(|choice| choice.is_chosen);
-        Self {
-            class: match (is_traced, connection.is_visible) {
+        Some(Self {
+            class: match (term.choice().map(|choice| choice.is_chosen), ray.is_visible) {
                 (None, true) => "splat",
                 (None, false) => "splat hidden",
                 (Some(false), _) => "untraced",
                 (Some(true), false) => "blocked",
                 (Some(true), true) => "arrives",
             },
-            light_end,
+            light_end: ray.light_end,
             camera_end: y.map_or(report.eye, |y| y.place),
-            is_foreign: z.is_none_or(|z| z.place != light_end),
+            is_foreign: z.is_none_or(|z| z.place != ray.light_end),
             title: format!(
-                "s{s}t{t}: w C = {}{}",
+                "s{}t{}: w C = {}{}",
+                term.s,
+                term.t,
                 number(f64::from(value)),
                 probability.unwrap_or_default()
             ),
             weight: prob.map_or(0.0, |prob| value * prob as f32),
-        }
+        })
     }
 
     /// Returns the line, whose width grows with its weight relative to the largest one. None: both ends are at
