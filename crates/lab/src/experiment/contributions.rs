@@ -16,7 +16,6 @@ use bidir::sampler::{Domain, Sampler};
 use bidir::select::ShadowRays;
 use formats::film::Subject;
 use rayon::prelude::*;
-use std::collections::BTreeMap;
 
 /// The methods and scenes whose contributions are measured.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -71,16 +70,17 @@ pub(super) fn measure(
     let Some(spec) = &experiment.contributions else {
         return Ok(Vec::new());
     };
-    let scenes = scenes.iter();
-    let scenes = scenes.filter(|loaded| is_in(&spec.scenes, &loaded.spec.name));
-    let methods = || {
+    let mut all = Vec::new();
+    for loaded in scenes
+        .iter()
+        .filter(|loaded| is_in(&spec.scenes, &loaded.spec.name))
+    {
         let methods = experiment.methods.iter();
-        methods.filter(|method| spec.methods.contains(&method.name))
-    };
-    let pairs = scenes.flat_map(|loaded| methods().map(move |method| (loaded, method)));
-    pairs
-        .map(|(loaded, method)| of_method(loaded, method, spec.spp))
-        .collect()
+        for method in methods.filter(|method| spec.methods.contains(&method.name)) {
+            all.push(of_method(loaded, method, spec.spp)?);
+        }
+    }
+    Ok(all)
 }
 
 fn of_method(
@@ -91,37 +91,29 @@ fn of_method(
     let settings = loaded.bidirectional(method, "contributions")?;
     let passes = (0..spp).into_par_iter();
     let passes: Vec<_> = passes.map(|pass| terms(loaded, &settings, pass)).collect();
-    let sorted = |which: fn(&[f64; 2]) -> f64| -> Vec<Vec<f64>> {
-        let pass = |terms: &Vec<[f64; 2]>| sorted(terms.iter().map(which).collect());
-        passes.iter().map(pass).collect()
-    };
-    let [weighted, unweighted] = [sorted(|term| term[1]), sorted(|term| term[0])];
     let samples = loaded.subject.view.film().crop.area() as f64;
-    let both = weighted.iter().zip(&unweighted);
-    let pass = |(weighted, unweighted): (&Vec<f64>, &Vec<f64>)| {
-        let numbers = [weighted, unweighted].map(|values| figures(values, samples));
+    let figures = |terms: &[Vec<f64>; 2]| {
+        let numbers = terms.each_ref().map(|values| figures(values, samples));
         let names = FIGURES.iter().map(|name| (*name).to_owned());
         let pairs = names.zip(numbers.concat());
-        pairs
-            .filter(|(_, number)| number.is_finite())
-            .collect::<BTreeMap<_, _>>()
+        pairs.filter(|(_, number)| number.is_finite()).collect()
     };
+    let [weighted, unweighted] = [0, 1].map(|which| {
+        let all: Vec<_> = passes.iter().map(|terms| &terms[which][..]).collect();
+        histogram(&sorted(all.concat()))
+    });
     Ok(Contributions {
         scene: loaded.spec.name.clone(),
         method: method.name.clone(),
-        passes: both.map(pass).collect(),
-        weighted: histogram(&sorted_all(&weighted)),
-        unweighted: histogram(&sorted_all(&unweighted)),
+        passes: passes.iter().map(figures).collect(),
+        weighted,
+        unweighted,
     })
 }
 
 fn sorted(mut values: Vec<f64>) -> Vec<f64> {
     values.sort_unstable_by(f64::total_cmp);
     values
-}
-
-fn sorted_all(passes: &[Vec<f64>]) -> Vec<f64> {
-    sorted(passes.concat())
 }
 
 /// Computes the [`FIGURES`] of the ascending values of `samples` samples.
@@ -140,15 +132,15 @@ fn figures(values: &[f64], samples: f64) -> [f64; FIGURES.len() / 2] {
     ]
 }
 
-/// Takes one sample of every pixel. Returns the terms of all connections, each without and with its weight.
-fn terms(loaded: &LoadedScene<'_>, settings: &Settings, pass: u64) -> Vec<[f64; 2]> {
+/// Takes one sample of every pixel. Returns the terms of all connections, with and without their weights, ascending.
+fn terms(loaded: &LoadedScene<'_>, settings: &Settings, pass: u64) -> [Vec<f64>; 2] {
     let Subject { scene, view, .. } = &loaded.subject;
     let film = view.film();
     let sampler = Sampler::new(settings.sampler, settings.seed);
     let job = Job::of_own_subpaths(scene, view, &settings.path);
     let method = Method::Bdpt(ShadowRays::All.selector(0.0));
     let mut batch = Batch::default();
-    let mut terms = Vec::new();
+    let mut terms: Vec<[f64; 2]> = Vec::new();
     for i in 0..film.crop.area() {
         let pixel = film.crop.pixel(i as usize);
         let camera = sampler.stream(Domain::Camera, i, pass);
@@ -158,11 +150,11 @@ fn terms(loaded: &LoadedScene<'_>, settings: &Settings, pass: u64) -> Vec<[f64; 
         terms.extend(batch.candidates.offered.iter().map(|candidate| {
             let term = &candidate.term;
             let luminance = |value| f64::from(job.lanes.luminance(value));
-            [term.contribution, term.value()].map(luminance)
+            [term.value(), term.contribution].map(luminance)
         }));
     }
     terms.retain(|term| term.iter().all(|c| *c > 0.0 && c.is_finite()));
-    terms
+    [0, 1].map(|which| sorted(terms.iter().map(|term| term[which]).collect()))
 }
 
 /// Returns the quantile `part` of ascending `values`. None: there are no values.
