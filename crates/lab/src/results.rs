@@ -185,6 +185,27 @@ pub struct Record {
     pub image: Option<String>,
 }
 
+/// The names and the seed of a render, which no other render of the experiment has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct RunId<'a> {
+    pub(crate) scene: &'a str,
+    pub(crate) method: &'a str,
+    pub(crate) budget: &'a str,
+    pub(crate) seed: u64,
+}
+
+impl Record {
+    /// Returns the names and the seed of the render.
+    pub(crate) fn run(&self) -> RunId<'_> {
+        RunId {
+            scene: &self.scene,
+            method: &self.method,
+            budget: &self.budget,
+            seed: self.seed,
+        }
+    }
+}
+
 /// The distribution of a method's connection contributions in a scene, before visibility.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Contributions {

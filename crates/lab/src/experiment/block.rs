@@ -8,12 +8,11 @@
 use super::Experiment;
 use super::error::ExperimentError;
 use super::journal::{Journal, RecordsKey};
-use super::loaded_scene::{LoadedScene, Reference};
+use super::loaded_scene::LoadedScene;
 use super::observer::Observer;
-use super::run::{Run, write_image};
+use super::run::{Done, Run};
 use super::run_set::{End, RunSet, Setup, Started, start};
 use crate::image::Pixels;
-use crate::results::Record;
 use formats::scene::Files;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
@@ -58,15 +57,6 @@ pub struct Prepared {
     folder: PathBuf,
 }
 
-/// A finished run.
-#[derive(Clone, Debug)]
-pub struct Done {
-    /// The record.
-    pub record: Record,
-    /// The image. None: the run has not the first seed.
-    pub image: Option<Pixels>,
-}
-
 /// Renders everything except the runs. None: the observer stopped it.
 pub fn prepare(
     experiment: &Experiment,
@@ -98,7 +88,7 @@ pub fn prepare(
 /// Groups the runs without a record into blocks, in order.
 fn blocks(run_set: &RunSet<'_>, journal: &Journal) -> Vec<Block> {
     let mut blocks: Vec<Block> = Vec::new();
-    for (run, _) in run_set.runs().filter(|(run, _)| !journal.has(run)) {
+    for (run, _) in run_set.runs().filter(|(run, _)| !journal.has(run.id())) {
         let block = Block {
             scene: run.scene.spec.name.clone(),
             budget: run.budget.name.clone(),
@@ -127,15 +117,7 @@ impl Prepared {
     /// Errors: the folder meanwhile has records of another experiment, or cannot be written.
     pub fn add(&self, done: Vec<Done>) -> Result<()> {
         let mut journal = Journal::open(&self.folder, &self.key)?;
-        for Done { record, image } in done {
-            if let (Some(name), Some(pixels)) = (&record.image, &image) {
-                write_image(&self.folder.join(name), pixels)?;
-            }
-            if !journal.has_like(&record) {
-                journal.add(record)?;
-            }
-        }
-        Ok(())
+        done.into_iter().try_for_each(|done| journal.add(done))
     }
 }
 
@@ -156,30 +138,21 @@ pub fn render_block(
     let budget = budgets.find(|budget| budget.name == block.budget);
     let (spec, budget) = spec.zip(budget).ok_or_else(missing)?;
     let loaded = LoadedScene::load(experiment, spec, files)?;
-    let reference = Reference {
-        pixels: reference.clone(),
-        words: String::new(),
-        image: None,
-        mse: None,
-    };
     let mut all = Vec::new();
     for name in &block.methods {
         let mut methods = experiment.methods.iter();
         let method = methods.find(|method| method.name == *name);
         let run = Run {
+            experiment,
             scene: &loaded,
             method: method.ok_or_else(missing)?,
             budget,
             seed: block.seed,
         };
-        let Some(rendered) = run.render(experiment.threads, observer)? else {
+        let Some(done) = run.render(reference, observer)? else {
             return Ok(None);
         };
-        let mut record = run.record(&rendered, &reference, &experiment.metrics);
-        let is_first = block.seed == experiment.seeds.first;
-        record.image = is_first.then(|| run.image());
-        let image = is_first.then(|| rendered.pixels());
-        all.push(Done { record, image });
+        all.push(done);
     }
     Ok(Some(all))
 }

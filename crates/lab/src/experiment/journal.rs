@@ -4,10 +4,12 @@
 //! `{"pyramid": ...}` with the figures of strategies. Each line has a checksum. Each write replaces the file.
 
 use super::error::ExperimentError;
+use super::run::{Done, write_image};
 use super::run_set::{Setup, Start};
-use crate::results::{Machine, Pyramid, Record};
+use crate::results::{Machine, Pyramid, Record, RunId};
 use crate::seal::{self, Seal};
 use serde::{Deserialize, Serialize};
+use serde_json::json;
 use std::path::{Path, PathBuf};
 
 type Result<T> = std::result::Result<T, ExperimentError>;
@@ -63,16 +65,21 @@ impl RecordsKey {
     }
 }
 
-/// A line with the figures of strategies.
+/// A line after the first.
 #[derive(Serialize, Deserialize)]
-struct PyramidLine {
-    pyramid: Pyramid,
+#[serde(untagged)]
+enum Line {
+    /// The figures of strategies.
+    Pyramid {
+        pyramid: Pyramid,
+    },
+    Record(Box<Record>),
 }
 
 /// The records of an experiment.
 #[derive(Debug)]
 pub(super) struct Journal {
-    path: PathBuf,
+    folder: PathBuf,
     text: String,
     records: Vec<Record>,
     pyramids: Vec<Pyramid>,
@@ -85,8 +92,8 @@ impl Journal {
             key: key.clone(),
         };
         Self {
-            path: folder.join(FILE),
-            text: line(&head),
+            folder: folder.to_owned(),
+            text: sealed(&head),
             records: Vec::new(),
             pyramids: Vec::new(),
         }
@@ -98,20 +105,17 @@ impl Journal {
     /// or program, whose times would not be comparable.
     pub(super) fn open(folder: &Path, key: &RecordsKey) -> Result<Self> {
         let mut journal = Self::new(folder, key);
-        let bytes = match std::fs::read(&journal.path) {
-            Ok(bytes) => bytes,
-            Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(journal),
-            Err(error) => {
-                let path = journal.path;
-                return Err(ExperimentError::Folder { path, error });
-            }
-        };
-        journal.read(&bytes, folder, key)?;
+        let path = folder.join(FILE);
+        match std::fs::read(&path) {
+            Ok(bytes) => journal.read(&bytes, key)?,
+            Err(error) if error.kind() == std::io::ErrorKind::NotFound => {}
+            Err(error) => return Err(ExperimentError::Folder { path, error }),
+        }
         Ok(journal)
     }
 
     /// Reads the content of the file.
-    fn read(&mut self, bytes: &[u8], folder: &Path, key: &RecordsKey) -> Result<()> {
+    fn read(&mut self, bytes: &[u8], key: &RecordsKey) -> Result<()> {
         let text = std::str::from_utf8(bytes).map_err(|error| {
             let before = bytes.iter().take(error.valid_up_to());
             let line = 1 + before.filter(|byte| **byte == b'\n').count();
@@ -119,26 +123,26 @@ impl Journal {
         })?;
         let mut lines = (1..).zip(text.split_terminator('\n'));
         let (_, head) = lines.next().unwrap_or((1, ""));
-        self.read_head(folder, head, key)?;
+        self.read_head(head, key)?;
         lines.try_for_each(|(number, line)| self.read_line(line, number))
     }
 
     /// Reads the first line.
-    fn read_head(&mut self, folder: &Path, line: &str, key: &RecordsKey) -> Result<()> {
-        let others = || ExperimentError::Mismatch(folder.to_owned());
+    fn read_head(&mut self, line: &str, key: &RecordsKey) -> Result<()> {
+        let folder = self.folder.clone();
+        let others = || ExperimentError::Mismatch(folder.clone());
         if seal::check(line) == Seal::Broken {
             return self.check(line, 1);
         }
         let head: Option<Head> = serde_json::from_str(line).ok();
-        let head = head.filter(|head| head.format == FORMAT);
-        let there = head.ok_or_else(others)?.key;
+        let known = head.filter(|head| head.format == FORMAT);
+        let there = known.ok_or_else(others)?.key;
         self.check(line, 1)?;
         if there.experiment != key.experiment {
             return Err(others());
         }
         let difference = there.difference(key);
         difference.map_or(Ok(()), |difference| {
-            let folder = folder.to_owned();
             Err(ExperimentError::Elsewhere { folder, difference })
         })
     }
@@ -146,12 +150,10 @@ impl Journal {
     /// Reads a line with a record or with figures of strategies.
     fn read_line(&mut self, line: &str, number: usize) -> Result<()> {
         self.check(line, number)?;
-        if let Ok(PyramidLine { pyramid }) = serde_json::from_str(line) {
-            self.pyramids.push(pyramid);
-        } else {
-            let record = serde_json::from_str(line);
-            self.records
-                .push(record.map_err(|_| self.damaged(number, "it is no record"))?);
+        match serde_json::from_str(line) {
+            Ok(Line::Pyramid { pyramid }) => self.pyramids.push(pyramid),
+            Ok(Line::Record(record)) => self.records.push(*record),
+            Err(_) => return Err(self.damaged(number, "it is no record")),
         }
         self.text += line;
         self.text.push('\n');
@@ -168,7 +170,7 @@ impl Journal {
     }
 
     fn damaged(&self, line: usize, reason: &'static str) -> ExperimentError {
-        let path = self.path.clone();
+        let path = self.folder.join(FILE);
         ExperimentError::Damaged { path, line, reason }
     }
 
@@ -184,23 +186,29 @@ impl Journal {
         }
     }
 
-    /// Adds a record.
-    pub(super) fn add(&mut self, record: Record) -> Result<()> {
-        self.text += &line(&record);
+    /// Adds a finished run, and writes its image. A record of the same run stays.
+    pub(super) fn add(&mut self, done: Done) -> Result<()> {
+        let Done { record, image } = done;
+        if let (Some(name), Some(pixels)) = (&record.image, &image) {
+            write_image(&self.folder.join(name), pixels)?;
+        }
+        if self.has(record.run()) {
+            return Ok(());
+        }
+        self.text += &sealed(&record);
         self.records.push(record);
         self.write()
     }
 
     /// Adds figures of strategies.
     pub(super) fn add_pyramid(&mut self, pyramid: Pyramid) -> Result<()> {
-        let found = PyramidLine { pyramid };
-        self.text += &line(&found);
-        self.pyramids.push(found.pyramid);
+        self.text += &sealed(&json!({ "pyramid": pyramid }));
+        self.pyramids.push(pyramid);
         self.write()
     }
 
     fn write(&self) -> Result<()> {
-        formats::file::replace(&self.path, self.text.as_bytes())?;
+        formats::file::replace(&self.folder.join(FILE), self.text.as_bytes())?;
         Ok(())
     }
 
@@ -212,19 +220,14 @@ impl Journal {
         &self.pyramids
     }
 
-    /// Returns true if there is a record of the same run.
-    pub(super) fn has_like(&self, record: &Record) -> bool {
-        let names = |of: &Record| [&of.scene, &of.method, &of.budget].map(String::clone);
-        let is_like = |other: &Record| other.seed == record.seed && names(other) == names(record);
-        self.records.iter().any(is_like)
-    }
-
-    pub(super) fn has(&self, run: &super::run::Run<'_>) -> bool {
-        self.records.iter().any(|record| run.is_of(record))
+    /// Returns true if there is a record of the run.
+    pub(super) fn has(&self, run: RunId<'_>) -> bool {
+        self.records.iter().any(|record| record.run() == run)
     }
 }
 
-fn line(value: &impl Serialize) -> String {
+/// Returns a line with its checksum.
+fn sealed(value: &impl Serialize) -> String {
     let text = serde_json::to_string(value);
     seal::sealed(&text.expect("texts and numbers have a JSON")) + "\n"
 }
@@ -232,7 +235,6 @@ fn line(value: &impl Serialize) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use serde_json::json;
 
     const PLACE: &str = "out";
 
@@ -257,12 +259,12 @@ mod tests {
     /// Writes a journal of two records.
     fn written() -> String {
         let journal = Journal::new(Path::new(PLACE), &key());
-        journal.text + &line(&record(1)) + &line(&record(2))
+        journal.text + &sealed(&record(1)) + &sealed(&record(2))
     }
 
     fn read(bytes: &[u8]) -> Result<Journal> {
         let mut journal = Journal::new(Path::new(PLACE), &key());
-        journal.read(bytes, Path::new(PLACE), &key())?;
+        journal.read(bytes, &key())?;
         Ok(journal)
     }
 

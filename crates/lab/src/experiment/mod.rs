@@ -42,6 +42,7 @@
 pub mod analysis;
 mod block;
 mod builtin;
+mod check;
 pub mod claims;
 pub mod contributions;
 mod description;
@@ -53,6 +54,7 @@ mod journal;
 #[cfg(test)]
 mod keys;
 mod loaded_scene;
+mod machine;
 mod names;
 mod observer;
 mod outputs;
@@ -65,7 +67,7 @@ mod run;
 mod run_set;
 mod settings;
 
-pub use block::{Block, Done, Prepared, PreparedScene, prepare, render_block};
+pub use block::{Block, Prepared, PreparedScene, prepare, render_block};
 pub use builtin::{BUILTIN, Builtin};
 pub use error::{ExperimentError, Fault, Place};
 pub use extent::{Extent, Quick};
@@ -73,6 +75,7 @@ pub use observer::{Event, Observer};
 pub use outputs::check_description;
 pub use page::{PAGE, write_page};
 pub use room::{Lamp, Room};
+pub use run::Done;
 pub use run_set::{End, Outcome, Setup, Start, run};
 pub use settings::{names, texts};
 

@@ -2,7 +2,7 @@
 
 use super::error::ExperimentError;
 use super::loaded_scene::LoadedScene;
-use super::run::Run;
+use super::run::image_name;
 use super::run_set::Setup;
 use super::{Experiment, PAGE, ReferenceSpec, journal, pyramid, reference};
 use formats::outputs::Output;
@@ -59,16 +59,7 @@ fn always(folder: &Path) -> Vec<PathBuf> {
 /// Returns the names of the images of a scene. Only runs with the first seed have images.
 fn images(experiment: &Experiment, loaded: &LoadedScene<'_>) -> Vec<String> {
     let renders = experiment.renders(&loaded.spec.name);
-    let images = renders.map(|(budget, method)| {
-        let seed = experiment.seeds.first;
-        Run {
-            scene: loaded,
-            method,
-            budget,
-            seed,
-        }
-        .image()
-    });
+    let images = renders.map(|(budget, method)| image_name(loaded.spec, budget, method));
     images.collect()
 }
 

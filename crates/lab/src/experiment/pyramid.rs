@@ -15,6 +15,7 @@ use crate::results::{Pyramid, StrategyInfo};
 use bidir::driver::{Budget, Session};
 use bidir::film::Layers;
 use formats::scene::Files;
+use std::path::Path;
 
 type Result<T> = std::result::Result<T, ExperimentError>;
 
@@ -26,11 +27,11 @@ pub(super) fn complete(
     journal: &mut Journal,
     observer: &mut dyn Observer,
 ) -> Result<End> {
-    for run in runs(experiment, scenes, setup) {
-        if journal.pyramids().iter().any(|found| run.is_of(found)) {
+    for run in runs(experiment, scenes) {
+        if run.find(journal).is_some() {
             continue;
         }
-        let Some(found) = run.render_tile(observer)? else {
+        let Some(found) = run.render_tile(&setup.folder, observer)? else {
             return Ok(End::Stopped);
         };
         journal.add_pyramid(found)?;
@@ -43,92 +44,78 @@ pub(super) fn complete(
 pub(super) fn found(
     experiment: &Experiment,
     scenes: &[LoadedScene<'_>],
-    setup: &Setup,
     journal: &Journal,
 ) -> Vec<Pyramid> {
-    let runs = runs(experiment, scenes, setup);
-    let found = runs.filter_map(|run| journal.pyramids().iter().find(|found| run.is_of(found)));
+    let found = runs(experiment, scenes).filter_map(|run| run.find(journal));
     found.cloned().collect()
 }
 
 /// Returns the names of the files with their images, relative to the folder of the results.
 pub(super) fn files(experiment: &Experiment, scenes: &[LoadedScene<'_>]) -> Vec<String> {
-    let Some((spec, _)) = requested(experiment) else {
-        return Vec::new();
-    };
-    let shown = scenes.iter().filter(|loaded| is_shown(spec, loaded));
-    shown.map(file).collect()
-}
-
-/// Returns the name of the file with the images of a scene.
-fn file(loaded: &LoadedScene<'_>) -> String {
-    // No image of a method has this name: those have the budget between two `--`.
-    format!("images/{}--strategies.exr", file_name(&loaded.spec.name))
+    runs(experiment, scenes).map(|run| run.file()).collect()
 }
 
 /// Refuses a method that is not bidirectional in one of the scenes.
 pub(super) fn check(experiment: &Experiment, scenes: &[LoadedScene<'_>]) -> Result<()> {
-    let Some((spec, method)) = requested(experiment) else {
-        return Ok(());
-    };
-    let mut shown = scenes.iter().filter(|loaded| is_shown(spec, loaded));
-    shown.try_for_each(|loaded| loaded.bidirectional(method, "strategies").map(drop))
+    let mut runs = runs(experiment, scenes);
+    runs.try_for_each(|run| run.scene.bidirectional(run.method, "strategies").map(drop))
 }
 
-/// Returns the description's pyramid with its method.
-fn requested(experiment: &Experiment) -> Option<(&PyramidSpec, &MethodSpec)> {
-    let spec = experiment.pyramid.as_ref()?;
-    let mut methods = experiment.methods.iter();
-    Some((spec, methods.find(|method| method.name == spec.method)?))
-}
-
-/// Returns true if the pyramid includes the scene.
-fn is_shown(spec: &PyramidSpec, loaded: &LoadedScene<'_>) -> bool {
-    is_in(&spec.scenes, &loaded.spec.name)
-}
-
+/// Iterates over the scenes of the description's pyramid.
 fn runs<'a>(
     experiment: &'a Experiment,
     scenes: &'a [LoadedScene<'a>],
-    setup: &'a Setup,
 ) -> impl Iterator<Item = PyramidRun<'a>> {
-    let runs = requested(experiment).map(move |(spec, method)| {
-        let scenes = scenes.iter().filter(move |loaded| is_shown(spec, loaded));
-        scenes.map(move |loaded| PyramidRun {
-            experiment,
-            setup,
-            scene: loaded,
-            spec,
-            method,
-        })
-    });
-    runs.into_iter().flatten()
+    experiment.pyramid.iter().flat_map(move |spec| {
+        let mut methods = experiment.methods.iter();
+        let method = methods.find(|method| method.name == spec.method);
+        let is_shown = |loaded: &&LoadedScene<'_>| is_in(&spec.scenes, &loaded.spec.name);
+        let shown = scenes.iter().filter(is_shown);
+        shown
+            .zip(method.into_iter().cycle())
+            .map(move |(scene, method)| PyramidRun {
+                experiment,
+                scene,
+                spec,
+                method,
+            })
+    })
 }
 
 /// A render of the strategies of a method in a scene.
 #[derive(Clone, Copy)]
 struct PyramidRun<'a> {
     experiment: &'a Experiment,
-    setup: &'a Setup,
     scene: &'a LoadedScene<'a>,
     spec: &'a PyramidSpec,
     method: &'a MethodSpec,
 }
 
 impl PyramidRun<'_> {
-    /// Returns true if `found` is the result of this render.
-    fn is_of(&self, found: &Pyramid) -> bool {
-        found.scene == self.scene.spec.name
-            && found.method == self.method.name
-            && found.seed == self.experiment.seeds.first
-            && found.spp == self.spec.spp
+    /// Returns the result of this render in the journal. None: there is none.
+    fn find<'j>(&self, journal: &'j Journal) -> Option<&'j Pyramid> {
+        journal.pyramids().iter().find(|found| {
+            found.scene == self.scene.spec.name
+                && found.method == self.method.name
+                && found.seed == self.experiment.seeds.first
+                && found.spp == self.spec.spp
+        })
+    }
+
+    /// Returns the name of the file with the images.
+    fn file(&self) -> String {
+        // No image of a method has this name: those have the budget between two `--`.
+        format!(
+            "images/{}--strategies.exr",
+            file_name(&self.scene.spec.name)
+        )
     }
 
     /// Renders the scene at most at the size of a tile. None: the observer stopped it.
-    fn render_tile(&self, observer: &mut dyn Observer) -> Result<Option<Pyramid>> {
+    fn render_tile(&self, folder: &Path, observer: &mut dyn Observer) -> Result<Option<Pyramid>> {
         let longest = self.scene.size()[0].max(self.scene.size()[1]);
         if longest <= pyramid::TILE {
-            return self.render(observer);
+            return self.render(folder, observer);
         }
         let resolution = self.scene.subject.view.film().resolution;
         let small = |side: u32| (u64::from(side) * pyramid::TILE as u64 / longest as u64).max(1);
@@ -141,10 +128,10 @@ impl PyramidRun<'_> {
             scene: &loaded,
             ..*self
         }
-        .render(observer)
+        .render(folder, observer)
     }
 
-    fn render(&self, observer: &mut dyn Observer) -> Result<Option<Pyramid>> {
+    fn render(&self, folder: &Path, observer: &mut dyn Observer) -> Result<Option<Pyramid>> {
         let mut settings = self.method.request.apply(&self.scene.settings);
         settings.seed = self.experiment.seeds.first;
         settings.layers = Layers::new(&[], &[], pyramid::VERTICES.into()).with_raw();
@@ -165,10 +152,10 @@ impl PyramidRun<'_> {
         if render.run(&budget, &host, &mut |_| true).is_none() {
             return Ok(None);
         }
-        let images = file(self.scene);
+        let images = self.file();
         let film = render.session.film();
         let developed = pyramid::developed(film);
-        developed.write_exr(&self.setup.folder.join(&images), film.settings(), &[])?;
+        developed.write_exr(&folder.join(&images), film.settings(), &[])?;
         Ok(Some(self.summary(&render.session, images)))
     }
 

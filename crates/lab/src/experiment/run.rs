@@ -1,15 +1,14 @@
 //! One run of an experiment: a render, and its record.
 
 use super::error::ExperimentError;
-use super::loaded_scene::{LoadedScene, Reference};
+use super::loaded_scene::LoadedScene;
 use super::names::file_name;
 use super::observer::{Host, Observer};
-use super::{BudgetSpec, MethodSpec};
+use super::{BudgetSpec, Experiment, MethodSpec, SceneSpec};
 use crate::image::{Pair, Pixels};
 use crate::metric::Metric;
-use crate::results::{BudgetKind, Rays, Record};
+use crate::results::{BudgetKind, Rays, Record, RunId};
 use bidir::driver::{Budget, Progress, Session, Spent};
-use bidir::film::Picture;
 use formats::film::Render;
 use formats::image::{ExrImage, ExrLayer};
 use std::collections::BTreeMap;
@@ -18,21 +17,20 @@ use std::path::Path;
 /// A render of one method in one scene under one budget and seed.
 #[derive(Clone, Copy)]
 pub(super) struct Run<'a> {
+    pub(super) experiment: &'a Experiment,
     pub(super) scene: &'a LoadedScene<'a>,
     pub(super) method: &'a MethodSpec,
     pub(super) budget: &'a BudgetSpec,
     pub(super) seed: u64,
 }
 
-/// A finished render.
-pub(super) struct Rendered {
-    picture: Picture,
-    spp: u64,
-    time: Moment,
-    /// The part of the time before the first pass.
-    training: Moment,
-    rays: Rays,
-    connections_blocked: u64,
+/// A finished run.
+#[derive(Clone, Debug)]
+pub struct Done {
+    /// The record.
+    pub record: Record,
+    /// The image. None: the run has not the first seed.
+    pub image: Option<Pixels>,
 }
 
 /// A time on both clocks of the host. Unit: seconds.
@@ -44,12 +42,12 @@ struct Moment {
 }
 
 impl Run<'_> {
-    /// Renders until the budget is used up. None: the observer stopped it.
+    /// Renders until the budget is used up, and compares the image with `reference`. None: the observer stopped it.
     pub(super) fn render(
         &self,
-        threads: usize,
+        reference: &Pixels,
         observer: &mut dyn Observer,
-    ) -> Result<Option<Rendered>, ExperimentError> {
+    ) -> Result<Option<Done>, ExperimentError> {
         let mut settings = self.method.request.apply(&self.scene.settings);
         settings.seed = self.seed;
         let host = Host::new(observer);
@@ -59,6 +57,7 @@ impl Run<'_> {
             seconds: render.spent.total.as_secs_f64(),
             processor_seconds: processors().zip(begin).map(|(now, begin)| now - begin),
         };
+        let threads = self.experiment.threads;
         let Some(mut render) = self.scene.begin(&settings, threads, &host)? else {
             return Ok(None);
         };
@@ -72,15 +71,44 @@ impl Run<'_> {
         if render.run(&budget, &host, goes_on).is_none() && host.stop().is_asked() {
             return Ok(None);
         }
-        let time = moment(&render);
-        Ok(Some(Rendered {
-            picture: render.session.film().develop(),
+        let times = [training, moment(&render)];
+        Ok(Some(self.done(&render, times, reference)))
+    }
+
+    /// Makes the record of a finished render; `times` are those after training and at the end.
+    fn done(&self, render: &Render, times: [Moment; 2], reference: &Pixels) -> Done {
+        let picture = render.session.film().develop();
+        let image = Pixels {
+            size: [picture.width, picture.height],
+            data: picture.pixels,
+        };
+        let metrics = distances(&image, reference, &self.experiment.metrics);
+        let mse = metrics.get("rmse").map_or(f64::NAN, |rmse| rmse * rmse);
+        let [training, all] = times;
+        let rays = rays(&render.session);
+        let has_image = self.seed == self.experiment.seeds.first;
+        let (scene, method, budget) = (self.scene.spec, self.method, self.budget);
+        let record = Record {
+            scene: scene.name.clone(),
+            method: method.name.clone(),
+            budget: budget.name.clone(),
+            seed: self.seed,
             spp: render.spent.passes,
-            time,
-            training,
-            rays: rays(&render.session),
+            seconds: all.seconds,
+            processor_seconds: all.processor_seconds,
+            training_seconds: Some(training.seconds),
+            training_processor_seconds: training.processor_seconds,
+            rays,
             connections_blocked: render.session.stats().connections_blocked,
-        }))
+            metrics,
+            efficiency_rays: efficiency(mse, rays.total() as f64),
+            efficiency_seconds: efficiency(mse, all.seconds),
+            image: has_image.then(|| image_name(scene, budget, method)),
+        };
+        Done {
+            record,
+            image: has_image.then_some(image),
+        }
     }
 
     /// Returns true if the budget allows another pass.
@@ -107,59 +135,23 @@ impl Run<'_> {
         }
     }
 
-    /// Makes the record of a finished render.
-    pub(super) fn record(
-        &self,
-        rendered: &Rendered,
-        reference: &Reference,
-        metrics: &[Metric],
-    ) -> Record {
-        let metrics = distances(&rendered.picture, reference, metrics);
-        let mse = metrics.get("rmse").map_or(f64::NAN, |rmse| rmse * rmse);
-        Record {
-            scene: self.scene.spec.name.clone(),
-            method: self.method.name.clone(),
-            budget: self.budget.name.clone(),
+    /// Returns the names and the seed that identify the run.
+    pub(super) fn id(&self) -> RunId<'_> {
+        RunId {
+            scene: &self.scene.spec.name,
+            method: &self.method.name,
+            budget: &self.budget.name,
             seed: self.seed,
-            spp: rendered.spp,
-            seconds: rendered.time.seconds,
-            processor_seconds: rendered.time.processor_seconds,
-            training_seconds: Some(rendered.training.seconds),
-            training_processor_seconds: rendered.training.processor_seconds,
-            rays: rendered.rays,
-            connections_blocked: rendered.connections_blocked,
-            metrics,
-            efficiency_rays: efficiency(mse, rendered.rays.total() as f64),
-            efficiency_seconds: efficiency(mse, rendered.time.seconds),
-            image: None,
         }
-    }
-
-    /// Returns true if `record` is of this run.
-    pub(super) fn is_of(&self, record: &Record) -> bool {
-        record.seed == self.seed
-            && record.scene == self.scene.spec.name
-            && record.method == self.method.name
-            && record.budget == self.budget.name
-    }
-
-    /// Returns the name of the run's image, relative to the folder of the results.
-    pub(super) fn image(&self) -> String {
-        let names = [&self.scene.spec.name, &self.budget.name, &self.method.name];
-        let [scene, budget, method] = names.map(|name| file_name(name));
-        // No part contains two hyphens in a row, so different names give different files.
-        format!("images/{scene}--{budget}--{method}.exr")
     }
 }
 
-impl Rendered {
-    pub(super) fn pixels(&self) -> Pixels {
-        pixels(&self.picture)
-    }
-
-    pub(super) fn write(&self, path: &Path) -> Result<(), ExperimentError> {
-        write_image(path, &pixels(&self.picture))
-    }
+/// Returns the name of the image of runs, relative to the folder of the results.
+pub(super) fn image_name(scene: &SceneSpec, budget: &BudgetSpec, method: &MethodSpec) -> String {
+    let names = [&scene.name, &budget.name, &method.name];
+    // No part contains two hyphens in a row, so different names give different files.
+    let [scene, budget, method] = names.map(|name| file_name(name));
+    format!("images/{scene}--{budget}--{method}.exr")
 }
 
 /// Computes 1 / (MSE · cost): zero if the error is unknown, the largest number if it is zero.
@@ -184,27 +176,15 @@ fn rays(session: &Session<'_>) -> Rays {
 }
 
 /// Computes the metrics by name. Leaves out values that are not finite, as JSON cannot hold them.
-fn distances(
-    picture: &Picture,
-    reference: &Reference,
-    metrics: &[Metric],
-) -> BTreeMap<String, f64> {
-    let image = pixels(picture);
-    let Some(pair) = Pair::new(&image, &reference.pixels) else {
+fn distances(image: &Pixels, reference: &Pixels, metrics: &[Metric]) -> BTreeMap<String, f64> {
+    let Some(pair) = Pair::new(image, reference) else {
         return BTreeMap::new();
     };
     let is_included = |metric| metric == Metric::Rmse || metrics.contains(&metric);
     let names = Metric::NAMES.into_iter();
-    let names = names.filter(|(_, metric)| is_included(*metric));
-    let values = names.map(|(name, metric)| (name.to_owned(), metric.value(&pair)));
+    let included = names.filter(|(_, metric)| is_included(*metric));
+    let values = included.map(|(name, metric)| (name.to_owned(), metric.value(&pair)));
     values.filter(|(_, value)| value.is_finite()).collect()
-}
-
-fn pixels(picture: &Picture) -> Pixels {
-    Pixels {
-        size: [picture.width, picture.height],
-        data: picture.pixels.clone(),
-    }
 }
 
 /// Writes an image as EXR.

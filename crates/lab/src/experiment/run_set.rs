@@ -10,15 +10,13 @@ use super::outputs;
 use super::pyramid;
 use super::reference;
 use super::run::Run;
-use super::settings::{no_effect, texts};
-use super::{Absent, Experiment, MethodSpec, contributions};
+use super::settings::texts;
+use super::{Absent, Experiment, Seeds, check, contributions};
 use crate::results::{BudgetInfo, FORMAT, Machine, MethodInfo, Record, Results};
-use bidir::analysis::{LostLight, lost_light};
-use bidir::scene::Isa;
 use formats::scene::Files;
 use std::collections::BTreeMap;
 use std::fmt::Write;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 type Result<T> = std::result::Result<T, ExperimentError>;
 
@@ -76,7 +74,7 @@ pub fn run(experiment: &Experiment, setup: &Setup, observer: &mut dyn Observer) 
         End::Stopped => End::Stopped,
     };
     let mut results = run_set.results(journal.records());
-    results.pyramids = pyramid::found(experiment, &run_set.scenes, setup, journal);
+    results.pyramids = pyramid::found(experiment, &run_set.scenes, journal);
     results.contributions = contributions::measure(experiment, &run_set.scenes)?;
     for Absent { name, reason } in &run_set.absent {
         let _ = write!(
@@ -91,11 +89,18 @@ pub fn run(experiment: &Experiment, setup: &Setup, observer: &mut dyn Observer) 
     for warning in overruns(&results) {
         observer.notify(Event::Warning(&warning));
     }
-    write_results(&setup.folder, &results)?;
+    let file = setup.folder.join(outputs::RESULTS);
+    formats::file::replace(&file, json(&results).as_bytes())?;
     Ok(Outcome {
         end,
         results: Some(results),
     })
+}
+
+/// Returns the content of `results.json`.
+fn json(results: &Results) -> String {
+    let text = serde_json::to_string_pretty(results);
+    text.expect("texts and numbers have a JSON") + "\n"
 }
 
 /// An experiment before its first run.
@@ -125,20 +130,20 @@ pub(super) fn start<'a>(
         return Err(ExperimentError::NoScenes(absent.reason.clone()));
     }
     let load = |spec| LoadedScene::load(experiment, spec, &Files::default());
-    let scenes = experiment.scenes.iter().map(load);
-    let scenes = scenes.collect::<Result<Vec<_>>>()?;
+    let loaded = experiment.scenes.iter().map(load);
+    let scenes = loaded.collect::<Result<Vec<_>>>()?;
     for warning in scenes.iter().flat_map(|loaded| &loaded.read.warnings) {
         observer.notify(Event::Warning(warning));
     }
-    check_strategies(experiment, &scenes, observer)?;
+    check::methods(experiment, &scenes, observer)?;
     pyramid::check(experiment, &scenes)?;
-    let given = scenes.iter().map(reference::given);
-    let given = given.collect::<Result<Vec<_>>>()?;
+    let references = scenes.iter().map(reference::given);
+    let given = references.collect::<Result<Vec<_>>>()?;
     outputs::check(experiment, &scenes, setup)?;
     let key = RecordsKey {
         experiment: identity(experiment, &scenes, &given),
         program: setup.program.clone(),
-        machine: machine(experiment, setup),
+        machine: setup.machine(experiment),
     };
     let mut journal = Journal::start(setup, &key)?;
     let obtained = reference::obtain_all(experiment, scenes, given, setup, observer)?;
@@ -154,75 +159,6 @@ pub(super) fn start<'a>(
     }))
 }
 
-/// Refuses methods whose strategies make no path in a scene. Warns of methods that lose light, once for all
-/// methods that lose the same light.
-fn check_strategies(
-    experiment: &Experiment,
-    scenes: &[LoadedScene<'_>],
-    observer: &mut dyn Observer,
-) -> Result<()> {
-    let mut losses: Vec<(String, Vec<&str>)> = Vec::new();
-    for method in &experiment.methods {
-        let scenes = scenes.iter();
-        for loaded in scenes.filter(|loaded| loaded.has(experiment, method)) {
-            check_effect(method, loaded)?;
-            let Some(text) = loss(method, loaded)? else {
-                continue;
-            };
-            match losses.iter_mut().find(|(known, _)| *known == text) {
-                Some((_, methods)) => methods.push(&method.name),
-                None => losses.push((text, vec![&method.name])),
-            }
-        }
-    }
-    for (text, mut methods) in losses {
-        methods.dedup();
-        let others = match methods.len() - 1 {
-            0 => String::new(),
-            1 => " and another".to_owned(),
-            others => format!(" and {others} others"),
-        };
-        let warning = format!("method `{}`{others}: {text}", methods[0]);
-        observer.notify(Event::Warning(&warning));
-    }
-    Ok(())
-}
-
-/// Describes the light that a method loses in a scene. None: it loses none.
-///
-/// Errors: its strategies make no path.
-fn loss(method: &MethodSpec, loaded: &LoadedScene<'_>) -> Result<Option<String>> {
-    let settings = method.request.apply(&loaded.settings);
-    let path = &settings.path;
-    let Some(lost) = lost_light(
-        &loaded.subject.scene,
-        &loaded.subject.view,
-        settings.integrator,
-        path,
-    ) else {
-        return Ok(None);
-    };
-    let text = format!("strategies {} {lost}", path.strategies);
-    if matches!(lost, LostLight::All { .. }) {
-        return Err(loaded.refusal(method, text, None));
-    }
-    Ok(Some(text))
-}
-
-/// Refuses a setting of the method that has no effect on the scene file's integrator.
-fn check_effect(method: &MethodSpec, loaded: &LoadedScene<'_>) -> Result<()> {
-    let request = &method.request;
-    let integrator = loaded.settings.integrator;
-    match request.ignored(&loaded.settings).first() {
-        Some(name) if request.integrator.is_none() => {
-            let text = format!("{}, which the scene sets", no_effect(name, integrator));
-            let hint = "set `integrator` in [settings] or in the method";
-            Err(loaded.refusal(method, text, Some(hint)))
-        }
-        _ => Ok(()),
-    }
-}
-
 impl Absent {
     /// Warns that the scene is left out.
     pub(super) fn warn(&self, observer: &mut dyn Observer) {
@@ -233,43 +169,14 @@ impl Absent {
     }
 }
 
-impl Machine {
-    /// The processor's name if the system gives none.
-    pub const UNKNOWN: &'static str = "unknown";
-
-    /// Describes this machine; [`run`] fills in the number of threads.
-    pub fn here() -> Self {
-        let processor = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
-        let model = processor.lines().find_map(|line| {
-            let (name, value) = line.split_once(':')?;
-            (name.trim() == "model name").then(|| value.trim().to_owned())
-        });
-        Self {
-            processor: model.unwrap_or_else(|| Self::UNKNOWN.to_owned()),
-            isa: Isa::detect().name().to_owned(),
-            system: format!("{} {}", std::env::consts::OS, std::env::consts::ARCH),
-            threads: 0,
+impl Setup {
+    /// Returns the machine with the experiment's number of threads.
+    fn machine(&self, experiment: &Experiment) -> Machine {
+        Machine {
+            threads: experiment.threads,
+            ..self.machine.clone()
         }
     }
-}
-
-/// Returns the machine with the experiment's number of threads.
-fn machine(experiment: &Experiment, setup: &Setup) -> Machine {
-    Machine {
-        threads: experiment.threads,
-        ..setup.machine.clone()
-    }
-}
-
-/// Writes `results.json` into the folder of the results.
-fn write_results(folder: &Path, results: &Results) -> Result<()> {
-    formats::file::replace(&folder.join(outputs::RESULTS), json(results).as_bytes())?;
-    Ok(())
-}
-
-fn json(results: &Results) -> String {
-    let text = serde_json::to_string_pretty(results);
-    text.expect("texts and numbers have a JSON") + "\n"
 }
 
 /// All runs of an experiment.
@@ -286,14 +193,15 @@ pub(super) struct RunSet<'a> {
 impl RunSet<'_> {
     /// Iterates over all runs in order, each with its reference.
     pub(super) fn runs(&self) -> impl Iterator<Item = (Run<'_>, &Reference)> {
-        let seeds = self.experiment.seeds;
-        let seeds = seeds.first..seeds.first + seeds.count;
-        seeds.flat_map(move |seed| {
+        let experiment = self.experiment;
+        let Seeds { first, count } = experiment.seeds;
+        (first..first + count).flat_map(move |seed| {
             let scenes = self.scenes.iter().zip(&self.references);
             scenes.flat_map(move |(scene, reference)| {
-                let renders = self.experiment.renders(&scene.spec.name);
+                let renders = experiment.renders(&scene.spec.name);
                 renders.map(move |(budget, method)| {
                     let run = Run {
+                        experiment,
                         scene,
                         method,
                         budget,
@@ -312,20 +220,14 @@ impl RunSet<'_> {
             of: self.runs().count(),
         });
         for (run, reference) in self.runs() {
-            if journal.has(&run) {
+            if journal.has(run.id()) {
                 continue;
             }
-            let Some(rendered) = run.render(self.experiment.threads, observer)? else {
+            let Some(done) = run.render(&reference.pixels, observer)? else {
                 return Ok(End::Stopped);
             };
-            let mut record = run.record(&rendered, reference, &self.experiment.metrics);
-            if run.seed == self.experiment.seeds.first {
-                let image = run.image();
-                rendered.write(&self.setup.folder.join(&image))?;
-                record.image = Some(image);
-            }
-            observer.notify(Event::Record(&record));
-            journal.add(record)?;
+            observer.notify(Event::Record(&done.record));
+            journal.add(done)?;
         }
         Ok(End::Complete)
     }
@@ -343,7 +245,7 @@ impl RunSet<'_> {
             title: experiment.title.clone(),
             description: experiment.description.clone(),
             program: setup.program.clone(),
-            machine: machine(experiment, setup),
+            machine: setup.machine(experiment),
             scenes: scenes
                 .map(|(loaded, reference)| loaded.info(reference))
                 .collect(),
@@ -360,7 +262,7 @@ impl RunSet<'_> {
     fn ordered(&self, records: &[Record]) -> Vec<Record> {
         let record = |(run, _): (Run<'_>, _)| {
             let mut records = records.iter();
-            records.find(|record| run.is_of(record)).cloned()
+            records.find(|record| record.run() == run.id()).cloned()
         };
         self.runs().filter_map(record).collect()
     }
