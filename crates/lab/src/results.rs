@@ -3,6 +3,7 @@
 //! A [`Record`] describes one render; a [`Claim`] states a conclusion from records, with its tables and
 //! plots. Names are unique within their list, and records refer to them.
 
+use crate::statistics::Interval;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -342,14 +343,7 @@ pub enum Cell {
     /// A number.
     Number(f64),
     /// A number with its confidence interval.
-    Interval {
-        /// The estimate.
-        value: f64,
-        /// The lower end.
-        low: f64,
-        /// The upper end.
-        high: f64,
-    },
+    Interval(Interval),
 }
 
 /// The scale of an axis.
@@ -412,4 +406,19 @@ pub struct Series {
     pub points: Vec<[f64; 2]>,
     /// Lower and upper end of y for each point; empty if unknown.
     pub intervals: Vec<[f64; 2]>,
+}
+
+/// A point of a curve, with the interval of y if it is known.
+pub(crate) type Point = ([f64; 2], Option<[f64; 2]>);
+
+impl Series {
+    /// Makes a curve, with intervals if all points have them.
+    pub(crate) fn new(name: &str, points: &[Point]) -> Self {
+        let intervals: Option<Vec<_>> = points.iter().map(|(_, interval)| *interval).collect();
+        Self {
+            name: name.to_owned(),
+            points: points.iter().map(|(point, _)| *point).collect(),
+            intervals: intervals.unwrap_or_default(),
+        }
+    }
 }

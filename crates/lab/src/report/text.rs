@@ -2,6 +2,7 @@
 
 use crate::number::number;
 use crate::results::{Cell, Table};
+use crate::statistics::Interval;
 use formats::printable;
 
 /// Formats a table in columns, with its caption. All texts are [`printable`].
@@ -29,7 +30,7 @@ fn cell(cell: &Cell) -> String {
     match cell {
         Cell::Text(text) => printable(text).into_owned(),
         Cell::Number(value) => number(*value),
-        Cell::Interval { value, low, high } => {
+        Cell::Interval(Interval { value, low, high }) => {
             format!("{} [{}, {}]", number(*value), number(*low), number(*high))
         }
     }
@@ -48,11 +49,11 @@ mod tests {
                 vec![Cell::Text("a longer name".into()), Cell::Number(2.0)],
                 vec![
                     Cell::Text("b".into()),
-                    Cell::Interval {
+                    Cell::Interval(Interval {
                         value: 1.5,
                         low: 1.25,
                         high: 1.75,
-                    },
+                    }),
                 ],
             ],
         };

@@ -1,9 +1,10 @@
 //! The mean of independent values, with its confidence interval.
 
 use super::t_quantile;
+use serde::{Deserialize, Serialize};
 
 /// A value between two bounds.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Interval {
     /// The estimate.
     pub value: f64,

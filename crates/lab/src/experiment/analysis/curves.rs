@@ -2,7 +2,9 @@
 
 use super::super::claims::{Findings, Measure};
 use super::{CONFIDENCE, metrics, quantity};
-use crate::results::{Axis, BudgetInfo, BudgetKind, Plot, PlotKind, Scale, SceneInfo, Series};
+use crate::results::{
+    Axis, BudgetInfo, BudgetKind, Plot, PlotKind, Point, Scale, SceneInfo, Series,
+};
 use crate::statistics::mean_interval;
 
 /// Plots each metric over each kind of budget that has several amounts.
@@ -38,9 +40,6 @@ struct Axes<'a> {
     metric: Measure,
 }
 
-/// A point of a curve, with the interval of y if it is known.
-type Point = ([f64; 2], Option<[f64; 2]>);
-
 impl Axes<'_> {
     fn plot(&self, budgets: &[&BudgetInfo]) -> Plot {
         let methods = self.findings.results.methods.iter();
@@ -58,13 +57,7 @@ impl Axes<'_> {
         let points = budgets.iter();
         let mut points: Vec<Point> = points.filter_map(|b| self.point(b, method)).collect();
         points.sort_by(|(a, _), (b, _)| a[0].total_cmp(&b[0]));
-        // All or none: the list of intervals is empty or as long as that of points.
-        let intervals: Option<Vec<_>> = points.iter().map(|(_, interval)| *interval).collect();
-        Series {
-            name: method.to_owned(),
-            points: points.iter().map(|(point, _)| *point).collect(),
-            intervals: intervals.unwrap_or_default(),
-        }
+        Series::new(method, &points)
     }
 
     /// Computes mean cost and mean error, with the interval of the latter. None: no record has the metric.

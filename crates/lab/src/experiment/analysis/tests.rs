@@ -1,6 +1,7 @@
 use super::*;
 use crate::experiment::Experiment;
 use crate::results::{BudgetKind, MethodInfo, Rays};
+use crate::statistics::Interval;
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -65,7 +66,7 @@ fn results(seeds: u64) -> Results {
 
 #[track_caller]
 fn check_interval(cell: &Cell, expected: f64) {
-    let Cell::Interval { value, low, high } = cell else {
+    let Cell::Interval(Interval { value, low, high }) = cell else {
         panic!("{cell:?}");
     };
     for number in [value, low, high] {
@@ -90,7 +91,7 @@ fn ratios_are_paired_by_seed() {
     assert_eq!(means.columns, heads);
     assert_eq!(means.rows.len(), 2);
     assert_eq!(means.rows[1][2], Cell::Number(20.0));
-    let Cell::Interval { value, low, high } = means.rows[0][4] else {
+    let Cell::Interval(Interval { value, low, high }) = means.rows[0][4] else {
         panic!("{means:?}");
     };
     assert!((value - 5.5 / 3.0 / 64.0).abs() < 1e-12 && low < 0.0 && high > 0.05);

@@ -84,33 +84,34 @@ impl<'a> Findings<'a> {
         }
     }
 
-    /// Returns seed, number and divisor in a scene, for the seeds that have both numbers.
-    pub(super) fn pairs(&self, of: &Quantity, scene: &str) -> Vec<(u64, f64, f64)> {
-        let own = self.values(of, scene, &of.method);
-        let other = match &of.over {
-            Over::Nothing | Over::MeanInterval => own.keys().map(|seed| (*seed, 1.0)).collect(),
-            Over::Number(number) => own.keys().map(|seed| (*seed, *number)).collect(),
-            Over::Method(method) => self.values(of, scene, method),
+    /// Returns the ratios of number and divisor in a scene by seed, for the seeds that have both numbers.
+    pub(super) fn ratios(&self, of: &Quantity, scene: &str) -> BySeed {
+        let divisors = match &of.over {
+            Over::Method(method) => Some(self.values(of, scene, method)),
+            _ => None,
         };
-        let pair = |(seed, value): (&u64, &f64)| Some((*seed, *value, *other.get(seed)?));
-        own.iter().filter_map(pair).collect()
+        let divisor = |seed: &u64| match (&of.over, &divisors) {
+            (Over::Number(number), _) => Some(*number),
+            (_, Some(divisors)) => divisors.get(seed).copied(),
+            (_, None) => Some(1.0),
+        };
+        let own = self.values(of, scene, &of.method).into_iter();
+        let ratios = own.filter_map(|(seed, value)| Some((seed, value / divisor(&seed)?)));
+        ratios.collect()
     }
 
     /// Computes the geometric mean of the ratio over seeds, with its interval. None: fewer than two seeds have
-    /// the ratio, or a number is not positive.
+    /// the ratio, or one is not positive.
     pub(super) fn interval(&self, of: &Quantity, confidence: f64) -> Option<Interval> {
-        let own = self.pairs(of, &of.scene);
-        let Some(than) = &of.than else {
-            let (a, b): (Vec<_>, Vec<_>) = own.into_iter().map(|(_, a, b)| (a, b)).unzip();
-            return ratio_interval(&a, &b, confidence);
-        };
+        let own = self.ratios(of, &of.scene);
         // Renders of different scenes are independent, so pairing them by seed is harmless.
-        let ratios = self.pairs(of, than).into_iter();
-        let other: BySeed = ratios.map(|(seed, a, b)| (seed, a / b)).collect();
-        let both = own.into_iter();
-        let both = both.filter_map(|(seed, a, b)| Some((a / b, *other.get(&seed)?)));
-        let (a, b): (Vec<_>, Vec<_>) = both.unzip();
-        ratio_interval(&a, &b, confidence)
+        let others = of.than.as_ref().map(|than| self.ratios(of, than));
+        let ratio = |(seed, ratio): (u64, f64)| match &others {
+            Some(others) => Some(ratio / others.get(&seed)?),
+            None => Some(ratio),
+        };
+        let ratios: Vec<f64> = own.into_iter().filter_map(ratio).collect();
+        ratio_interval(&ratios, confidence)
     }
 
     /// Returns the number for each seed, without the divisor.

@@ -2,6 +2,7 @@
 
 use super::{CellSpec, Measure, PlotSpec, TableSpec};
 use crate::results::{Axis, Cell, Contributions, Plot, PlotKind, Scale, Series, Table};
+use crate::statistics::Interval;
 
 /// Plots columns of a table as curves.
 pub(super) fn curves(spec: &PlotSpec, table: &Table) -> Plot {
@@ -17,14 +18,13 @@ pub(super) fn curves(spec: &PlotSpec, table: &Table) -> Plot {
 
 /// Makes the curve of column `y` over column `x`, with intervals if all numbers of `y` have them.
 fn curve(table: &Table, x: usize, y: usize) -> Series {
-    let point = |row: &Vec<Cell>| Some((number(&row[x])?.0, number(&row[y])?));
+    let point = |row: &Vec<Cell>| {
+        let (x, _) = number(&row[x])?;
+        let (y, interval) = number(&row[y])?;
+        Some(([x, y], interval))
+    };
     let points: Vec<_> = table.rows.iter().filter_map(point).collect();
-    let intervals: Option<Vec<_>> = points.iter().map(|(_, (_, interval))| *interval).collect();
-    Series {
-        name: table.columns[y].clone(),
-        points: points.iter().map(|(x, (y, _))| [*x, *y]).collect(),
-        intervals: intervals.unwrap_or_default(),
-    }
+    Series::new(&table.columns[y], &points)
 }
 
 /// Returns the number of a cell, with its interval. None: it is a text.
@@ -32,7 +32,7 @@ fn number(cell: &Cell) -> Option<(f64, Option<[f64; 2]>)> {
     match cell {
         Cell::Text(_) => None,
         Cell::Number(number) => Some((*number, None)),
-        Cell::Interval { value, low, high } => Some((*value, Some([*low, *high]))),
+        Cell::Interval(Interval { value, low, high }) => Some((*value, Some([*low, *high]))),
     }
 }
 

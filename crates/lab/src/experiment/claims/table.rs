@@ -4,7 +4,7 @@ use super::plot::{curves, histogram};
 use super::{CellSpec, Findings, Over, Quantity, TableSpec};
 use crate::experiment::analysis::CONFIDENCE;
 use crate::results::{Cell, Plot, Table};
-use crate::statistics::{Interval, mean_interval};
+use crate::statistics::mean_interval;
 
 impl Findings<'_> {
     /// Adds a table and its plots; rows without a measured number are left out.
@@ -49,27 +49,20 @@ impl Findings<'_> {
             Over::Method(method) if is_itself(method) => self.mean(of).map(|_| Cell::Number(1.0)),
             Over::Nothing if of.than.is_none() => self.mean(of).map(Cell::Number),
             Over::MeanInterval => mean_interval(&self.numbers(of), CONFIDENCE)
-                .map(Cell::from)
+                .map(Cell::Interval)
                 .or_else(|| self.mean(of).map(Cell::Number)),
             _ => self
                 .interval(of, CONFIDENCE)
-                .map(Cell::from)
+                .map(Cell::Interval)
                 .or_else(|| self.single_ratio(of).map(Cell::Number)),
         };
         found.unwrap_or_else(|| Cell::Text("–".to_owned()))
     }
 
-    /// Returns the ratio of the only seed. None: there are no seeds or several, or the divisor is not positive.
+    /// Returns the ratio of the only seed. None: there are no seeds or several, or the divisor is 0.
     fn single_ratio(&self, of: &Quantity) -> Option<f64> {
-        match self.pairs(of, &of.scene)[..] {
-            [(_, value, divisor)] if divisor > 0.0 && of.than.is_none() => Some(value / divisor),
-            _ => None,
-        }
-    }
-}
-
-impl From<Interval> for Cell {
-    fn from(Interval { value, low, high }: Interval) -> Self {
-        Self::Interval { value, low, high }
+        let mut ratios = self.ratios(of, &of.scene).into_values();
+        let ratio = ratios.next().filter(|ratio| ratio.is_finite())?;
+        (ratios.len() == 0 && of.than.is_none()).then_some(ratio)
     }
 }

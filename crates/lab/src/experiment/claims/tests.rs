@@ -286,7 +286,7 @@ plot = { x = "n", curves = ["in A"], label = "error", log = "y" }
         panic!("`two` was not rendered: {table:?}");
     };
     assert_eq!(row[..2], [Cell::Number(1.0), Cell::Number(4.0)]);
-    assert!(matches!(row[2], Cell::Interval { value, .. } if (value - 0.5).abs() < 0.01));
+    assert!(matches!(row[2], Cell::Interval(found) if (found.value - 0.5).abs() < 0.01));
     assert_eq!(row[3], Cell::Text("–".to_owned()));
     let series = &plots[0].series[0];
     assert_eq!((series.points.len(), series.intervals.len()), (1, 1));
