@@ -78,8 +78,8 @@ impl Checkpoint {
 
 /// Returns the failure to continue from the film that the flags name.
 pub(crate) fn mismatch(args: &LongArgs, error: &OpenError) -> Failure {
-    let path = args.checkpoint.as_deref().map(scene_io::target_of);
-    let path = path.unwrap_or_default();
+    let target = args.checkpoint.as_deref().map(scene_io::target_of);
+    let path = target.unwrap_or_default();
     let name = path.display();
     let (message, hint) = match error {
         OpenError::Beyond(passes) => (

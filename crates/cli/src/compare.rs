@@ -48,8 +48,8 @@ fn files(args: &CompareArgs) -> Result<(&[PathBuf], &Path), Failure> {
         (Some(reference), images) => (images, reference),
         (None, [image, reference]) => (std::slice::from_ref(image), reference),
         (None, images) => {
-            let names = images.iter().map(|image| format!("`{}`", image.display()));
-            let names: Vec<_> = names.collect();
+            let quoted = images.iter().map(|image| format!("`{}`", image.display()));
+            let names: Vec<_> = quoted.collect();
             let message = format!("nothing to compare {} with", names.join(", "));
             let hint = "name one image and its reference, or any number of images and --reference";
             return Err(Failure::usage(message).with_hint(hint));
@@ -78,7 +78,7 @@ fn compare_all(
 ) -> Result<Vec<Comparison>, Failure> {
     let reference = Noisy::reference(name)?;
     let (mut images, mut warnings) = (Vec::new(), Vec::new());
-    let comparisons = paths.iter().map(|path| {
+    let compared = paths.iter().map(|path| {
         let image = Noisy::read(path)?;
         let comparison = compare(args, &image, &reference)?;
         // Intervals over several images do not assume independent pixels.
@@ -89,7 +89,7 @@ fn compare_all(
         images.push(image);
         Ok(comparison)
     });
-    let comparisons = comparisons.collect();
+    let comparisons = compared.collect();
     for warning in &warnings {
         console.warning(warning);
     }

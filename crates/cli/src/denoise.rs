@@ -107,9 +107,11 @@ pub(crate) fn run(args: &DenoiseArgs) -> Result<Exit, Failure> {
     let mut normals = NORMALS
         .iter()
         .filter_map(|(name, channels)| Some((*name, layers.triples(*channels)?)));
-    let normal = normals.next().filter(|_| albedo.is_some());
-    let names = albedo.iter().map(|_| "Albedo");
-    let names: Vec<_> = names.chain(normal.iter().map(|(name, _)| *name)).collect();
+    let named_normal = normals.next().filter(|_| albedo.is_some());
+    let albedo_name = albedo.iter().map(|_| "Albedo");
+    let names: Vec<_> = albedo_name
+        .chain(named_normal.iter().map(|(name, _)| *name))
+        .collect();
     if names.len() < 2 {
         say(format_args!(
             "note: `bidir render --aov albedo,shading-normal` gives an image the layers Albedo and Ns, which \
@@ -117,7 +119,7 @@ pub(crate) fn run(args: &DenoiseArgs) -> Result<Exit, Failure> {
         ));
     }
     let filter = Filter::load(args.threads)?;
-    let normal = normal.as_ref().map(|(_, normal)| normal.as_slice());
+    let normal = named_normal.as_ref().map(|(_, normal)| normal.as_slice());
     let clean = filter.apply(layers.size(), &noisy, albedo.as_deref(), normal)?;
     let by = filter.description(&names);
     if format == Format::Png {

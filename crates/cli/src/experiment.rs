@@ -90,8 +90,8 @@ fn read(args: &ExperimentArgs) -> Result<Experiment, Failure> {
 
 /// Reads a description from a file. Errors: results in `folder` would replace it.
 fn described(file: &Path, folder: &Path) -> Result<Experiment, Failure> {
-    let text = std::fs::read_to_string(file);
-    let text = text.map_err(|error| unreadable(file, &error))?;
+    let read = std::fs::read_to_string(file);
+    let text = read.map_err(|error| unreadable(file, &error))?;
     let experiment = Experiment::read(&text, file).map_err(failure)?;
     experiment::check_description(file, folder).map_err(failure)?;
     Ok(experiment)
@@ -118,8 +118,8 @@ fn unreadable(file: &Path, error: &std::io::Error) -> Failure {
 
 /// Suggests an existing file for a missing description.
 fn other_file(file: &Path) -> String {
-    let listed = Path::new("experiments").join(file).with_extension("toml");
-    let listed = Some(listed).filter(|listed| listed.is_file());
+    let standard = Path::new("experiments").join(file).with_extension("toml");
+    let listed = Some(standard).filter(|listed| listed.is_file());
     match listed.or_else(|| scene_io::nearest_file(file)) {
         Some(near) => format!("did you mean `{}`?", near.display()),
         None => "name `paper`, `beyond` or a .toml file".to_owned(),

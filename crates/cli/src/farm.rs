@@ -54,9 +54,9 @@ pub(crate) fn run(command: &FarmCommand) -> Result<Exit, Failure> {
 /// Checks the command line of a part, in which no flag may select other passes or another film.
 fn check_part(args: &FarmArgs) -> Result<(), Failure> {
     let own = ["--part=1/2", "--checkpoint=a.film", "--resume"];
-    let words = ["bidir", "render", &args.scene].into_iter().chain(own);
+    let before = ["bidir", "render", &args.scene].into_iter().chain(own);
     let flags = args.flags.iter().map(String::as_str);
-    let words: Vec<_> = words.chain(flags).map(OsString::from).collect();
+    let words: Vec<_> = before.chain(flags).map(OsString::from).collect();
     Cli::check(&words)
 }
 
@@ -64,8 +64,8 @@ fn check_part(args: &FarmArgs) -> Result<(), Failure> {
 /// not replaced.
 fn filled(template: &str, args: &FarmArgs, name: &str) -> String {
     let spp = args.spp.map(|spp| ["--spp".to_owned(), spp.to_string()]);
-    let flags = spp.iter().flatten().chain(&args.flags);
-    let flags: Vec<_> = flags.map(|flag| " ".to_owned() + &quote(flag)).collect();
+    let given = spp.iter().flatten().chain(&args.flags);
+    let flags: Vec<_> = given.map(|flag| " ".to_owned() + &quote(flag)).collect();
     let pieces = template.split("{{").map(|piece| {
         let Some((placeholder, after)) = piece.split_once("}}") else {
             return piece.to_owned();

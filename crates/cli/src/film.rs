@@ -34,7 +34,7 @@ fn print_header(header: &FilmHeader) -> Result<Exit, Failure> {
     let [width, height] = header.resolution;
     let passes = format!("{} ({})", header.passes, header.passes.len());
     let film = format!("{width} x {height} pixels, {left},{top} to {right},{bottom}");
-    let lines = [
+    let values = [
         ("passes", passes),
         ("film", film),
         ("scene", header.scene.clone()),
@@ -43,10 +43,10 @@ fn print_header(header: &FilmHeader) -> Result<Exit, Failure> {
         ("stopped", header.stopping.name().to_owned()),
         ("time", format!("{:.1} s", header.seconds)),
     ];
-    let lines = lines.map(|(name, value)| format!("{name:10}{}\n", printable(&value)));
+    let lines = values.map(|(name, value)| format!("{name:10}{}\n", printable(&value)));
     let settings = header.settings.clone().into_iter();
-    let texts = settings.chain(formats::film::counts_by_name(header));
-    let texts = texts.map(|(name, value)| {
+    let counted = settings.chain(formats::film::counts_by_name(header));
+    let texts = counted.map(|(name, value)| {
         let [name, value] = [&name, &value].map(|text| printable(text));
         format!("  {name:21}{value}\n")
     });
@@ -115,9 +115,9 @@ pub(crate) fn merge(args: &MergeArgs) -> Result<Exit, Failure> {
     if let Some(image) = &args.image {
         write_image(image, &all.header, &all.film)?;
     }
-    let written = [Some(&args.output), args.image.as_ref()];
-    let written = written.into_iter().flatten();
-    let written: Vec<_> = written.map(|path| path.display().to_string()).collect();
+    let paths = [Some(&args.output), args.image.as_ref()];
+    let existing = paths.into_iter().flatten();
+    let written: Vec<_> = existing.map(|path| path.display().to_string()).collect();
     let known = match known {
         0 => String::new(),
         known => format!(", {known} of them merged before"),
@@ -183,8 +183,8 @@ fn check_outputs(args: &MergeArgs) -> Result<(), Failure> {
     }
     let image = image.as_deref().map(|image| ("--image", image));
     let written: Vec<_> = [("--output", &**output)].into_iter().chain(image).collect();
-    let others = args.files.iter();
-    let others = others.filter(|file| !scene_io::is_same(file, output));
+    let files = args.files.iter();
+    let others = files.filter(|file| !scene_io::is_same(file, output));
     scene_io::check_apart(others, &written)?;
     for (flag, file) in written {
         output::check_file(flag, file)?;
@@ -237,8 +237,8 @@ fn held(files: &[PathBuf], console: Console) -> Result<PassSet, Failure> {
                 continue;
             }
         };
-        let first = first.get_or_insert_with(|| header.clone());
-        if let Some(difference) = header.difference(first) {
+        let expected = first.get_or_insert_with(|| header.clone());
+        if let Some(difference) = header.difference(expected) {
             let message = format!(
                 "{} is the film of another render: {difference}",
                 file.display()
@@ -254,13 +254,13 @@ fn held(files: &[PathBuf], console: Console) -> Result<PassSet, Failure> {
 pub(crate) fn missing(args: &MissingArgs, console: Console) -> Result<Exit, Failure> {
     let held = held(&args.files, console)?;
     let lacking = PassSet::from(0..args.spp).difference(&held);
-    let parts = (0..args.parts.unwrap_or(0)).filter_map(|index| {
+    let lacking_parts = (0..args.parts.unwrap_or(0)).filter_map(|index| {
         let of = args.parts?;
         let part = PassSet::from(Part { index, of }.range(args.spp));
         let is_missing = !part.intersection(&lacking).is_empty();
         is_missing.then(|| format!("{index}/{of}"))
     });
-    let parts: Vec<_> = parts.collect();
+    let parts: Vec<_> = lacking_parts.collect();
     let ranges = lacking.ranges().iter();
     let passes: Vec<_> = ranges
         .map(|range| format!("{}..{}", range.start, range.end))

@@ -37,8 +37,8 @@ pub(crate) fn run(args: &InfoArgs, console: Console) -> Result<Exit, Failure> {
         console.warning(warning);
     }
     scene_io::check_strict(&args.scene, loaded.warnings.len())?;
-    let lines = lines(&info, &loaded).into_iter();
-    let lines = lines.map(|(name, value)| format!("{name:<12} {}\n", printable(&value)));
+    let pairs = lines(&info, &loaded).into_iter();
+    let lines = pairs.map(|(name, value)| format!("{name:<12} {}\n", printable(&value)));
     print(&lines.collect::<String>())
 }
 
@@ -52,10 +52,10 @@ fn contents(loaded: &Loaded) -> Value {
         _ => 0,
     });
     let blind_spots = IntegratorKind::NAMES.map(|(name, integrator)| {
-        let spots = blind_spots(scene, view, integrator).into_iter();
+        let found = blind_spots(scene, view, integrator).into_iter();
         // Paths that are not missing are only noisy.
         let spots =
-            spots.map(|spot| json!({"missing": spot.is_missing(), "paths": spot.description()}));
+            found.map(|spot| json!({"missing": spot.is_missing(), "paths": spot.description()}));
         (name, spots.collect::<Vec<_>>())
     });
     json!({
@@ -102,8 +102,8 @@ fn short(number: f32) -> Value {
 /// Returns the lowest and highest corner of a box around all surfaces. None: the scene has no surface.
 fn bounds(scene: &Scene) -> Option<[[f32; 3]; 2]> {
     let bounds = scene.bvh().bounds();
-    let corners = [bounds.min, bounds.max];
-    let corners = corners.map(|p| scene.space().world_point(p).as_vec3().to_array());
+    let ends = [bounds.min, bounds.max];
+    let corners = ends.map(|p| scene.space().world_point(p).as_vec3().to_array());
     (scene.placed_primitives() > 0).then_some(corners)
 }
 
@@ -119,11 +119,11 @@ fn count<'a>(names: impl Iterator<Item = &'a str>) -> BTreeMap<&'a str, usize> {
 /// Returns the contents of a scene as lines of name and text.
 fn lines(info: &Value, loaded: &Loaded) -> Vec<(String, String)> {
     let properties = properties(info, loaded).map(|(name, text)| (name.to_owned(), text));
-    let spots = info["blind_spots"].as_object();
+    let listed = info["blind_spots"].as_object();
     let spots =
-        spots.map(|spots| blind_spot_lines(spots, loaded.settings.render_settings().integrator));
-    let refused = loaded.refused.iter();
-    let refused = refused.map(|text| ("refused".to_owned(), text.clone()));
+        listed.map(|spots| blind_spot_lines(spots, loaded.settings.render_settings().integrator));
+    let features = loaded.refused.iter();
+    let refused = features.map(|text| ("refused".to_owned(), text.clone()));
     let lines = properties.into_iter().chain(spots.unwrap_or_default());
     lines.chain(refused).collect()
 }
@@ -182,8 +182,8 @@ fn settings(loaded: &Loaded) -> [String; 2] {
 
 /// Returns the number of groups, and each with its number of lights.
 fn groups(counts: &Value) -> String {
-    let groups = counts.as_object().into_iter().flatten();
-    let groups = groups.map(|(name, count)| {
+    let pairs = counts.as_object().into_iter().flatten();
+    let groups = pairs.map(|(name, count)| {
         let lights = if *count == 1 { "light" } else { "lights" };
         format!("{name} ({count} {lights})")
     });

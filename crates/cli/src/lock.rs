@@ -30,8 +30,8 @@ impl FilmLock {
         }
         let name = beside(&film, ".lock");
         let mut options = OpenOptions::new();
-        let file = options.write(true).create(true).truncate(false).open(&name);
-        let file = file.map_err(|error| Failure::io(&name, "write", &error))?;
+        let opened = options.write(true).create(true).truncate(false).open(&name);
+        let file = opened.map_err(|error| Failure::io(&name, "write", &error))?;
         match file.try_lock() {
             Ok(()) => {}
             Err(TryLockError::WouldBlock) => return Err(taken(&film)),

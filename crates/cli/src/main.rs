@@ -53,15 +53,15 @@ fn main() -> ExitCode {
 
 /// Reports a failure, and returns the exit code.
 fn ended(result: Result<Exit, Failure>, console: Console) -> ExitCode {
-    let exit = match result {
+    let own = match result {
         Ok(exit) => exit,
         Err(failure) => {
             console.failure(&failure);
             failure.exit()
         }
     };
-    let lost = console::lost().filter(|_| exit == Exit::Done);
-    let exit = lost.map_or(exit, |failure| {
+    let lost = console::lost().filter(|_| own == Exit::Done);
+    let exit = lost.map_or(own, |failure| {
         console.failure(&failure);
         failure.exit()
     });

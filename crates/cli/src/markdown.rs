@@ -64,8 +64,8 @@ fn all(command: &Command) -> Vec<(String, &Command)> {
         .filter(|command| command.get_name() != "help");
     let with_its_own = visible.flat_map(|command| {
         let name = command.get_name();
-        let below = all(command).into_iter();
-        let below = below.map(move |(path, command)| (format!("{name} {path}"), command));
+        let commands = all(command).into_iter();
+        let below = commands.map(move |(path, command)| (format!("{name} {path}"), command));
         std::iter::once((name.to_owned(), command)).chain(below)
     });
     with_its_own.collect()
@@ -76,33 +76,33 @@ type Tables<'a> = BTreeMap<(String, String), &'a str>;
 
 /// Returns the section of a command.
 fn section<'a>(path: &'a str, command: &Command, tables: &mut Tables<'a>) -> String {
-    let long = command.get_long_about().or(command.get_about());
-    let long = long.map(ToString::to_string).unwrap_or_default();
+    let about = command.get_long_about().or(command.get_about());
+    let long = about.map(ToString::to_string).unwrap_or_default();
     let paragraphs = long.split("\n\n").map(|paragraph| {
         let example = paragraph.strip_prefix("For example: ").map(code);
         let text = example.map_or_else(|| ended(paragraph), |code| format!("For example: {code}"));
         format!("\n{text}\n")
     });
     let usage = command.clone().render_usage().to_string();
-    let usages = usage
+    let lines = usage
         .lines()
         .map(|line| code(line.trim_start_matches("Usage:").trim()));
-    let usages = usages.collect::<Vec<_>>().join(" or ");
+    let usages = lines.collect::<Vec<_>>().join(" or ");
     let mut parts = vec![format!("\n## bidir {path}\n")];
     parts.extend(paragraphs);
     parts.push(format!("\nUsage: {usages}\n"));
     for (heading, args) in by_heading(command) {
         parts.push(table(path, heading, &args, tables));
     }
-    let examples = command.get_after_long_help().or(command.get_after_help());
-    let examples = examples.map(ToString::to_string);
+    let help = command.get_after_long_help().or(command.get_after_help());
+    let examples = help.map(ToString::to_string);
     parts.extend(examples.map(|text| format!("\n```text\n{}\n```\n", text.trim_end())));
     parts.concat()
 }
 
 /// Returns the table of arguments of the command `path`, or a link to an earlier command with the same table.
 fn table<'a>(path: &'a str, heading: &str, args: &[&Arg], tables: &mut Tables<'a>) -> String {
-    let rows = args.iter().map(|arg| {
+    let lines = args.iter().map(|arg| {
         let (meaning, default) = meaning(arg);
         let variable = arg.get_env().map(|name| code(&name.to_string_lossy()));
         row(&[
@@ -112,7 +112,7 @@ fn table<'a>(path: &'a str, heading: &str, args: &[&Arg], tables: &mut Tables<'a
             &meaning,
         ])
     });
-    let rows: String = rows.collect();
+    let rows: String = lines.collect();
     let first = *tables
         .entry((heading.to_owned(), rows.clone()))
         .or_insert(path);
@@ -146,8 +146,8 @@ fn link(path: &str) -> String {
 
 /// Returns all environment variables with their meanings.
 fn variables(commands: &[(String, &Command)]) -> BTreeMap<String, String> {
-    let alone = VARIABLES.lines().filter_map(|line| line.split_once(' '));
-    let alone = alone.map(|(name, effect)| (name.to_owned(), effect.to_owned()));
+    let pairs = VARIABLES.lines().filter_map(|line| line.split_once(' '));
+    let alone = pairs.map(|(name, effect)| (name.to_owned(), effect.to_owned()));
     let mut variables: BTreeMap<String, String> = alone.collect();
     for (path, command) in commands {
         for arg in command.get_arguments() {
@@ -164,8 +164,8 @@ fn variables(commands: &[(String, &Command)]) -> BTreeMap<String, String> {
 
 /// Returns the name of an argument in a table: `-o`, `--output <FILE>`.
 fn name(arg: &Arg) -> String {
-    let names = arg.get_value_names().unwrap_or_default();
-    let names = names.iter().filter(|_| arg.get_action().takes_values());
+    let given = arg.get_value_names().unwrap_or_default();
+    let names = given.iter().filter(|_| arg.get_action().takes_values());
     let values: Vec<_> = names.map(|name| format!(" <{name}>")).collect();
     let long = arg.get_long().map(|long| format!("--{long}"));
     let name = code((long.unwrap_or_default() + &values.concat()).trim());
@@ -176,24 +176,24 @@ fn name(arg: &Arg) -> String {
 /// Returns the meaning of an argument, and its default, which the help text has in brackets.
 fn meaning(arg: &Arg) -> (String, String) {
     let text = one_line(arg.get_long_help().or(arg.get_help()));
-    let bracket = text.split_once(" [default: ");
-    let bracket = bracket.and_then(|(before, rest)| {
+    let parts = text.split_once(" [default: ");
+    let bracket = parts.and_then(|(before, rest)| {
         let (default, after) = rest.split_once(']')?;
         Some((format!("{before}{after}"), default.to_owned()))
     });
     let is_shown = !arg.is_hide_default_value_set();
-    let defaults = arg.get_default_values().iter().filter(|_| is_shown);
-    let defaults = in_code(arg, defaults.map(|value| value.to_string_lossy()));
+    let given = arg.get_default_values().iter().filter(|_| is_shown);
+    let defaults = in_code(arg, given.map(|value| value.to_string_lossy()));
     let (meaning, default) = bracket.unwrap_or((text, defaults));
-    let values = in_code(
+    let named = in_code(
         arg,
         arg.get_possible_values()
             .iter()
             .map(PossibleValue::get_name),
     );
     let meaning = ended(&meaning);
-    let values = Some(values).filter(|values| !values.is_empty());
-    let values = values.map(|values| format!(" Values: {values}."));
+    let some = Some(named).filter(|values| !values.is_empty());
+    let values = some.map(|values| format!(" Values: {values}."));
     (meaning + &values.unwrap_or_default(), default)
 }
 

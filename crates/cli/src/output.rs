@@ -49,8 +49,8 @@ impl Outputs {
 
     /// Returns all files, each with the flag that names it.
     fn files(&self) -> impl Iterator<Item = (&'static str, &Path)> {
-        let images = self.exr.iter().chain(&self.png);
-        let images = images.map(|file| ("--output", file));
+        let files = self.exr.iter().chain(&self.png);
+        let images = files.map(|file| ("--output", file));
         let stats = self.stats.iter().map(|file| ("--stats", file));
         let pyramid = self.pyramid.iter().map(|file| ("--pyramid", file));
         let all = images.chain(stats).chain(pyramid);
@@ -70,13 +70,13 @@ impl Outputs {
             pyramid::make_folder(folder)?;
         }
         let film = args.long.checkpoint.as_deref();
-        let films = film.map(lock::files).unwrap_or_default();
-        let films = films.iter().map(|file| ("--checkpoint", file.as_path()));
+        let kept = film.map(lock::files).unwrap_or_default();
+        let films = kept.iter().map(|file| ("--checkpoint", file.as_path()));
         let all: Vec<_> = self.files().chain(films).collect();
         scene_io::check_apart(inputs, &all)?;
         film.map_or(Ok(()), check_film_name)?;
-        let film = film.map(|film| ("--checkpoint", film));
-        let mut named = self.files().chain(film);
+        let flagged = film.map(|film| ("--checkpoint", film));
+        let mut named = self.files().chain(flagged);
         named.try_for_each(|(flag, file)| check_file(flag, file))
     }
 

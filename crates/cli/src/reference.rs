@@ -21,8 +21,8 @@ use std::time::Instant;
 pub(crate) fn run(args: &ReferenceArgs, console: Console) -> Result<Exit, Failure> {
     let signals = Signals::watch()?;
     threads::start(args.threads.count, console);
-    let folder = args.output.clone();
-    let folder = folder.unwrap_or_else(|| output::named_after(&args.scene.scene, ".reference"));
+    let given = args.output.clone();
+    let folder = given.unwrap_or_else(|| output::named_after(&args.scene.scene, ".reference"));
     let earlier = args.extend.map(|_| Provenance::read(&folder)).transpose()?;
     check_folder(&folder)?;
     let film = earlier.as_ref().map_or_else(|| args.film.clone(), film_of);
@@ -98,8 +98,8 @@ fn check_folder(folder: &Path) -> Result<(), Failure> {
 
 /// Refuses a folder in which the reference would replace files that the scene reads.
 fn check_apart(folder: &Path, loaded: &Loaded) -> Result<(), Failure> {
-    let written = reference::files(folder);
-    let written = written.iter().map(|file| ("--output", file.as_path()));
+    let files = reference::files(folder);
+    let written = files.iter().map(|file| ("--output", file.as_path()));
     scene_io::check_apart(&loaded.inputs, &written.collect::<Vec<_>>())
 }
 

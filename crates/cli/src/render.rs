@@ -29,8 +29,8 @@ pub(crate) fn run(args: &RenderArgs, console: Console) -> Result<Exit, Failure> 
     let signals = Signals::watch()?;
     threads::start_for_render(args.threads.count, console);
     // Checks that need no scene come before loading, which may take long.
-    let filter = args.layers.denoise.then(|| Filter::load(args.threads));
-    let filter = filter.transpose()?;
+    let opened = args.layers.denoise.then(|| Filter::load(args.threads));
+    let filter = opened.transpose()?;
     let (checkpoint, earlier) = if args.replay.is_none() {
         Outputs::named(args)?.check(args, std::slice::from_ref(&args.scene.scene))?;
         Checkpoint::open(&args.long)?
@@ -38,8 +38,8 @@ pub(crate) fn run(args: &RenderArgs, console: Console) -> Result<Exit, Failure> 
         replay::check(args)?;
         (None, None)
     };
-    let listener = args.serve.map(|address| serve::bind(address, 0));
-    let listener = listener.transpose()?;
+    let bound = args.serve.map(|address| serve::bind(address, 0));
+    let listener = bound.transpose()?;
     let start = Instant::now();
     let Some(loaded) = scene_io::load_until(&signals, &args.scene, Some(&args.film))? else {
         return Ok(stopped(&signals, earlier.is_some(), console));

@@ -15,8 +15,8 @@ use std::ops::Range;
 pub(crate) fn warn_unused(args: &RenderArgs, settings: &Settings, console: Console) -> usize {
     let integrator = format!("on the integrator `{}`", settings.integrator);
     let spp = args.budget.spp.filter(|_| args.long.passes.is_some());
-    let ignored = args.estimator.ignored(settings).into_iter();
-    let ignored = ignored.map(|name| (name, &*integrator));
+    let names = args.estimator.ignored(settings).into_iter();
+    let ignored = names.map(|name| (name, &*integrator));
     ignored
         .chain(spp.map(|_| ("spp".to_owned(), "where --passes is given")))
         .map(|(name, on)| {

@@ -46,8 +46,8 @@ const FOLDER: &str = "scenes";
 
 /// Returns the embedded scenes, without access to the disk.
 pub(crate) fn files() -> Files {
-    let files = SCENES.into_iter().chain(PARTS).chain(MESHES);
-    let files = files.map(|(name, bytes)| (path(name), Arc::from(bytes)));
+    let embedded = SCENES.into_iter().chain(PARTS).chain(MESHES);
+    let files = embedded.map(|(name, bytes)| (path(name), Arc::from(bytes)));
     Files::only(files.collect::<InMemory>())
 }
 

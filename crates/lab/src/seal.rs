@@ -43,8 +43,8 @@ pub(crate) fn check(object: &str) -> Seal {
         return Seal::Missing;
     };
     let is_whole = before.trim_end().strip_suffix(',').is_some_and(|body| {
-        let sum = after.trim().strip_prefix(':').map(str::trim_start);
-        let sum = sum.and_then(|sum| sum.strip_suffix('}'));
+        let member = after.trim().strip_prefix(':').map(str::trim_start);
+        let sum = member.and_then(|sum| sum.strip_suffix('}'));
         sum.is_some_and(|sum| sum.trim_end() == format!("\"{}\"", sha256(body.as_bytes())))
     });
     if is_whole { Seal::Whole } else { Seal::Broken }

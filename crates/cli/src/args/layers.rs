@@ -80,9 +80,9 @@ impl LayerArgs {
             AovName::One(aov) => vec![*aov],
         });
         let own = own_aovs.iter().copied().filter(|_| self.aov.is_empty());
-        let aovs = requested.chain(own);
+        let chosen = requested.chain(own);
         let guides = [Aov::Albedo, Aov::ShadingNormal];
-        let aovs = aovs.chain(guides.into_iter().filter(|_| self.denoise));
+        let aovs = chosen.chain(guides.into_iter().filter(|_| self.denoise));
         let light_groups = if self.light_groups { light_groups } else { &[] };
         let default = self.pyramid.as_ref().map_or(0, |_| pyramid::VERTICES);
         let vertices = self.strategy_layers.unwrap_or(default).into();

@@ -80,8 +80,8 @@ fn flag_of(argument: &str) -> &str {
 /// itself.
 fn near(error: &Error, command: &Command) -> Option<String> {
     let mut kinds = [ContextKind::SuggestedArg, ContextKind::SuggestedSubcommand].into_iter();
-    let near = kinds.find_map(|kind| texts(error, kind).into_iter().next())?;
-    let name = near.strip_prefix("--").unwrap_or_default();
+    let suggested = kinds.find_map(|kind| texts(error, kind).into_iter().next())?;
+    let name = suggested.strip_prefix("--").unwrap_or_default();
     let has_alias = |arg: &&Arg| {
         arg.get_all_aliases()
             .is_some_and(|names| names.contains(&name))
@@ -90,7 +90,7 @@ fn near(error: &Error, command: &Command) -> Option<String> {
         .get_arguments()
         .find(has_alias)
         .and_then(Arg::get_long);
-    let near = flag.map_or(near.clone(), |flag| format!("--{flag}"));
+    let near = flag.map_or(suggested.clone(), |flag| format!("--{flag}"));
     Some(format!("did you mean `{near}`?"))
 }
 
@@ -100,10 +100,10 @@ fn hint_at_flag(flag: &str, command: &Command, root: &Command) -> Option<String>
         let mut arguments = command.get_arguments();
         arguments.any(|arg| arg.get_long().is_some() && arg.get_long() == flag.strip_prefix("--"))
     };
-    let elsewhere = ELSEWHERE
+    let known = ELSEWHERE
         .into_iter()
         .filter_map(|line| line.split_once(": "));
-    let mut elsewhere = elsewhere.filter(|_| has(command, "--size"));
+    let mut elsewhere = known.filter(|_| has(command, "--size"));
     let of_flag = |(flags, _): &(&str, &str)| flags.split(' ').any(|name| name == flag);
     if let Some((_, hint)) = elsewhere.find(of_flag) {
         return Some(hint.to_owned());

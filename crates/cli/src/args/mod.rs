@@ -61,8 +61,8 @@ pub(crate) struct Cli {
 /// Returns the name and version of the program, its estimator version (only films with the same one can be merged),
 /// and the commit, if `BIDIR_COMMIT` was set when the program was built.
 fn version() -> String {
-    let commit = option_env!("BIDIR_COMMIT").filter(|commit| !commit.is_empty());
-    let commit = commit.map_or_else(String::new, |commit| format!(", commit {commit}"));
+    let hash = option_env!("BIDIR_COMMIT").filter(|commit| !commit.is_empty());
+    let commit = hash.map_or_else(String::new, |commit| format!(", commit {commit}"));
     let program = formats::film::program();
     format!("{program} (estimator version {ESTIMATOR_VERSION}{commit})\n")
 }

@@ -24,8 +24,8 @@ pub(crate) fn count<T: TryFrom<u64>>(
     range: RangeInclusive<u64>,
 ) -> impl Fn(&str) -> Result<T, String> + Clone + Send + Sync + 'static {
     move |text: &str| {
-        let number = whole_number(text).filter(|number| range.contains(number));
-        let number = number.and_then(|number| T::try_from(number).ok());
+        let whole = whole_number(text).filter(|number| range.contains(number));
+        let number = whole.and_then(|number| T::try_from(number).ok());
         number.ok_or_else(|| format!("expected {}", whole_numbers(&range)))
     }
 }
@@ -36,8 +36,7 @@ fn whole_number(text: &str) -> Option<u64> {
     if let Ok(number) = text.parse() {
         return Some(number);
     }
-    let units = [('k', 1e3), ('K', 1e3), ('M', 1e6), ('G', 1e9)];
-    let mut units = units.into_iter();
+    let mut units = [('k', 1e3), ('K', 1e3), ('M', 1e6), ('G', 1e9)].into_iter();
     let found = units.find_map(|(letter, unit)| Some((text.strip_suffix(letter)?, unit)));
     let (number, unit) = found.unwrap_or((text, 1.0));
     let value = number.parse::<f64>().ok()? * unit;
@@ -91,8 +90,8 @@ pub(crate) fn positive_number(text: &str) -> Result<f64, String> {
             percent / 100.0
         ));
     }
-    let number = text.trim().parse::<f64>().ok();
-    let number = number.filter(|number| *number > 0.0 && number.is_finite());
+    let parsed = text.trim().parse::<f64>().ok();
+    let number = parsed.filter(|number| *number > 0.0 && number.is_finite());
     number.ok_or_else(|| "expected a number above 0, such as 0.01".into())
 }
 

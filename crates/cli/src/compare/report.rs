@@ -66,8 +66,8 @@ fn as_map<T: Serialize, S: Serializer>(
 
 /// Refuses images that were compared at different sizes.
 fn check_sizes(comparisons: &[Comparison], files: &[PathBuf]) -> Result<(), Failure> {
-    let sized = comparisons.iter().zip(files);
-    let sized: Vec<_> = sized
+    let both = comparisons.iter().zip(files);
+    let sized: Vec<_> = both
         .filter_map(|(one, file)| Some((file, one.size?)))
         .collect();
     let mut pairs = sized.windows(2).map(|pair| (pair[0], pair[1]));
@@ -87,8 +87,8 @@ impl Replicates {
         check_sizes(comparisons, files)?;
         let sizes: Vec<_> = comparisons.iter().filter_map(|one| one.size).collect();
         let spread = |i: usize| {
-            let values = comparisons.iter().map(|comparison| comparison.numbers[i].1);
-            let values: Vec<f64> = values.collect::<Option<_>>()?;
+            let given = comparisons.iter().map(|comparison| comparison.numbers[i].1);
+            let values: Vec<f64> = given.collect::<Option<_>>()?;
             let Interval { value, low, high } = mean_interval(&values, CONFIDENCE)?;
             Some(Spread {
                 mean: value,
@@ -98,8 +98,8 @@ impl Replicates {
             })
         };
         let all_have_one = sizes.len() == comparisons.len();
-        let names = comparisons.first().map_or(&[][..], |one| &one.numbers);
-        let names = names.iter().enumerate();
+        let first = comparisons.first().map_or(&[][..], |one| &one.numbers);
+        let names = first.iter().enumerate();
         Ok(Self {
             numbers: names.map(|(i, (name, _))| (*name, spread(i))).collect(),
             identical: comparisons.iter().all(|one| one.identical),
@@ -142,8 +142,8 @@ impl Replicates {
 impl Comparison {
     /// Returns one value per line.
     pub(super) fn text(&self) -> String {
-        let numbers = self.numbers.iter();
-        let numbers = numbers.map(|(name, value)| (*name, number_text(name, *value)));
+        let measured = self.numbers.iter();
+        let numbers = measured.map(|(name, value)| (*name, number_text(name, *value)));
         let tests = self.significance.as_ref().map(|found| {
             let pixels = ("z_pixels", noise::text(&found.pixels));
             [pixels, ("z_blocks", noise::text(&found.blocks))]
@@ -173,10 +173,10 @@ fn columns(
     resampled: Option<&str>,
     size: Option<[usize; 2]>,
 ) -> String {
-    let resampled = resampled.zip(size);
-    let resampled = resampled.map(|(which, [w, h])| ("resampled", format!("{which} to {w}x{h}")));
-    let lines = lines.into_iter().chain(resampled);
-    let lines = lines.map(|(name, value)| format!("{name:<12} {value}\n"));
+    let change = resampled.zip(size);
+    let resampled = change.map(|(which, [w, h])| ("resampled", format!("{which} to {w}x{h}")));
+    let all = lines.into_iter().chain(resampled);
+    let lines = all.map(|(name, value)| format!("{name:<12} {value}\n"));
     lines.collect()
 }
 

@@ -61,9 +61,9 @@ fn histogram(plot: &Plot) -> String {
             .points
             .iter()
             .find(|point| (point[0] - edge).abs() < 1e-9);
-        let length = point.map_or(0.0, |point| BAR * point[1] / highest);
+        let exact = point.map_or(0.0, |point| BAR * point[1] / highest);
         // A bin that is not empty has at least one character.
-        let length = if length > 0.0 { length.max(1.0) } else { 0.0 };
+        let length = if exact > 0.0 { exact.max(1.0) } else { 0.0 };
         Cell::Text("#".repeat(length.round() as usize))
     };
     let row = |edge: f64| {

@@ -47,8 +47,8 @@ pub(super) fn run(
 /// Waits until the other program has ended. Ctrl-C reaches both programs; SIGTERM only this one.
 fn wait(mut child: Child, signals: &Signals) -> Result<Exit, Failure> {
     loop {
-        let status = child.try_wait();
-        let status = status.map_err(|error| missing("python3", &error.to_string()))?;
+        let polled = child.try_wait();
+        let status = polled.map_err(|error| missing("python3", &error.to_string()))?;
         if let Some(status) = status {
             return Ok(Exit::of_code(status.code()));
         }

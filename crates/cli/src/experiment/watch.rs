@@ -108,8 +108,8 @@ impl Observer for Watch<'_> {
             Event::Begin { done, of } => self.begin([done, of]),
             Event::Record(record) => {
                 self.done += 1;
-                let what = format!("{}, {}, {}", record.scene, record.budget, record.method);
-                let what = format!("{} ({what}, seed {})", self.count(), record.seed);
+                let render = format!("{}, {}, {}", record.scene, record.budget, record.method);
+                let what = format!("{} ({render}, seed {})", self.count(), record.seed);
                 self.show(part(self.done, self.of), &what);
             }
         }

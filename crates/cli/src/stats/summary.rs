@@ -61,13 +61,13 @@ impl Summary {
 
     /// Returns a line with samples, time and error, and one with the plan of `auto` and limited training, if any.
     pub(crate) fn lines(&self) -> Vec<String> {
-        let plan = self.plan.as_ref();
-        let plan = plan.map(|plan| format!("auto chose {}", describe(plan)));
+        let chosen = self.plan.as_ref();
+        let plan = chosen.map(|plan| format!("auto chose {}", describe(plan)));
         let trained = self.trained.map(|samples| {
             format!("training was limited to {samples} samples, a tenth of the time")
         });
-        let training: Vec<_> = plan.into_iter().chain(trained).collect();
-        let training = Some(training.join("; ")).filter(|line| !line.is_empty());
+        let parts: Vec<_> = plan.into_iter().chain(trained).collect();
+        let training = Some(parts.join("; ")).filter(|line| !line.is_empty());
         std::iter::once(self.samples()).chain(training).collect()
     }
 
@@ -79,8 +79,8 @@ impl Summary {
             None => format!("{} samples per pixel", self.passes),
         };
         let part = self.part.as_ref().map(|part| format!(" (passes {part})"));
-        let crop = self.crop;
-        let crop = crop.map(|[width, height]| format!(" of a crop of {width}x{height} pixels"));
+        let size = self.crop;
+        let crop = size.map(|[width, height]| format!(" of a crop of {width}x{height} pixels"));
         let run = match self.rendered {
             0 => ", all of them from the checkpoint".to_owned(),
             rendered if rendered < self.passes => format!(", {rendered} of them in {time}"),
@@ -91,10 +91,10 @@ impl Summary {
         } else {
             ""
         };
-        let error = self.error.map(two_digits);
-        let error = error.map(|error| format!(", relative error {error}{noisy}"));
+        let digits = self.error.map(two_digits);
+        let known = digits.map(|error| format!(", relative error {error}{noisy}"));
         let lacks = format!(", no relative error below {LEAST_PASSES} samples");
-        let error = error.or_else(|| self.lacks_error.then_some(lacks));
+        let error = known.or_else(|| self.lacks_error.then_some(lacks));
         let parts = [Some(count), part, crop, Some(run), error];
         parts.into_iter().flatten().collect()
     }
@@ -108,7 +108,7 @@ fn describe(plan: &Plan) -> String {
     let samples = plan.samples_per_subpath.get();
     let has_own_lights = is_lvc && plan.next_events != CandidateCount::NEXT_EVENTS;
     let has_own = plan.roulette != plan.integrator.roulette();
-    let flags = [
+    let given = [
         Some(format!("--integrator {name}")),
         is_lvc.then(|| format!("--candidates {candidates}")),
         has_own_lights.then(|| format!("--next-events {}", plan.next_events)),
@@ -116,7 +116,7 @@ fn describe(plan: &Plan) -> String {
         is_lvc.then(|| format!("--samples-per-subpath {samples}")),
         has_own.then(|| format!("--path-roulette {}", plan.roulette)),
     ];
-    let flags: Vec<_> = flags.into_iter().flatten().collect();
+    let flags: Vec<_> = given.into_iter().flatten().collect();
     flags.join(" ")
 }
 

@@ -70,8 +70,8 @@ pub fn prepare(
     };
     let run_set = started.run_set;
     let blocks = blocks(&run_set, &started.journal);
-    let scenes = run_set.scenes.iter().zip(run_set.references);
-    let scenes = scenes.map(|(loaded, reference)| PreparedScene {
+    let pairs = run_set.scenes.iter().zip(run_set.references);
+    let scenes = pairs.map(|(loaded, reference)| PreparedScene {
         name: loaded.spec.name.clone(),
         path: loaded.spec.path.clone(),
         files: loaded.shared_files(),

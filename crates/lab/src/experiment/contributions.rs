@@ -89,8 +89,8 @@ fn of_method(
     spp: u64,
 ) -> Result<Contributions, ExperimentError> {
     let settings = loaded.bidirectional(method, "contributions")?;
-    let passes = (0..spp).into_par_iter();
-    let passes: Vec<_> = passes.map(|pass| terms(loaded, &settings, pass)).collect();
+    let numbers = (0..spp).into_par_iter();
+    let passes: Vec<_> = numbers.map(|pass| terms(loaded, &settings, pass)).collect();
     let samples = loaded.subject.view.film().crop.area() as f64;
     let figures = |terms: &[Vec<f64>; 2]| {
         let numbers = terms.each_ref().map(|values| figures(values, samples));

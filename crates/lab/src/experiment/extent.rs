@@ -121,10 +121,10 @@ impl Experiment {
     ///
     /// Errors: a scene name is unknown.
     pub fn within(mut self, extent: &Extent) -> Result<Self, UnknownName> {
-        let names = self.scene_names();
-        let is_unknown = |name: &&String| !names.contains(name);
+        let scenes = self.scene_names();
+        let is_unknown = |name: &&String| !scenes.contains(name);
         if let Some(name) = extent.scenes.iter().find(is_unknown) {
-            let names: Vec<&str> = names.iter().map(String::as_str).collect();
+            let names: Vec<&str> = scenes.iter().map(String::as_str).collect();
             return Err(UnknownName::new(name, &names));
         }
         self.scenes

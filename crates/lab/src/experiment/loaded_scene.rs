@@ -51,8 +51,8 @@ impl<'a> LoadedScene<'a> {
             resolution: spec.size.or(experiment.size),
             ..LoadOptions::default()
         };
-        let loaded = formats::scene::load_from(&spec.path, &options, files);
-        let loaded = loaded.map_err(|error| Place::of_named(spec.file_place.as_ref(), error))?;
+        let read = formats::scene::load_from(&spec.path, &options, files);
+        let loaded = read.map_err(|error| Place::of_named(spec.file_place.as_ref(), error))?;
         Ok(Self {
             spec,
             subject: Subject {

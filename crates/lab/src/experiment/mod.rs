@@ -270,8 +270,8 @@ impl Experiment {
         &'a self,
         scene: &'a str,
     ) -> impl Iterator<Item = (&'a BudgetSpec, &'a MethodSpec)> {
-        let budgets = self.budgets.iter();
-        let budgets = budgets.filter(move |budget| is_in(&budget.scenes, scene));
+        let all = self.budgets.iter();
+        let budgets = all.filter(move |budget| is_in(&budget.scenes, scene));
         budgets.flat_map(move |budget| {
             let methods = self.methods.iter().filter(move |method| {
                 is_in(&method.scenes, scene) && is_in(&budget.methods, &method.name)

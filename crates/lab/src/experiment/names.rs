@@ -12,8 +12,8 @@ pub(super) fn value_of<T: Copy>(names: &[(&str, T)], given: &str) -> Result<T, U
 
 /// Turns a name into a part of a file name: lower case, with `-` for everything but letters and digits.
 pub(super) fn file_name(name: &str) -> String {
-    let words = name.split(|c: char| !c.is_ascii_alphanumeric());
-    let words: Vec<_> = words.filter(|word| !word.is_empty()).collect();
+    let parts = name.split(|c: char| !c.is_ascii_alphanumeric());
+    let words: Vec<_> = parts.filter(|word| !word.is_empty()).collect();
     words.join("-").to_ascii_lowercase()
 }
 

@@ -41,11 +41,11 @@ pub(super) fn check(
 }
 
 fn check_all<'a>(read: impl IntoIterator<Item = &'a Path>, written: &[PathBuf]) -> Result<()> {
-    let outputs = written.iter().map(|path| Output {
+    let files = written.iter().map(|path| Output {
         path,
         flag: Some("--output"),
     });
-    let outputs: Vec<_> = outputs.collect();
+    let outputs: Vec<_> = files.collect();
     Ok(formats::outputs::check(read, &outputs)?)
 }
 

@@ -69,8 +69,8 @@ fn images(folder: &Path, results: &Results) -> Result<Vec<ReportImage>> {
         let name = format!("{} · {}", record.method, record.budget);
         Some((&record.scene, name, false, record.image.as_ref()?))
     });
-    let all = references.chain(renders);
-    let all = all.map(|(scene, name, is_reference, image)| {
+    let named = references.chain(renders);
+    let all = named.map(|(scene, name, is_reference, image)| {
         let image = formats::image::read(&folder.join(image), None)?;
         Ok(ReportImage {
             scene: scene.clone(),

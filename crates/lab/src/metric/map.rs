@@ -46,8 +46,8 @@ impl ErrorMap {
                 .sum::<f64>()
                 / 3.0
         };
-        let errors = image.chunks(3).zip(reference.chunks(3)).map(of);
-        let errors: Vec<f64> = errors.collect();
+        let each = image.chunks(3).zip(reference.chunks(3)).map(of);
+        let errors: Vec<f64> = each.collect();
         let pixels = pair.image().data.len();
         Self {
             size: pair.size(),

@@ -43,8 +43,8 @@ impl Kind {
 pub fn developed(film: &Film) -> Developed {
     let layers = film.layers();
     let names = layers.part_names().enumerate();
-    let images = names.skip(layers.light_groups().len());
-    let images = images.map(|(part, name)| LayerImage {
+    let kept = names.skip(layers.light_groups().len());
+    let images = kept.map(|(part, name)| LayerImage {
         name,
         channels: &["R", "G", "B"],
         data: film.part_pixels(part).flatten().collect(),

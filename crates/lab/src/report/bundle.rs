@@ -42,8 +42,8 @@ fn function(name: &str, text: &str) -> String {
             let (names, file) = import
                 .split_once(" from ")
                 .expect("an import names its module");
-            let module = file.trim_matches(['"', ';', '.', '/']);
-            let module = module.trim_end_matches(".js");
+            let path = file.trim_matches(['"', ';', '.', '/']);
+            let module = path.trim_end_matches(".js");
             format!("const {names} = modules[\"{module}\"];")
         } else if let Some(exported) = line.strip_prefix("export ") {
             exports.push(exported_name(exported));

@@ -98,8 +98,8 @@ fn data(report: &Report<'_>) -> Value {
         })
     });
     let layers = report.layers.iter().map(|layers| {
-        let coded = layers.iter();
-        let coded = coded.map(|(name, pixels)| (name.as_str(), halves(&pixels.data)));
+        let pairs = layers.iter();
+        let coded = pairs.map(|(name, pixels)| (name.as_str(), halves(&pixels.data)));
         coded.collect::<BTreeMap<_, _>>()
     });
     json!({

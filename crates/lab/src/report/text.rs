@@ -9,16 +9,16 @@ use formats::printable;
 pub fn table_text(table: &Table) -> String {
     let shown = |text: &String| printable(text).into_owned();
     let head = table.columns.iter().map(shown).collect();
-    let rows = table.rows.iter().map(|row| row.iter().map(cell).collect());
-    let rows: Vec<Vec<String>> = std::iter::once(head).chain(rows).collect();
+    let body = table.rows.iter().map(|row| row.iter().map(cell).collect());
+    let rows: Vec<Vec<String>> = std::iter::once(head).chain(body).collect();
     let width = |column: usize| {
         let cells = rows.iter().filter_map(|row| row.get(column));
         cells.map(|cell| cell.chars().count()).max().unwrap_or(0)
     };
     let widths: Vec<usize> = (0..table.columns.len()).map(width).collect();
     let line = |row: &Vec<String>| {
-        let cells = row.iter().zip(&widths);
-        let cells = cells.map(|(cell, &width)| format!("{cell:width$}"));
+        let pairs = row.iter().zip(&widths);
+        let cells = pairs.map(|(cell, &width)| format!("{cell:width$}"));
         let line = cells.collect::<Vec<_>>().join("  ");
         line.trim_end().to_owned() + "\n"
     };

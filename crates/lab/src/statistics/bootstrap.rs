@@ -36,8 +36,8 @@ pub(super) fn bounds(values: &[f64], confidence: f64) -> Option<[f64; 2]> {
     let tail = normal_cdf(-(n / (n - 1.0)).sqrt() * t);
     let count = resamples(tail)?;
     let means = resampled_means(values, count);
-    let rank = (tail * (count + 1) as f64) as usize;
-    let rank = rank.clamp(1, means.len() / 2);
+    let exact = (tail * (count + 1) as f64) as usize;
+    let rank = exact.clamp(1, means.len() / 2);
     Some([means[rank - 1], means[means.len() - rank]])
 }
 

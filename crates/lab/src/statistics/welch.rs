@@ -124,14 +124,14 @@ pub fn smallest_bias(a: &[Pixels], b: &[Pixels], level: f64) -> Option<f64> {
     let moments = [a, b].map(|replicates| moments_of_replicates(blocks, replicates));
     let [a, b] = &moments;
     let lit = a.iter().zip(b).filter(|(a, b)| a.mean + b.mean != 0.0);
-    let biases = lit.map(|(a, b)| {
+    let each = lit.map(|(a, b)| {
         let (variance, freedom) = sum_of_variances(*a, *b);
         let t = students_t(freedom).map_or(0.0, |distribution| {
             distribution.inverse_cdf(1.0 - 0.5 * alpha)
         });
         t * variance.sqrt() / (0.5 * (a.mean + b.mean)).abs()
     });
-    let biases: Vec<f64> = biases.collect();
+    let biases: Vec<f64> = each.collect();
     let largest = biases.iter().copied().max_by(f64::total_cmp)?;
     largest.is_finite().then_some(largest)
 }
@@ -191,8 +191,8 @@ fn moments_of_replicates(blocks: Blocks, replicates: &[Pixels]) -> Vec<Moments> 
 
 /// Finds the most significant difference of two images.
 fn worst(blocks: Blocks, a: &[Moments], b: &[Moments]) -> Option<Difference> {
-    let tests = a.par_iter().zip(b).map(|(a, b)| welch(*a, *b));
-    let tests: Vec<(f64, f64)> = tests.collect();
+    let each = a.par_iter().zip(b).map(|(a, b)| welch(*a, *b));
+    let tests: Vec<(f64, f64)> = each.collect();
     let smallest = tests.iter().enumerate();
     let (index, &(p, deviations)) = smallest.min_by(|x, y| x.1.0.total_cmp(&y.1.0))?;
     Some(Difference {

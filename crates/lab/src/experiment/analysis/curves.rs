@@ -11,8 +11,8 @@ use crate::statistics::mean_interval;
 pub(super) fn plots(findings: &Findings<'_>, scene: &SceneInfo) -> Vec<Plot> {
     let mut plots = Vec::new();
     for (_, kind) in BudgetKind::NAMES {
-        let budgets = findings.results.budgets.iter();
-        let budgets: Vec<_> = budgets.filter(|budget| budget.kind == kind).collect();
+        let all = findings.results.budgets.iter();
+        let budgets: Vec<_> = all.filter(|budget| budget.kind == kind).collect();
         if budgets.len() < 2 {
             continue;
         }
@@ -54,8 +54,8 @@ impl Axes<'_> {
     }
 
     fn curve(&self, budgets: &[&BudgetInfo], method: &str) -> Series {
-        let points = budgets.iter();
-        let mut points: Vec<Point> = points.filter_map(|b| self.point(b, method)).collect();
+        let all = budgets.iter();
+        let mut points: Vec<Point> = all.filter_map(|b| self.point(b, method)).collect();
         points.sort_by(|(a, _), (b, _)| a[0].total_cmp(&b[0]));
         Series::new(method, &points)
     }

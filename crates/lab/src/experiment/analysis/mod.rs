@@ -84,8 +84,8 @@ pub(super) fn records_of<'a>(
 
 /// Returns the metrics in a scene's records, in the order of their names.
 fn metrics(results: &Results, scene: &SceneInfo) -> Vec<Measure> {
-    let records = results.records.iter();
-    let records = records.filter(|record| record.scene == scene.name);
+    let all = results.records.iter();
+    let records = all.filter(|record| record.scene == scene.name);
     let names: BTreeSet<&String> = records.flat_map(|record| record.metrics.keys()).collect();
     measures(names)
 }

@@ -8,8 +8,8 @@ const LARGE: f64 = 1.25;
 
 /// Returns warnings about methods whose first pass takes far more rays than their budget.
 pub fn overruns(results: &Results) -> Vec<String> {
-    let budgets = results.budgets.iter();
-    let budgets = budgets.filter(|budget| budget.kind == BudgetKind::Rays);
+    let all = results.budgets.iter();
+    let budgets = all.filter(|budget| budget.kind == BudgetKind::Rays);
     let mut warnings = Vec::new();
     for budget in budgets {
         for scene in &results.scenes {
@@ -29,9 +29,9 @@ fn overrun(
 ) -> Option<String> {
     let records = records_of(results, &scene.name, &budget.name, method);
     let of_one_pass = records.iter().filter(|record| record.spp == 1);
-    let rays = of_one_pass.map(|record| record.rays.total()).max()?;
+    let most = of_one_pass.map(|record| record.rays.total()).max()?;
     let [width, height] = scene.size;
-    let rays = rays as f64 / (width * height) as f64;
+    let rays = most as f64 / (width * height) as f64;
     let name = &scene.name;
     let text = format!(
         "scene `{name}`: `{method}` takes {rays:.0} rays per pixel for training and its first pass, and \

@@ -67,8 +67,8 @@ impl<'a> Findings<'a> {
     /// Returns the records of a method in a scene, of the first chosen budget that has any there.
     fn records(&self, choice: &BudgetChoice, scene: &str, method: &str) -> Vec<&'a Record> {
         let results = self.results;
-        let budgets = results.budgets.iter();
-        let budgets = budgets.filter(|budget| choice.includes(budget));
+        let all_budgets = results.budgets.iter();
+        let budgets = all_budgets.filter(|budget| choice.includes(budget));
         let mut all = budgets.map(|budget| records_of(results, scene, &budget.name, method));
         all.find(|records| !records.is_empty()).unwrap_or_default()
     }
@@ -132,12 +132,12 @@ impl<'a> Findings<'a> {
         let parts = spec.parts.iter();
         let intervals: Vec<_> = parts.map(|(_, of)| self.interval(of, confidence)).collect();
         let names = spec.parts.iter().map(|(name, _)| name);
-        let parts = names.zip(&intervals);
-        let parts: Vec<_> = parts.map(|(name, found)| part(name, *found)).collect();
+        let named = names.zip(&intervals);
+        let parts: Vec<_> = named.map(|(name, found)| part(name, *found)).collect();
         let measures: Vec<_> = spec.parts.iter().map(|(_, of)| of.measure).collect();
         let is_one = measures.windows(2).all(|pair| pair[0] == pair[1]);
-        let measure = measures.first().filter(|_| is_one);
-        let measure = measure.map_or(String::new(), |measure| format!("{measure}: "));
+        let common = measures.first().filter(|_| is_one);
+        let measure = common.map_or(String::new(), |measure| format!("{measure}: "));
         Claim {
             id: spec.id.clone(),
             claim: spec.claim.clone(),

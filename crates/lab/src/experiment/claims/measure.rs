@@ -186,18 +186,17 @@ pub(in super::super) fn figure_names() -> Vec<String> {
 fn all() -> Vec<(String, Measure)> {
     let metrics = Metric::NAMES.into_iter().flat_map(|(name, metric)| {
         let at = |words: &str, cost| (format!("{name} {words}"), Measure::AtCost(metric, cost));
-        let equal = [
+        let both = [
             at("at equal rays", Cost::Rays),
             at("in equal time", Cost::Time),
         ];
-        let equal = equal.into_iter().filter(move |_| metric.order().is_some());
+        let equal = both.into_iter().filter(move |_| metric.order().is_some());
         std::iter::once((name.to_owned(), Measure::Metric(metric))).chain(equal)
     });
-    let figures = FIGURES.iter().enumerate();
-    let figures = figures.map(|(index, (name, _))| ((*name).to_owned(), Measure::Figure(index)));
-    let contributions = crate::experiment::contributions::FIGURES.iter();
-    let contributions =
-        contributions.map(|name| ((*name).to_owned(), Measure::Contributions(name)));
+    let numbered = FIGURES.iter().enumerate();
+    let figures = numbered.map(|(index, (name, _))| ((*name).to_owned(), Measure::Figure(index)));
+    let names = crate::experiment::contributions::FIGURES.iter();
+    let contributions = names.map(|name| ((*name).to_owned(), Measure::Contributions(name)));
     metrics.chain(figures).chain(contributions).collect()
 }
 

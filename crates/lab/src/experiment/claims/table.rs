@@ -24,8 +24,8 @@ impl Findings<'_> {
     /// Makes the cells of a row. None: it has numbers, but none was measured.
     fn row(&self, specs: &[CellSpec]) -> Option<Vec<Cell>> {
         let cells: Vec<Cell> = specs.iter().map(|spec| self.cell(spec)).collect();
-        let numbers = specs.iter().zip(&cells);
-        let mut numbers = numbers.filter(|(spec, _)| matches!(spec, CellSpec::Quantity(_)));
+        let pairs = specs.iter().zip(&cells);
+        let mut numbers = pairs.filter(|(spec, _)| matches!(spec, CellSpec::Quantity(_)));
         let has_numbers = numbers.clone().next().is_some();
         let is_measured = numbers.any(|(_, cell)| !matches!(cell, Cell::Text(_)));
         (is_measured || !has_numbers).then_some(cells)

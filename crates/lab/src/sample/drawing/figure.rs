@@ -73,8 +73,8 @@ impl Ray {
         // The maximum is a number also where the weight is none.
         let width = px(1.2 + 3.0 * (self.weight / largest).max(0.0).sqrt());
         let (title, line) = (&self.title, polyline(&[from, to], self.class));
-        let mark = self.is_foreign.then(|| circle(from, 2.8, "light hollow"));
-        let mark = mark.unwrap_or_default();
+        let hollow = self.is_foreign.then(|| circle(from, 2.8, "light hollow"));
+        let mark = hollow.unwrap_or_default();
         Some(format!(
             "<g stroke-width=\"{width}\">\n<title>{title}</title>\n{line}{mark}</g>\n"
         ))
@@ -114,8 +114,8 @@ impl Walk {
         let (class, points) = (self.class, self.points(view));
         let track = polyline(&points, "track");
         let arrow = self.arrow(view).unwrap_or_default();
-        let marks = points.iter().map(|at| circle(*at, 4.2, "vertex"));
-        let marks: String = marks.collect();
+        let dots = points.iter().map(|at| circle(*at, 4.2, "vertex"));
+        let marks: String = dots.collect();
         format!("<g class=\"{class}\">\n{track}{arrow}{marks}</g>\n")
     }
 

@@ -76,8 +76,8 @@ impl Figure {
     fn draw(&self, title: &str, view: &View<'_>) -> String {
         let weights = self.rays.iter().map(|ray| ray.weight);
         let largest = weights.fold(f32::MIN_POSITIVE, f32::max);
-        let rays = KINDS.iter().flat_map(|[class, _]| self.of_class(class));
-        let rays: String = rays.filter_map(|ray| ray.draw(view, largest)).collect();
+        let ordered = KINDS.iter().flat_map(|[class, _]| self.of_class(class));
+        let rays: String = ordered.filter_map(|ray| ray.draw(view, largest)).collect();
         let walks: String = self.walks.iter().map(|walk| walk.draw(view)).collect();
         let names: String = self.walks.iter().map(|walk| walk.names(view)).collect();
         let (panel, outline) = (view.panel(title), view.outline());
@@ -99,18 +99,18 @@ impl Figure {
             let count = self.of_class(class).count();
             (line(class), format!("{meaning}: {count}"))
         });
-        let notes = [
+        let texts = [
             "width: w C times probability of candidates",
             "an arrow leaves the scene",
         ];
-        let notes = notes.map(|note| (String::new(), note.to_owned()));
-        let rows = marks.into_iter().chain(lines).chain(notes).enumerate();
-        let rows = rows.map(|(i, (sample, meaning))| {
+        let notes = texts.map(|note| (String::new(), note.to_owned()));
+        let pairs = marks.into_iter().chain(lines).chain(notes).enumerate();
+        let drawn = pairs.map(|(i, (sample, meaning))| {
             let [x, y] = [LEGEND.x, LEGEND.y + ROW * i as f32].map(px);
             let meaning = text(Vec2::new(36.0, 4.0), "meaning", &meaning);
             format!("<g transform=\"translate({x} {y})\">\n{sample}{meaning}</g>\n")
         });
-        let rows: String = rows.collect();
+        let rows: String = drawn.collect();
         format!("<g stroke-width=\"2.2\">\n{rows}</g>\n")
     }
 }

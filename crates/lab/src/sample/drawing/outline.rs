@@ -43,15 +43,15 @@ impl View<'_> {
         // The chances of surfaces that are there only in part are the same for all rays.
         let stream = Sampler::new(SamplerKind::Independent, 0).stream(Domain::Camera, 0, 0);
         let (origin, chances) = (self.near_point(at), RayDraws::new(&stream, 1));
-        let hit = self.scene.intersect(origin, self.away(), chances);
-        let hit = hit.map(|hit| [hit.surface.point, hit.surface.n_g]);
+        let found = self.scene.intersect(origin, self.away(), chances);
+        let hit = found.map(|hit| [hit.surface.point, hit.surface.n_g]);
         Sight { at, hit }
     }
 
     /// Returns the edges in the cell between four rays, as steps of a path.
     fn edges(&self, cell: [Sight; 4]) -> String {
-        let places = (0..4).filter_map(|i| self.parting(cell[i], cell[(i + 1) % 4]));
-        let places: Vec<_> = places.collect();
+        let points = (0..4).filter_map(|i| self.parting(cell[i], cell[(i + 1) % 4]));
+        let places: Vec<_> = points.collect();
         let middle = places.iter().sum::<Vec2>() / places.len() as f32;
         match places[..] {
             [a, b] => step(a, b),

@@ -28,7 +28,7 @@ pub(super) fn circle(at: Vec2, radius: f32, class: &str) -> String {
 
 /// Returns a line through `points`.
 pub(super) fn polyline(points: &[Vec2], class: &str) -> String {
-    let pairs = points.iter().map(|p| format!("{},{}", px(p.x), px(p.y)));
-    let pairs = pairs.collect::<Vec<_>>().join(" ");
+    let texts = points.iter().map(|p| format!("{},{}", px(p.x), px(p.y)));
+    let pairs = texts.collect::<Vec<_>>().join(" ");
     format!("<polyline points=\"{pairs}\" class=\"{class}\"/>\n")
 }
