@@ -17,42 +17,35 @@ pub struct Budget {
 }
 
 impl Budget {
+    /// Returns δ with Σ min(1, g_c / δ) = `rays`. None: there are no more candidates than rays, so that all
+    /// are traced.
     fn threshold(self, candidates: &[Candidate]) -> Option<f64> {
-        let scores = candidates.iter().map(|c| (1.0, f64::from(c.score)));
-        threshold(&scores, self.rays.into())
-    }
-}
-
-/// Returns δ with Σ min(1, g_c / δ) = `rays` over candidates, each a number of equal ones and their score. None: there
-/// are no more candidates than rays, so that all are traced.
-pub(crate) fn threshold(
-    candidates: &(impl Iterator<Item = (f64, f64)> + Clone),
-    rays: f64,
-) -> Option<f64> {
-    if candidates.clone().map(|(count, _)| count).sum::<f64>() <= rays {
-        return None;
-    }
-    // Candidates with scores of δ or more count one ray each; the others share the remaining rays. δ falls from round
-    // to round, and the number of rounds is at most that of candidates.
-    let mut threshold = f64::INFINITY;
-    loop {
-        let (mut certain, mut rest) = (0.0, 0.0);
-        for (count, score) in candidates.clone() {
-            if score >= threshold {
-                certain += count;
-            } else {
-                rest += count * score;
+        if candidates.len() <= self.rays as usize {
+            return None;
+        }
+        // Candidates with scores of δ or more count one ray each; the others share the remaining rays. δ falls from
+        // round to round, and the number of rounds is at most that of candidates.
+        let mut threshold = f64::INFINITY;
+        loop {
+            let (mut certain, mut rest) = (0u32, 0.0);
+            for candidate in candidates {
+                let score = f64::from(candidate.score);
+                if score >= threshold {
+                    certain += 1;
+                } else {
+                    rest += score;
+                }
             }
+            // With as many certain candidates as rays, the remainder is lost in rounding.
+            if certain >= self.rays || rest <= 0.0 {
+                return Some(threshold);
+            }
+            let next = rest / f64::from(self.rays - certain);
+            if next >= threshold {
+                return Some(threshold);
+            }
+            threshold = next;
         }
-        // With as many certain candidates as rays, the remainder is lost in rounding.
-        if certain >= rays || rest <= 0.0 {
-            return Some(threshold);
-        }
-        let next = rest / (rays - certain);
-        if next >= threshold {
-            return Some(threshold);
-        }
-        threshold = next;
     }
 }
 

@@ -17,7 +17,6 @@ mod grouped;
 mod simple;
 
 pub use budget::Budget;
-pub(crate) use budget::threshold;
 pub use grouped::{Group, OnePerGroup};
 pub use simple::{All, RayRoulette};
 

@@ -5,8 +5,6 @@
 //!
 //! which is the variance of a draw of a fixed number of rays \[Hajek64\].
 
-use crate::select::threshold;
-
 /// The candidates of a plan that a connection of the survey stands for.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Expected {
@@ -36,8 +34,7 @@ pub(super) fn variance(candidates: &[Expected], rays: f64) -> f64 {
 /// Returns the variance of the selection from the candidates of one block, summed over its samples.
 fn of_block(candidates: &[Expected], rays: f64) -> f64 {
     let samples = candidates.chunk_by(|a, b| a.sample == b.sample).count();
-    let scores = candidates.iter().map(|of| (of.count, of.score));
-    let Some(threshold) = threshold(&scores, rays * samples as f64) else {
+    let Some(threshold) = threshold(candidates, rays * samples as f64) else {
         return 0.0;
     };
     let [mut squares, mut values, mut spread] = [0.0; 3];
@@ -51,6 +48,32 @@ fn of_block(candidates: &[Expected], rays: f64) -> f64 {
         (squares - values * values / spread).max(0.0)
     } else {
         0.0
+    }
+}
+
+/// Returns δ with Σ π = `rays`. None: there are no more candidates than rays.
+fn threshold(candidates: &[Expected], rays: f64) -> Option<f64> {
+    if candidates.iter().map(|of| of.count).sum::<f64>() <= rays {
+        return None;
+    }
+    let mut threshold = f64::INFINITY;
+    loop {
+        let (mut certain, mut rest) = (0.0, 0.0);
+        for of in candidates {
+            if of.score >= threshold {
+                certain += of.count;
+            } else {
+                rest += of.count * of.score;
+            }
+        }
+        if certain >= rays || rest <= 0.0 {
+            return Some(threshold);
+        }
+        let next = rest / (rays - certain);
+        if next >= threshold {
+            return Some(threshold);
+        }
+        threshold = next;
     }
 }
 
