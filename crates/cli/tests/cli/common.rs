@@ -6,25 +6,7 @@ use std::process::{Command, Output};
 use tempfile::TempDir;
 
 /// A floor, a wall, a small light and a point light, in 24 x 16 pixels.
-pub(crate) const SCENE: &str = r#"
-LookAt 0 1 -4  0 1 0  0 1 0
-Camera "perspective" "float fov" 40
-Film "rgb" "integer xresolution" 24 "integer yresolution" 16 "string filename" "room.exr"
-PixelFilter "box"
-Sampler "sobol" "integer pixelsamples" 2
-Integrator "bdpt" "integer maxdepth" 4
-WorldBegin
-LightSource "point" "rgb I" [2 2 2] "point3 from" [1 2 -1]
-Material "diffuse" "rgb reflectance" [0.7 0.6 0.5]
-Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-2 0 -2 -2 0 2 2 0 2 2 0 -2]
-Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-2 0 2 -2 3 2 2 3 2 2 0 2]
-Shape "sphere" "float radius" 0.4
-AttributeBegin
-AreaLightSource "diffuse" "rgb L" [9 8 7]
-Shape "trianglemesh" "integer indices" [0 2 1 0 3 2]
-  "point3 P" [-0.3 2.5 0 -0.3 2.5 0.6 0.3 2.5 0.6 0.3 2.5 0]
-AttributeEnd
-"#;
+pub(crate) const SCENE: &str = include_str!("room.pbrt");
 
 /// A temporary folder with a scene in it.
 pub(crate) struct Workplace {

@@ -16,23 +16,7 @@ use tungstenite::client::IntoClientRequest;
 use tungstenite::{Message, WebSocket};
 
 /// A floor, a wall, a ball, a small light and a point light.
-const SCENE: &str = r#"
-LookAt 0 1 -4  0 1 0  0 1 0
-Camera "perspective" "float fov" 40
-Film "rgb" "integer xresolution" 48 "integer yresolution" 32
-PixelFilter "box"
-WorldBegin
-LightSource "point" "rgb I" [2 2 2] "point3 from" [1 2 -1]
-Material "diffuse" "rgb reflectance" [0.7 0.6 0.5]
-Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-2 0 -2 -2 0 2 2 0 2 2 0 -2]
-Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-2 0 2 -2 3 2 2 3 2 2 0 2]
-Shape "sphere" "float radius" 0.4
-AttributeBegin
-AreaLightSource "diffuse" "rgb L" [9 8 7]
-Shape "trianglemesh" "integer indices" [0 2 1 0 3 2]
-  "point3 P" [-0.3 2.5 0 -0.3 2.5 0.6 0.3 2.5 0.6 0.3 2.5 0]
-AttributeEnd
-"#;
+const SCENE: &str = include_str!("room.pbrt");
 
 /// Nothing that is waited for takes so long.
 pub const DEADLINE: Duration = Duration::from_secs(60);
