@@ -72,7 +72,7 @@ class Stages(unittest.TestCase):
     NAMES = [
         ("bidir::integrator::stages::walk::walk_camera", 100),
         ("bidir::integrator::stages::walk::walk_light", 60),
-        ("bidir::integrator::stages::hits::hits", 10),
+        ("bidir::integrator::stages::walk::hits", 10),
         ("bidir::integrator::stages::light_image::light_image", 50),
         ("bidir::integrator::stages::connect::connect", 200),
         ("<bidir::select::simple::All as bidir::select::Selector>::select", 8),
