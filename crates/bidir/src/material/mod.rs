@@ -336,8 +336,8 @@ mod tests {
     /// Returns the part of light that a smooth material reflects at normal incidence.
     fn reflected(material: &Material, lanes: Lanes) -> Spectrum {
         let bsdf = material.bsdf(&TexturePoint::of_parameters(Vec2::ZERO), lanes);
-        let drawn = bsdf.sample(Vec3::Z, TransportMode::Radiance, || 0.0, Vec2::ZERO);
-        let drawn = drawn.expect("a mirror reflects");
+        let sample = bsdf.sample(Vec3::Z, TransportMode::Radiance, || 0.0, Vec2::ZERO);
+        let drawn = sample.expect("a mirror reflects");
         assert!(drawn.wi.z > 0.0);
         // At this incidence the coefficient is the probability.
         drawn.weight * drawn.pdf

@@ -52,8 +52,8 @@ impl PathDensities {
     pub fn gather_connection(&mut self, job: &Job<'_>, path: &JoinedPath<'_>) {
         let (s, n) = (path.light.len(), path.len());
         self.vertices.clear();
-        let of_light = stored_densities(job, path.light, n).zip(path.light);
-        let of_light = of_light.map(|([drawn, back], x)| VertexDensities::new(x, drawn, back));
+        let light = stored_densities(job, path.light, n).zip(path.light);
+        let of_light = light.map(|([drawn, back], x)| VertexDensities::new(x, drawn, back));
         self.vertices.extend(of_light);
         self.add_camera(job, path.camera, n);
         let Reversed { z, y, before } = path.reversed(job);
@@ -82,8 +82,8 @@ impl PathDensities {
 
     /// Adds the vertices of a camera subpath of a path of `n`, the last one first.
     fn add_camera(&mut self, job: &Job<'_>, camera: &[Vertex], n: usize) {
-        let of_camera = stored_densities(job, camera, n).zip(camera).rev();
-        let of_camera = of_camera.map(|([drawn, back], x)| VertexDensities::new(x, back, drawn));
+        let walk = stored_densities(job, camera, n).zip(camera).rev();
+        let of_camera = walk.map(|([drawn, back], x)| VertexDensities::new(x, back, drawn));
         self.vertices.extend(of_camera);
     }
 

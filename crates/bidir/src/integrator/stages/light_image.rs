@@ -47,8 +47,8 @@ pub(in super::super) fn light_image(
             let Some(image) = LightImage::new(job, &walk.vertices[..s], &lens) else {
                 continue;
             };
-            let sums = (&walks.light.sums, walk.first + s - 1);
-            let sums = (weighting == Weighting::Combined).then_some(sums);
+            let of_vertex = (&walks.light.sums, walk.first + s - 1);
+            let sums = (weighting == Weighting::Combined).then_some(of_vertex);
             if let Some((term, shadow)) = image.weighted_term(job, sums, &mut worker.weights) {
                 let (link, stats) = (image.link(job, sample), &mut worker.stats);
                 let entry = enter(splats, stats, index, sample, term, link);

@@ -115,8 +115,8 @@ fn a_spot_falls_off_smoothly_and_ends() {
 fn lights_emit_their_spectra() {
     const LUMINANCE: f32 = 3.0;
     let line = Curve::from_pairs(&[300.0, 1.0, 900.0, 7.0], Beyond::Zero).unwrap();
-    let light = Illuminant::of_curve(line.clone()).unwrap();
-    let light = light.map(|channel| channel * LUMINANCE);
+    let unit = Illuminant::of_curve(line.clone()).unwrap();
+    let light = unit.map(|channel| channel * LUMINANCE);
     // The line's value at the centroid of ȳ, times ∫ ȳ dλ.
     let luminance = f64::from(LUMINANCE_OF_ONE) * line.at(559.9);
     let value = |nm| LUMINANCE * (line.at(nm) / luminance) as f32;
